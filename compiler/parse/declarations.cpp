@@ -337,7 +337,7 @@ void Builder::fail(diag::Code code, source::Span span, std::string message, std:
 
 void Builder::too_high(source::Span span) {
     fail(diag::Code::nesting_too_deep, span,
-         fmt::format("more than {} operators depend on one another here", kMaxHeight),
+         fmt::format("more than {} operators are nested here", kMaxHeight),
          "name parts of it with 'let', or load a matrix of numbers as a target");
 }
 

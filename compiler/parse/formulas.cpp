@@ -140,7 +140,7 @@ Builder::Formula Builder::compared(Grammar::SumContext& left,
     if (written == nullptr)
         fail(diag::Code::comparison_form,
              span_of(dynamic_cast<ParserRuleContext&>(*context.children[2])),
-             "a calibrated threshold stands only in a predicate",
+             "a calibrated threshold is allowed only in a predicate",
              "declare 'predicate NAME = ... calibrated(...);' and use its name here");
     Expression value = expression(left);
     Expression right = expression(*written);

@@ -37,9 +37,9 @@ private:
         const std::string_view text = file_.text();
         if (text.size() > kMaxSpecBytes) {
             sink_
-                .report(
-                    {Code::spec_too_large, fmt::format("a spec of {} bytes; at most {} are read",
-                                                       text.size(), kMaxSpecBytes)})
+                .report({Code::spec_too_large,
+                         fmt::format("the spec has {} bytes; etlc reads at most {}", text.size(),
+                                     kMaxSpecBytes)})
                 .note("target sets of that size belong in .npy files");
             return false;
         }

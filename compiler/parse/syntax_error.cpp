@@ -82,12 +82,12 @@ private:
         if (is(&found_, {EtlParser::NOT, EtlParser::NEXT, EtlParser::EVENTUALLY, EtlParser::ALWAYS,
                          EtlParser::PREVIOUS, EtlParser::ONCE, EtlParser::HISTORICALLY,
                          EtlParser::LPAREN, EtlParser::LBRACKET}))
-            result.note("a formula has a name: monitor NAME = FORMULA;");
+            result.note("a formula needs a name: monitor NAME = FORMULA;");
         if (result.notes.empty())
             result.note(
                 "a declaration begins with spec, rate, period, const, encoder, input, projection, "
-                "target, predicate, truth, let, or with monitor, before which sliding, restartable "
-                "or repeating may stand");
+                "target, predicate, truth, let or monitor; sliding, restartable and repeating come "
+                "before monitor");
         return result;
     }
 
@@ -147,7 +147,7 @@ private:
         Diagnostic result{Code::syntax_error,
                           fmt::format("{} takes no interval", quoted(*stuck_.previous, file_)),
                           span_of(found_)};
-        result.note("intervals stand after F, G, O, H, U, R and S");
+        result.note("only F, G, O, H, U, R and S take intervals");
         return result;
     }
 
@@ -197,14 +197,13 @@ private:
         const bool in_brackets =
             stuck_.rule == EtlParser::RulePrimary && stuck_.expects(EtlParser::COMMA);
         if (found == EtlParser::INF)
-            to.note("inf stands only in the bounds of intervals and ranges");
+            to.note("inf is allowed only in bounds of intervals and ranges");
         else if (found == EtlParser::ASSIGN && stuck_.rule != EtlParser::RuleName)
-            to.note("a comparison is '<=', '<', '>=', '>', '==' or '!='");
+            to.note("comparisons are '<=', '<', '>=', '>', '==' and '!='");
         else if (found == EtlParser::RPAREN && in_brackets)
             to.note(
-                "min(...) and max(...) of expressions take two or more; over a "
-                "target set it is "
-                "'min l2(z, goal)'");
+                "min(...) and max(...) need two or more expressions; over a target set, write 'min "
+                "l2(z, goal)'");
         else if (is(stuck_.previous, {EtlParser::KTH}))
             to.note("kth takes its rank in brackets: kth(3) l2(z, goal)");
         else if (is_reserved_word(found_, file_) && stuck_.expects(EtlParser::IDENTIFIER) &&
@@ -219,16 +218,13 @@ private:
                                  stuck_.parent_rule == EtlParser::RuleDuration ||
                                  is(stuck_.previous, {EtlParser::HELD});
         if (in_duration) {
-            to.note(
-                "'held' takes one bound, for how long: held[20 steps] f, held[2 s] "
-                "f");
+            to.note("'held' takes a single duration: held[20 steps] f, held[2 s] f");
             return;
         }
         switch (stuck_.rule) {
             case EtlParser::RuleDimension:
                 to.note(
-                    "only f32 and bool can be scalars; an embedding has its "
-                    "dimension in brackets");
+                    "only f32 and bool can be scalars; an embedding has its dimension in brackets");
                 break;
             case EtlParser::RuleMetric:
             case EtlParser::RuleWeights:
@@ -237,21 +233,16 @@ private:
             case EtlParser::RuleInterval:
             case EtlParser::RuleBound:
                 to.note(
-                    "an interval is written [a, b] or [a, inf], in steps or with "
-                    "units of time: "
+                    "an interval is written [a, b] or [a, inf], in steps or with units of time: "
                     "[0, 20 steps], [0s, 2s]");
                 break;
             case EtlParser::RuleThreshold:
-                to.note(
-                    "what is compared stands on the left, its threshold on the "
-                    "right: x - y <= "
-                    "0.5");
+                to.note("the expression is on the left, its threshold on the right: x - y <= 0.5");
                 break;
             case EtlParser::RuleComparisonOperator:
                 if (stuck_.declaration == EtlParser::PREDICATE)
                     to.note(
-                        "a predicate compares one expression with a threshold; a "
-                        "formula is named "
+                        "a predicate compares one expression with a threshold; a formula is named "
                         "with 'let'");
                 break;
             default: break;

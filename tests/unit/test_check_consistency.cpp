@@ -72,7 +72,7 @@ TEST(Consistency, CountsFollowFromAlphaAndTheScores) {
     EXPECT_EQ(said(good, [](Entry& e) { e.n = 0; }),
               "'predicates.p.n' is 0, expected a number of scores from 1");
     EXPECT_EQ(said(good, [](Entry& e) { e.alpha = "0.05"; }),
-              "'predicates.p.n' is 9, expected at least 19, which alpha = 0.05 takes");
+              "'predicates.p.n' is 9, expected at least 19, which alpha = 0.05 needs");
     EXPECT_EQ(said(good, [](Entry& e) { std::swap(e.scores[2], e.scores[3]); }),
               "'predicates.p.scores[3]' is 1, expected at least 1.5, the score before it");
     EXPECT_EQ(said(pooled("class_conditional"), [](Entry& e) { e.n = 100; }),
@@ -85,7 +85,7 @@ TEST(Consistency, CountsFollowFromAlphaAndTheScores) {
         "'predicates.p.scores' has 0 elements, expected 1 or 2, the score that was taken and the "
         "next");
     EXPECT_EQ(said(pooled("class_conditional"), [](Entry& e) { e.scores.push_back(9); }),
-              "'predicates.p.scores' has 2 elements, expected 1, the score that was taken");
+              "'predicates.p.scores' has 2 elements, expected 1: the chosen score");
 }
 
 TEST(Consistency, EpisodesAreThereOnceEach) {

@@ -27,15 +27,15 @@ std::optional<embedded::File> read_file(Context& c, const Encoder& first) {
         return read_made(c, path, embedded::read, first.span,
                          fmt::format("'{}' makes embeddings", first.name));
     c.report_data({Code::embedded_missing,
-                   fmt::format("'{}' makes embeddings, and there is no file {}", first.name, path),
+                   fmt::format("'{}' makes embeddings, but there is no file {}", first.name, path),
                    first.span},
                   true)
-        .note("'etlc embed' makes it, of the images that the spec names; --embedded names another");
+        .note("'etlc embed' makes it from the images in the spec; --embedded selects another file");
     return std::nullopt;
 }
 
 std::string then_and_now(std::string_view what, const std::string& then, const std::string& now) {
-    return fmt::format("{} then: {}; now: {}", what, then, now);
+    return fmt::format("{} was: {}; it is: {}", what, then, now);
 }
 
 /// Returns the differences since the encoder was run. A missing model is no difference: it is not
@@ -49,9 +49,8 @@ std::vector<std::string> changes(Context& c, Encoder encoder, const embedded::En
                                      std::to_string(encoder.dimension)));
     if (then.kind != embedded::kCommand && !then.kind.starts_with(embedded::kOnnxRuntime))
         found.emplace_back(
-            "an earlier etlc ran it, by OpenCV, whose numbers may be others than the model's, or "
-            "by "
-            "ONNX Runtime without its version");
+            "an earlier etlc ran it with OpenCV, whose results may differ, or with an unknown "
+            "version of ONNX Runtime");
     const std::string path = beside_spec(c, encoder.model);
     if (!found.empty() || !exists(path)) return found;
     c.dependencies.insert(path);
@@ -79,7 +78,7 @@ std::optional<Encoded> encoded_of(Context& c, const ast::Target::Source& source,
                  fmt::format("{} by which encoder? A target holds embeddings",
                              images != nullptr ? "images" : "frames of a video"))
             .note(images != nullptr ? "for example: target T = images(\"bay/*.png\") by NAME;"
-                                    : "of a recording with embeddings, name the input: "
+                                    : "for a recording with embeddings, name the input: "
                                       "frames(\"FILE\", \"z\", [120])");
         return std::nullopt;
     }
@@ -166,7 +165,7 @@ std::optional<Matrix> read_encoded(Context& c, const ast::Target::Source& source
     const auto found = c.embedded_file->entries.find(encoded->text);
     if (found == c.embedded_file->entries.end()) {
         c.report_data({Code::embedded_missing,
-                       fmt::format("{} has nothing for {}", path, encoded->text), encoded->span},
+                       fmt::format("{} has no entry for {}", path, encoded->text), encoded->span},
                       true)
             .note("'etlc embed' makes it");
         return std::nullopt;
@@ -181,7 +180,7 @@ std::optional<Matrix> read_encoded(Context& c, const ast::Target::Source& source
     }
     const bool is_current =
         is_up_to_date(c, Code::embedded_stale, encoded->span,
-                      fmt::format("{} holds embeddings of other {} than there are now", path,
+                      fmt::format("{} has embeddings of other {} than the present ones", path,
                                   encoded->is_video ? "frames" : "images"),
                       differences, kEmbedAgain);
     if (!is_current) return std::nullopt;
@@ -205,7 +204,7 @@ void check_embeddings(Context& c) {
         if (found == c.embedded_file->encoders.end()) {
             c.report_data(
                  {Code::embedded_missing,
-                  fmt::format("{} has nothing by '{}'", c.embedded_file->path, encoder.name),
+                  fmt::format("{} has no embeddings by '{}'", c.embedded_file->path, encoder.name),
                   encoder.span},
                  true)
                 .note(std::string(kEmbedAgain));

@@ -105,7 +105,7 @@ std::optional<std::string> set_setting(Encoder& encoder, const std::string& key,
                            setting->expected);
     std::vector<float>& before = encoder.*setting->values;
     if (!before.empty() && before != values)
-        return fmt::format("{} is [{}] in the spec and [{}] here; say it once", key,
+        return fmt::format("{} is [{}] in the spec and [{}] here; give it once", key,
                            fmt::join(before, ", "), fmt::join(values, ", "));
     before = std::move(values);
     return std::nullopt;
@@ -162,7 +162,7 @@ void check_encoders(Context& c) {
         bool good = set_settings(c, declaration, encoder);
         if (!declaration.model.key.empty()) {
             c.report(Code::encoder_form, declaration.model.key_span,
-                     "a model is a file of its own; expected load(\"FILE\") without a key");
+                     "a model is a separate file; expected load(\"FILE\") without a key");
             good = false;
         }
         if (!good) c.scope.entity(NameKind::encoder, index).broken = true;
@@ -194,11 +194,11 @@ bool is_unmarked(const Input& input, const std::string& array, const embedded::M
 }
 
 void explain_unmarked(diag::Diagnostic& warning) {
-    warning.note("embeddings by another encoder than the spec's would be taken in the same way");
+    warning.note("embeddings by another encoder would be accepted too");
     warning.note(
-        "an episode of `etlc embed` says it in embedded.json, a member of its .npz file that "
-        "numpy.savez does not write: copy it, as docs/recordings.md shows under Fingerprints; "
-        "recordings of other kinds cannot say it");
+        "`etlc embed` records the encoder in embedded.json, a member of the .npz file that "
+        "numpy.savez does not write: copy it as shown in docs/recordings.md under Fingerprints; "
+        "other kinds of recordings cannot record it");
 }
 
 }  // namespace etlc::check

@@ -39,7 +39,7 @@ const Input* input_of(Context& c, const ast::Frames& written) {
     const Input& input = c.model.inputs[index];
     if (input.is_embedding()) return &input;
     c.report(Code::frames_form, written.key_span,
-             fmt::format("'{}' is not an embedding, and the rows of a target are", written.key));
+             fmt::format("'{}' is not an embedding, but the rows of a target are", written.key));
     return nullptr;
 }
 

@@ -67,8 +67,9 @@ private:
     }
 
     Index too_deep(Span span) {
-        c_.report(Code::formula_too_deep, span,
-                  fmt::format("a formula of more than {} levels, its lets written out", kMaxDepth));
+        c_.report(
+            Code::formula_too_deep, span,
+            fmt::format("a formula of more than {} levels with its lets written out", kMaxDepth));
         return kNone;
     }
 
@@ -103,7 +104,7 @@ private:
                                   written.name, word_with_article(found->kind)));
         error.note(entity.span, fmt::format("'{}' is declared here", written.name));
         if (found->kind == NameKind::monitor)
-            error.note("a formula that is used more than once is given a name with let");
+            error.note("use let to name a formula that is used more than once");
         if (found->kind == NameKind::target)
             error.note(fmt::format(
                 "a predicate measures a distance to it: min l2(INPUT, {}) <= 0.5", written.name));

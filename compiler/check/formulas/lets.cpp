@@ -95,8 +95,8 @@ private:
         text += entity(use.let).name;
         auto& error =
             c_.report(Code::let_cycle, entity(use.let).span,
-                      fmt::format("'{}' is defined by itself: {}", entity(use.let).name, text));
-        error.note(use.span, "here the circle closes");
+                      fmt::format("'{}' refers to itself: {}", entity(use.let).name, text));
+        error.note(use.span, "the cycle closes here");
         for (auto at = begin; at != path_.end(); ++at) entity(*at).broken = true;
     }
 
@@ -123,20 +123,20 @@ void choose_telemetry(Context& c) {
         const Let& let = c.model.lets[i];
         c.scope.entity(NameKind::let, i).used = true;
         if (let.telemetry || let.formula == kNone) continue;
-        diag::Diagnostic found{Code::let_without_value,
-                               fmt::format("'{}' looks ahead, so at its own step it has no value: "
-                                           "--lets leaves it out",
-                                           let.name)};
+        diag::Diagnostic found{
+            Code::let_without_value,
+            fmt::format("'{}' looks ahead, so it has no value at its own step, and --lets omits it",
+                        let.name)};
         found.span = let.span;
         found.is_allowed = any;
         c.sink.report(std::move(found))
             .note(c.operator_spans[reach[let.formula].future], "it looks ahead here")
-            .note(fmt::format("'sliding monitor ... = {};' reports it as soon as it can be known, "
-                              "where the future is bounded",
+            .note(fmt::format("'sliding monitor ... = {};' reports it as soon as it is known, if "
+                              "its future is bounded",
                               let.name));
     }
     if (c.model.lets.empty())
-        c.report(Code::let_without_value, {}, "--lets changes nothing: the spec has no let");
+        c.report(Code::let_without_value, {}, "--lets has no effect: the spec has no lets");
 }
 
 void check_lets(Context& c) {

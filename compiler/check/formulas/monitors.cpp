@@ -86,15 +86,15 @@ private:
     }
 
     void report_unbounded(const Monitor& monitor, Span name, Index at) {
-        auto& error = c_.report(Code::unbounded_future, c_.operator_spans[at],
-                                fmt::format("{} looks ahead without bound, and a sliding verdict "
-                                            "waits for all that it looks at",
-                                            word(at)));
+        auto& error = c_.report(
+            Code::unbounded_future, c_.operator_spans[at],
+            fmt::format("{} looks ahead without bound, so a sliding verdict would wait forever",
+                        word(at)));
         note_use(error, monitor.span, name, at,
                  fmt::format("sliding monitor '{}' uses it", monitor.name));
         error.note(c_.model.formulas[at].kind == Formula::Kind::weak_until
                        ? "W has no bounded form; p W[0, b] q is written (p U[0, b] q) || G[0, b] p"
-                       : "give it an interval, such as [0, 20], or leave out 'sliding'");
+                       : "give it an interval, such as [0, 20], or remove 'sliding'");
     }
 
     void report_past(const Monitor& monitor, Span name, Index at) {
@@ -108,7 +108,7 @@ private:
                 word(at)));
         error.note(c_.operator_spans[future], fmt::format("{} looks ahead here", word(future)));
         note_use(error, monitor.span, name, at, fmt::format("monitor '{}' uses it", monitor.name));
-        error.note("a sliding monitor can, where the future is bounded");
+        error.note("a sliding monitor can, if the future is bounded");
     }
 
     Context& c_;
@@ -141,7 +141,7 @@ void refuse_moving_thresholds(Context& c, const Monitor& monitor) {
     });
     if (at == kNone) return;
     c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
-             fmt::format("'{}' is calibrated as a whole, which takes thresholds that stay; that of "
+             fmt::format("'{}' is calibrated as a whole, which needs fixed thresholds; that of "
                          "'{}' is adaptive",
                          monitor.name, c.model.predicates[c.model.formulas[at].index].name))
         .note(c.model.formulas[at].span, "it is used here");
@@ -155,11 +155,11 @@ void refuse_comparisons_without_truth(Context& c, const Monitor& monitor) {
     const std::string comparison = c.model.predicates[c.model.formulas[at].index].shown();
     c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
              fmt::format("'{}' is calibrated as a whole, against the truths of its predicates; "
-                         "'{}' has no name by which a truth could be given",
+                         "'{}' has no name and therefore no truth",
                          monitor.name, comparison))
         .note(c.model.formulas[at].span, "it is used here")
-        .note(fmt::format("declare it, as in 'predicate near = {};', and say what is true: 'truth "
-                          "near = ...;', or an array truth.near in the episodes",
+        .note(fmt::format("declare it, as in 'predicate near = {};', and give it a truth: 'truth "
+                          "near = ...;' or an array truth.near in the episodes",
                           comparison));
 }
 
@@ -189,11 +189,11 @@ void refuse_fitted(Context& c, const Truth& truth) {
         return found;
     });
     if (at == kNone) return;
-    c.report(Code::truth_of_fitted, c.model.formulas[at].span,
-             fmt::format("the truth of '{}' uses '{}', which measures with what is fitted; truth "
-                         "comes first",
-                         c.model.predicates[truth.predicate].name,
-                         c.model.predicates[c.model.formulas[at].index].shown()));
+    c.report(
+        Code::truth_of_fitted, c.model.formulas[at].span,
+        fmt::format("the truth of '{}' uses '{}', which depends on fitted values; a truth cannot",
+                    c.model.predicates[truth.predicate].name,
+                    c.model.predicates[c.model.formulas[at].index].shown()));
 }
 
 }  // namespace
@@ -216,10 +216,10 @@ void check_truths(Context& c) {
         });
         if (calibrated == kNone) continue;
         c.report(Code::calibrated_in_truth, c.model.formulas[calibrated].span,
-                 fmt::format(
-                     "the truth of '{}' uses '{}', whose threshold is calibrated; truth is exact",
-                     c.model.predicates[truth.predicate].name,
-                     c.model.predicates[c.model.formulas[calibrated].index].name));
+                 fmt::format("the truth of '{}' uses '{}', whose threshold is calibrated; a truth "
+                             "has to be exact",
+                             c.model.predicates[truth.predicate].name,
+                             c.model.predicates[c.model.formulas[calibrated].index].name));
     }
     c.model.truths = std::move(truths);
 }
@@ -235,16 +235,15 @@ void check_fitted_frames(Context& c) {
         const std::vector<Reach> all = reaches(c.model);
         if (const Index future = all[where].future; future != kNone)
             c.report(Code::future_in_truth, c.operator_spans[future],
-                     fmt::format("{} looks ahead; frames are chosen by what is true in the present "
-                                 "and the past",
+                     fmt::format("{} looks ahead; frames are selected by the present and the past",
                                  ast::operator_of(c.model.formulas[future].kind)->symbol))
-                .note(written.span, "the frames are chosen here");
+                .note(written.span, "the frames are selected here");
         if (const Index compared = node_without_truth(c.model, where); compared != kNone)
             c.report(Code::frames_without_truth, c.model.formulas[compared].span,
-                     fmt::format("frames are chosen by what is true, and nothing says when '{}' is",
+                     fmt::format("frames are selected by truths, but '{}' has none",
                                  c.model.predicates[c.model.formulas[compared].index].shown()))
                 .note(
-                    "name a predicate: its truth counts, from 'truth NAME = ...;' or an array "
+                    "use a named predicate with a truth: 'truth NAME = ...;' or an array "
                     "truth.NAME in the episodes");
     }
 }
@@ -265,10 +264,10 @@ Restarts restarts(ast::Monitor::Kind kind) {
 bool moves_with_its_shift(Context& c, const Monitor& monitor) {
     if (monitor.restarts == Restarts::never) return false;
     c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
-             fmt::format("'{}' restarts at steps that its shift would change; only a monitor "
-                         "that reports about fixed positions is calibrated as a whole",
+             fmt::format("'{}' restarts at steps that its shift would change; only a monitor with "
+                         "fixed positions can be calibrated as a whole",
                          monitor.name))
-        .note("calibrate its predicates, or leave out 'restartable' or 'repeating'");
+        .note("calibrate its predicates, or remove 'restartable' or 'repeating'");
     return true;
 }
 

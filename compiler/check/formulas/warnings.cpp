@@ -185,8 +185,8 @@ private:
               Code::eventual_implication, c_.operator_spans[at],
               fmt::format("F of an implication holds as soon as its left side '{}' does not", left))
             .note(
-                "G (a -> F b) says that every a is followed by a b, F (a && b) that both happen at "
-                "once");
+                "G (a -> F b) means that every a is followed by a b, F (a && b) that both hold at "
+                "the same time");
     }
 
     void warn_of_last_step(Index at) {
@@ -202,15 +202,14 @@ private:
         auto& warning = c_.report(
             Code::last_step_only, c_.operator_spans[at],
             inner.low == 0
-                ? fmt::format("on a growing prefix {} says no more than that its operand holds at "
-                              "the last step",
-                              words)
-                : fmt::format("on a growing prefix the inner operator of {} looks past the last "
+                ? fmt::format(
+                      "on a growing prefix, {} only means that its operand holds at the last step",
+                      words)
+                : fmt::format("on a growing prefix, the inner operator of {} looks past the last "
                               "step, where it is {}",
                               words, eventually_always ? "always satisfied" : "never satisfied"));
         warning.note(
-            "every operator is cut at the prefix; G F[0, b] p or F G[0, b] p with a bound says "
-            "more");
+            "every operator ends with the prefix; a bound helps, as in G F[0, b] p or F G[0, b] p");
     }
 
     bool warn_of_constant(const Monitor& monitor, Span name) {

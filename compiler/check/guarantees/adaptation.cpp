@@ -103,21 +103,22 @@ std::optional<Adaptation> check_adaptation(Context& c, const ast::Calibrated& wr
     result.lo = lo->text;
     result.hi = hi->text;
     if (!set_range(result))
-        return refuse(*hi, fmt::format("[{}, {}] is too small a range to move in by float32 steps",
+        return refuse(*hi, fmt::format("the range [{}, {}] is too small for steps in float32",
                                        lo->text, hi->text));
     const double length = to_double(hi->text) - to_double(lo->text);
     if (to_double(gamma->text) > length)
-        return refuse(*gamma,
-                      fmt::format("gamma = {} is longer than [{}, {}]: one miss would cross it",
-                                  gamma->text, lo->text, hi->text));
+        return refuse(
+            *gamma,
+            fmt::format("gamma = {} is longer than [{}, {}]: a single miss would cross the range",
+                        gamma->text, lo->text, hi->text));
     set_steps(result, alpha);
     const double least = kLeastSteps * static_cast<double>(result.grid);
     if (static_cast<double>(result.tighten) < least)
         return refuse(
             *gamma,
             fmt::format(
-                "gamma = {} is too small for float32 near {}: with alpha = {} it is at least "
-                "{:.2g}",
+                "gamma = {} is too small for float32 near {}: with alpha = {} it has to be at "
+                "least {:.2g}",
                 gamma->text,
                 std::abs(result.range.low) > std::abs(result.range.high) ? lo->text : hi->text,
                 alpha, (least + static_cast<double>(result.grid)) / to_double(alpha) * 1.05));
@@ -133,9 +134,8 @@ std::optional<float> start(const Adaptation& adaptation, float epsilon, bool upp
 
 std::string outside(const Predicate& predicate, float epsilon) {
     const Adaptation& adaptation = *predicate.threshold.adaptation;
-    return fmt::format(
-        "the calibrated threshold {:.9g} of '{}' is not in [{}, {}], in which it is to move",
-        epsilon, predicate.name, adaptation.lo, adaptation.hi);
+    return fmt::format("the calibrated threshold {:.9g} of '{}' is outside its range [{}, {}]",
+                       epsilon, predicate.name, adaptation.lo, adaptation.hi);
 }
 
 }  // namespace etlc::check

@@ -47,7 +47,7 @@ void warn_of_large_alpha(Context& c, const ast::Number& alpha) {
     if (!(Decimal::parse("0.5") < value)) return;
     const std::string text = shown(alpha);
     c.report(Code::large_alpha, alpha.span,
-             fmt::format("alpha = {} is the share that may be missed, more than half", text))
+             fmt::format("alpha = {} allows more than half to be missed", text))
         .note("it is an error rate, not a coverage: alpha = 0.1 misses at most a tenth");
 }
 
@@ -64,7 +64,7 @@ bool is_alpha(Context& c, const ast::Calibrated::Argument& argument) {
                                   : std::pair(std::get<ast::Name>(argument.value).text,
                                               std::get<ast::Name>(argument.value).span);
     c.report(Code::calibration_argument, span,
-             fmt::format("alpha = {}; expected a number between 0 and 1, neither of them", text));
+             fmt::format("alpha = {}; expected a number above 0 and below 1", text));
     return false;
 }
 
@@ -151,7 +151,7 @@ std::optional<MonitorCalibration> check_monitor_calibrated(Context& c,
     if (method == nullptr) return std::nullopt;
     if (method->origin != ThresholdOrigin::conformal) {
         c.report(Code::unknown_method, written.method.span,
-                 fmt::format("a monitor is calibrated by conformal; '{}' is for predicates",
+                 fmt::format("a monitor is calibrated with 'conformal'; '{}' is for predicates",
                              method->name))
             .note(fmt::format("expected {}", kMonitorForm));
         return std::nullopt;

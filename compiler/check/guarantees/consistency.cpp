@@ -40,8 +40,8 @@ Found counts(const Entry& entry, const std::string& place) {
         return Contradiction{fmt::format(
             "'{}.scores' has {}, expected {}", place, diag::counted(entry.scores.size(), "element"),
             keeps_all(entry)       ? fmt::format("n of them, which is {}", kept)
-            : entry.method == "f1" ? "1 or 2, the score that was taken and the next"
-                                   : "1, the score that was taken")};
+            : entry.method == "f1" ? "1 or 2: the chosen score and the next"
+                                   : "1: the chosen score")};
     for (std::size_t i = 1; i < entry.scores.size(); ++i)
         if (entry.scores[i] < entry.scores[i - 1])
             return Contradiction{
@@ -51,7 +51,7 @@ Found counts(const Entry& entry, const std::string& place) {
     const std::uint64_t k = rank(entry.alpha, entry.n);
     if (k > entry.n)
         return Contradiction{
-            fmt::format("'{}.n' is {}, expected at least {}, which alpha = {} takes", place,
+            fmt::format("'{}.n' is {}, expected at least {}, which alpha = {} needs", place,
                         entry.n, scores_needed(entry.alpha), short_text(entry.alpha))};
     if (k != entry.k)
         return Contradiction{
@@ -85,7 +85,7 @@ Found episodes_of(const Entry& entry, const std::string& place,
     const std::optional<std::size_t> again = first_again(episodes);
     if (!again) return std::nullopt;
     return Contradiction{
-        fmt::format("'{}[{}]' is '{}', which stands in it before; expected each episode once", list,
+        fmt::format("'{}[{}]' is '{}', which occurs earlier; expected each episode once", list,
                     *again, data::hash_text(episodes[*again]))};
 }
 

@@ -118,13 +118,14 @@ std::string sum(const std::vector<std::string>& alphas) {
 std::string_view uncovered(const Model& model, Index predicate) {
     switch (model.predicates[predicate].threshold.origin) {
         case ThresholdOrigin::f1: return "is calibrated for F1";
-        case ThresholdOrigin::class_conditional: return "covers frames, not episodes";
+        case ThresholdOrigin::class_conditional: return "is calibrated for frames, not episodes";
         case ThresholdOrigin::adaptive:
-            return "has an adaptive threshold, which bounds a rate of misses, not episodes";
+            return "has an adaptive threshold, which bounds the rate of missed frames, not of "
+                   "episodes";
         case ThresholdOrigin::conformal: return "";
         case ThresholdOrigin::literal: break;
     }
-    return is_own_truth(model, predicate) ? "" : "has a literal threshold and is not its own truth";
+    return is_own_truth(model, predicate) ? "" : "has a threshold that was not calibrated";
 }
 
 /// Whether the literal is false at its threshold, where robustness is 0 and thus satisfied: true
@@ -150,7 +151,7 @@ Claim claim(const Model& model, Literal part, Values values) {
         }
         // Without a sample it may miss its truth, and with it an alarm.
         if (polarity.negative && model.predicates[predicate].missing == false)
-            result.why = fmt::format("'{}' counts as false where its sample is missing",
+            result.why = fmt::format("'{}' is false when its sample is missing",
                                      model.predicates[predicate].shown());
         alphas.push_back(model.predicates[predicate].threshold.alpha);
         if (polarity.positive) positive = model.predicates[predicate].shown();
@@ -162,8 +163,8 @@ Claim claim(const Model& model, Literal part, Values values) {
     result.bound = sum(alphas);
     if (all.positive && all.negative) {
         result.why = positive == negative
-                         ? fmt::format("'{}' stands in it both plain and negated", positive)
-                         : fmt::format("'{}' stands in it plain, '{}' negated", positive, negative);
+                         ? fmt::format("'{}' occurs both plain and negated", positive)
+                         : fmt::format("'{}' occurs plain and '{}' negated", positive, negative);
     } else if (alphas.empty()) {
         result.kind = Claim::Kind::exact;
     } else if (Decimal::parse(result.bound) >= Decimal::parse("1")) {
@@ -228,12 +229,11 @@ std::vector<Claim> claims(const Model& model, const Monitor& monitor, Values val
 }
 
 std::string text(const Claim& claim) {
-    const std::string_view aside = claim.zero_aside ? ", robustness 0 aside" : "";
+    const std::string_view aside = claim.zero_aside ? ", except at robustness 0" : "";
     switch (claim.kind) {
         case Claim::Kind::exact:
-            return fmt::format(
-                "exact{}: nothing in it is calibrated, and its predicates are their own truth",
-                aside);
+            return fmt::format("exact{}: no predicate is calibrated, and each is its own truth",
+                               aside);
         case Claim::Kind::missed_success:
             return fmt::format("P(some verdict of a new episode misses a success) <= {}",
                                claim.bound);
@@ -242,7 +242,7 @@ std::string text(const Claim& claim) {
                                claim.bound, aside);
         case Claim::Kind::nothing: break;
     }
-    return "nothing: " + claim.why;
+    return "no guarantee: " + claim.why;
 }
 
 std::string origin(const Threshold& threshold) {

@@ -51,7 +51,7 @@ std::string miss_bound(const Predicate& predicate);
 
 /// Explains "robustness 0 aside" to readers of claims.
 inline constexpr std::string_view kZeroAside =
-    "Robustness 0 counts as satisfied, also where a comparison that is its own truth says no.";
+    "Robustness 0 counts as satisfied, even if a comparison that is its own truth is false there.";
 
 /// Whether the comparison itself is the truth: a predicate over scalars and numbers only, without a
 /// `truth`.

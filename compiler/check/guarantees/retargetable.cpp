@@ -14,7 +14,7 @@ namespace {
 
 void refuse(Context& c, Span span, const std::string& what, const std::string& why) {
     c.report(diag::Code::not_retargetable, span,
-             fmt::format("{}, and --retargetable takes no such spec: {}", what, why));
+             fmt::format("{}, which --retargetable does not support: {}", what, why));
 }
 
 void refuse_what_cannot_change(Context& c) {
@@ -22,13 +22,13 @@ void refuse_what_cannot_change(Context& c) {
         if (predicate.threshold.adaptation)
             refuse(c, predicate.threshold.span,
                    fmt::format("'{}' has an adaptive threshold", predicate.name),
-                   "what it has learnt is of the distance to the targets that there were");
+                   "what it has learnt is about the distance to the original targets");
     for (const Monitor& monitor : c.model.monitors)
         if (monitor.calibration)
             refuse(c, monitor.calibration->threshold.span,
                    fmt::format("'{}' is calibrated as a whole", monitor.name),
-                   "its shift is of episodes that one set of parameters judged from their "
-                   "beginning");
+                   "its shift is valid only for episodes with one set of parameters from beginning "
+                   "to end");
 }
 
 /// Returns the names of fields, and of parts of function names, beside predicates.

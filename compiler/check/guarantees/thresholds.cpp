@@ -50,10 +50,10 @@ std::optional<thresholds::File> read_thresholds(Context& c, const std::string& n
     if (is_default && !std::filesystem::exists(path, error)) {
         report_missing(
             c, Code::thresholds_missing, first.span,
-            fmt::format("'{}' has a calibrated threshold, and there is no thresholds file {}", name,
+            fmt::format("'{}' has a calibrated threshold, but there is no thresholds file {}", name,
                         path))
             .note(
-                "'etlc calibrate' makes one from labelled demonstrations; --thresholds names "
+                "'etlc calibrate' makes one from labelled demonstrations; --thresholds selects "
                 "another");
         return std::nullopt;
     }
@@ -124,8 +124,8 @@ private:
             found_ = differences(entry_.reads, now_.reads);
         else if (what_ == "formula")
             found_.emplace_back(
-                "it does not say all that it was calibrated for, as files of earlier versions do "
-                "not");
+                "the entry is of an earlier version, which does not record everything that it "
+                "depends on");
     }
 
     void add_changed(const std::map<std::string, std::string>& hashes) {
@@ -135,7 +135,7 @@ private:
             if (then == entry_.targets.end() && found_.empty())
                 found_.push_back(is_input(name)
                                      ? fmt::format("the declaration of '{}' changed", name)
-                                     : fmt::format("it does not say for which {} of '{}'",
+                                     : fmt::format("it does not record the {} of '{}'",
                                                    what_is_hashed(name), name));
             if (then != entry_.targets.end() && then->second != hash)
                 found_.push_back(fmt::format("the {} of '{}' changed", what_is_hashed(name), name));
@@ -150,7 +150,7 @@ private:
                 found_.push_back(
                     is_input(name)
                         ? fmt::format("the declaration of '{}' changed", name)
-                        : fmt::format("it was calibrated with '{}', which does not come into it",
+                        : fmt::format("it was calibrated with '{}', which is no longer used",
                                       name));
     }
 
@@ -204,8 +204,8 @@ const thresholds::Entry* find_entry(Context& c, const std::string& name, const T
 void reserve(Context& c, const std::string& labels, const std::string& name) {
     if (labels != "array" && labels != stated(labels))
         c.model.reservations.push_back(
-            fmt::format("'{}' was calibrated on labels that arrays of the episodes gave in place "
-                        "of what the spec says is true",
+            fmt::format("'{}' was calibrated on labels from arrays in the episodes, not from its "
+                        "truth in the spec",
                         name));
 }
 
@@ -216,11 +216,10 @@ void take(Context& c, const thresholds::Entry& entry, const std::string& place,
     if (const auto found = contradiction(entry, place, upper_bound, episodes)) {
         auto& error =
             c.sink.report(data::in_file({Code::contradictory_thresholds, found->message}, path));
-        error.note(threshold.span, "it is for this");
+        error.note(threshold.span, "it is needed here");
         if (found->by_hand)
             error.note(
-                "a threshold that is chosen by hand is written into the spec, as in 'l2(z, goal) "
-                "<= 0.35'");
+                "write a threshold chosen by hand into the spec, as in 'l2(z, goal) <= 0.35'");
         error.note(std::string(kAgain));
         return;
     }
@@ -248,9 +247,7 @@ void take_threshold(Context& c, Index index, const thresholds::File& file) {
     const auto begin = start(*threshold.adaptation, threshold.value, predicate.upper_bound());
     if (!begin) {
         c.report(Code::start_out_of_range, threshold.span, outside(predicate, threshold.value))
-            .note(
-                "give it lo and hi with room on both sides of the threshold; a new calibration is "
-                "not needed");
+            .note("choose lo and hi on both sides of the threshold; no new calibration is needed");
         return;
     }
     threshold.value = *begin;
@@ -276,14 +273,15 @@ void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
         c.sink
             .report(data::in_file(
                 {Code::not_disjoint,
-                 fmt::format("'{}' has '{}', which is one of 'episodes', or most of one: those "
-                             "that thresholds of predicates were calibrated on",
-                             place + ".episodes", data::hash_text(*shared))},
+                 fmt::format(
+                     "'{}' has '{}', which is one of 'episodes' or shares most of its content with "
+                     "one; the thresholds of predicates were calibrated on those",
+                     place + ".episodes", data::hash_text(*shared))},
                 file.path))
-            .note(shift.span, "it is for this")
+            .note(shift.span, "it is needed here")
             .note(
-                "calibrate monitors on other episodes: fitted on the same ones, the thresholds are "
-                "better there than they will be");
+                "calibrate monitors on other episodes: thresholds look too good on those that they "
+                "were calibrated on");
         return;
     }
     reserve(c, entry->truth, monitor.name);

@@ -25,7 +25,7 @@ bool has_usable_shape(Context& c, const data::Array& array, const ast::Load& loa
     const std::string origin = origin_of(load);
     if (array.element == data::Element::boolean) {
         c.report(Code::matrix_elements, load.span,
-                 fmt::format("{} holds bools; expected numbers", origin));
+                 fmt::format("{} has bools; expected numbers", origin));
         return false;
     }
     if (array.shape.empty() || array.shape.size() > 2) {
@@ -155,9 +155,9 @@ std::optional<Matrix> read_matrix(Context& c, const ast::MatrixLiteral& literal)
             row.empty() ? literal.span : source::join(row.front().span, row.back().span);
         c.report(
             Code::ragged_matrix, span,
-            fmt::format("row {} (from 0) has {}, row 0 has {}; the rows of a matrix are equally "
-                        "long",
-                        i, diag::counted(row.size(), "value"), columns));
+            fmt::format(
+                "row {} (from 0) has {}, row 0 has {}; all rows of a matrix have the same length",
+                i, diag::counted(row.size(), "value"), columns));
         return std::nullopt;
     }
     return literal_matrix(c, literal.rows);

@@ -47,7 +47,7 @@ void take_settings(Context& c, const std::vector<ast::Constant*>& constants) {
             c.report(Code::constant_form, constant.span,
                      fmt::format("{}: '{}' is {}, {}; expected {}", text_of(setting), setting.name,
                                  kind_of(constant), text_of(constant),
-                                 constant.unit.empty() ? "no unit" : "a unit behind the number"));
+                                 constant.unit.empty() ? "no unit" : "a unit after the number"));
             continue;
         }
         constant.value.text = setting.number;
@@ -195,11 +195,10 @@ private:
         const bool in_steps = rate.unit == ast::kStepsUnit;
         if ((!rate.unit.empty() && !in_steps) || !good_) return;
         good_ = false;
-        c_.report(
-            Code::constant_form, rate.number.span,
-            fmt::format("'{0}' is a number{2}, {1}, and a period has a unit of time; expected "
-                        "one, as in 'period {0} ms'",
-                        rate.number.constant, rate.number.text, in_steps ? " of steps" : ""));
+        c_.report(Code::constant_form, rate.number.span,
+                  fmt::format("'{0}' is a number{2}, {1}, and a period has a unit of time; "
+                              "expected one, as in 'period {0} ms'",
+                              rate.number.constant, rate.number.text, in_steps ? " of steps" : ""));
     }
 
     Context& c_;

@@ -16,7 +16,7 @@ using diag::Code;
 
 void suggest(Context& c, diag::Diagnostic& to, std::string suggestion, bool is_namespace) {
     while (!is_namespace && c.scope.find(suggestion) != nullptr) suggestion += "1";
-    to.note(fmt::format("another name would do, for example '{}'", suggestion)).meant = suggestion;
+    to.note(fmt::format("use another name, for example '{}'", suggestion)).meant = suggestion;
 }
 
 void check_spelling(Context& c, const ast::Name& name, std::string_view kind, bool is_namespace) {
@@ -32,7 +32,7 @@ void check_spelling(Context& c, const ast::Name& name, std::string_view kind, bo
     if (!header || !is_written) return;
     auto& warning =
         c.report(Code::macro_elsewhere, name.span,
-                 fmt::format("'{}' is a macro of {}: a program that includes that cannot write it",
+                 fmt::format("'{}' is a macro of {}; programs that include it cannot use the name",
                              name.text, *header));
     suggest(c, warning, fmt::format("{}_{}", name.text, kind), is_namespace);
 }
@@ -159,7 +159,7 @@ float number32(Context& c, const ast::Number& number) {
     c.report(
         overflow ? Code::number_overflow : Code::number_underflow, number.span,
         overflow
-            ? fmt::format("{} is beyond the largest float32, 3.40282347e+38", shown(number))
+            ? fmt::format("{} exceeds the largest float32, 3.40282347e+38", shown(number))
             : fmt::format(
                   "{} is not zero, but its nearest float32 is (the least above zero is 1.4e-45)",
                   shown(number)));

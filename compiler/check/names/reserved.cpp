@@ -136,13 +136,13 @@ std::optional<std::string_view> why_forbidden(std::string_view name, bool is_nam
     if (contains(kKeywords, name)) return "is a C++ keyword";
     if (contains(kGenerated, name)) return "is a name that the generated code needs";
     if (name.starts_with('_') || name.ends_with('_') || name.find("__") != std::string_view::npos)
-        return "has an underscore that does not stand between letters or digits; C++ and the "
-               "generated code keep those";
-    if (in_capitals(name)) return "is in capitals alone, as macros of C are";
+        return "has an underscore that is not between letters or digits; C++ and the generated "
+               "code reserve those";
+    if (in_capitals(name)) return "is all capitals, like macros of C";
     if (contains(kMacros, name) || macro_family(name))
         return "is a macro of common C headers or compilers";
     if (is_namespace && contains(kLibrary, name))
-        return "is a name of the C library, so that no namespace can bear it";
+        return "is a name of the C library, so no namespace can have it";
     return std::nullopt;
 }
 

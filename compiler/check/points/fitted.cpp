@@ -180,9 +180,9 @@ std::optional<fitted::File> read_file(Context& c, const Fitted& first) {
                          fmt::format("'{}' is fitted", first.name));
     c.report_data(
          {Code::fitted_missing,
-          fmt::format("'{}' is fitted, and there is no file {}", first.name, path), first.span},
+          fmt::format("'{}' is fitted, but there is no file {}", first.name, path), first.span},
          true)
-        .note("'etlc fit' makes one from labelled demonstrations; --fitted names another");
+        .note("'etlc fit' makes one from labelled demonstrations; --fitted selects another");
     return std::nullopt;
 }
 
@@ -227,7 +227,7 @@ const fitted::Entry* fitted_entry(Context& c, Index index) {
     const auto found = c.fitted_file->entries.find(fitted.name);
     if (found == c.fitted_file->entries.end()) {
         c.report_data({Code::fitted_missing,
-                       fmt::format("{} has nothing for '{}'", c.fitted_file->path, fitted.name),
+                       fmt::format("{} has no entry for '{}'", c.fitted_file->path, fitted.name),
                        fitted.span},
                       true)
             .note(std::string(kFitAgain));

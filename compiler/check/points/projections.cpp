@@ -18,8 +18,8 @@ bool set_offset(Context& c, const ast::Projection::Numbers& written, Projection&
     if (!offset) return false;
     if (offset->rows != 1 || offset->columns != projection.dimension) {
         c.report(Code::projection_form, span_of(written),
-                 fmt::format("the offset has shape ({}, {}); expected one row of {}, as the matrix "
-                             "has columns",
+                 fmt::format("the offset has shape ({}, {}); expected one row of {}, one for each "
+                             "column of the matrix",
                              offset->rows, offset->columns, projection.dimension));
         return false;
     }
@@ -30,8 +30,8 @@ bool set_offset(Context& c, const ast::Projection::Numbers& written, Projection&
 bool set_numbers(Context& c, const ast::Projection& declaration, Projection& projection) {
     if (const auto* vector = std::get_if<ast::VectorLiteral>(&declaration.matrix)) {
         c.report(Code::projection_form, vector->span,
-                 "a projection is a matrix, a row for each number that it gives; this is a vector")
-            .note("for a projection to one number put it in another pair of brackets");
+                 "a projection is a matrix, one row per result: expected a matrix, found a vector")
+            .note("for a projection to a single number add another pair of brackets");
         return false;
     }
     auto matrix = std::holds_alternative<ast::Load>(declaration.matrix)

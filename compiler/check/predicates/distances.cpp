@@ -64,7 +64,7 @@ std::optional<Source> read_source(Context& c, const ast::Weights& weights) {
         const Target& target = c.model.targets[index];
         if (target.fitted != kNone) {
             c.report(Code::fitting_argument, name->span,
-                     fmt::format("the rows of '{}' are fitted, and are no weights; expected a "
+                     fmt::format("the rows of '{}' are fitted and cannot be weights; expected a "
                                  "matrix, or fitted(discriminant, of = POINT, where = FORMULA)",
                                  name->text));
             return std::nullopt;

@@ -38,9 +38,8 @@ bool set_scalar(Context& c, Expr& result, const ast::Expr& written) {
                                        input.is_embedding() ? "an embedding" : "a bool"));
     if (input.is_embedding())
         error.note(
-            fmt::format("a distance makes a number of it: min l2({}, TARGET)", written.text));
-    if (!input.is_embedding())
-        error.note("a bool stands in formulas as it is; two are compared by '<->'");
+            fmt::format("a distance turns it into a number: min l2({}, TARGET)", written.text));
+    if (!input.is_embedding()) error.note("a bool is a formula by itself; compare two with '<->'");
     return false;
 }
 

@@ -88,7 +88,7 @@ private:
         if (c_.sink.errors() > errors) broken_ = true;
         if (std::isfinite(value * 128.0F)) return value;
         report(Code::scale_form, number.span,
-               fmt::format("128 times the scale {} is beyond float32", shown(number)));
+               fmt::format("128 times the scale {} exceeds float32", shown(number)));
         return 1.0F;
     }
 
@@ -109,7 +109,7 @@ private:
                                Decimal::parse(range.low.text) > Decimal::parse(range.high.text));
         if (reversed) {
             report(Code::range_form, range.span,
-                   fmt::format("the range [{}, {}] holds no number", shown(range.low),
+                   fmt::format("the range [{}, {}] contains no number", shown(range.low),
                                shown(range.high)));
             return;
         }
@@ -122,7 +122,7 @@ private:
         float value = 0;
         if (to_float(number.text, value) != Fit::overflow) return;
         report(Code::number_overflow, number.span,
-               fmt::format("{} is beyond the largest float32; an open end is written {}inf",
+               fmt::format("{} exceeds the largest float32; write {}inf for an open end",
                            shown(number), number.text.starts_with('-') ? "-" : ""));
     }
 
@@ -130,8 +130,8 @@ private:
     std::optional<bool> missing(InputType type) {
         if (declaration_.missing && type != InputType::boolean)
             report(Code::missing_form, declaration_.span,
-                   "only a bool has a value to stand in for a missing sample")
-                .note("say it where it is compared: predicate ... missing false;");
+                   "only a bool can have a value for missing samples")
+                .note("give it in the predicate instead: predicate ... missing false;");
         return declaration_.missing;
     }
 
@@ -160,15 +160,15 @@ private:
         if (index == kNone) return kNone;
         if (input.type != InputType::f32) {
             report(Code::encoder_use, declaration_.encoder->span,
-                   fmt::format("an encoder gives embeddings in float32; expected an input f32[D], "
-                               "found {}",
-                               c_.file.text(declaration_.type.span)));
+                   fmt::format(
+                       "an encoder gives embeddings in float32; expected an input f32[D], found {}",
+                       c_.file.text(declaration_.type.span)));
             return kNone;
         }
         Encoder& encoder = c_.model.encoders[index];
         if (encoder.dimension != 0 && encoder.dimension != input.dimension)
             report(Code::embedding_dimension, declaration_.type.span,
-                   fmt::format("this input has dimension {}, another one by '{}' has {}",
+                   fmt::format("this input has dimension {}, another input by '{}' has {}",
                                input.dimension, encoder.name, encoder.dimension));
         encoder.dimension = input.dimension;
         return index;

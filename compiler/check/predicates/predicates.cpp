@@ -31,13 +31,13 @@ bool sign_fits(Context& c, const Expr& expression, const Threshold& threshold) {
     const bool negative = threshold.range().low < 0;  // unknown before calibration
     if (expression.kind != Expr::Kind::distance || !negative) return true;
     if (threshold.adaptation)
-        c.report(Code::negative_threshold, threshold.span,
-                 fmt::format("lo = {} is below every distance, which is never negative",
-                             threshold.adaptation->lo));
+        c.report(
+            Code::negative_threshold, threshold.span,
+            fmt::format("lo = {} is negative, but distances never are", threshold.adaptation->lo));
     else
         c.report(
             Code::negative_threshold, threshold.span,
-            fmt::format("the threshold {} on a distance, which is never negative", threshold.text));
+            fmt::format("the threshold {} is negative, but distances never are", threshold.text));
     return false;
 }
 
@@ -95,10 +95,10 @@ bool can_be_equal(Context& c, const Predicate& predicate) {
     bool measures = false;
     for_each_distance(predicate.expression, [&](Index /*distance*/) { measures = true; });
     if (!predicate.equality() || !measures) return true;
-    c.report(Code::equality_of_distances, predicate.span,
-             fmt::format("'{}' compares distances, which are rounded; expected '<=', '<', '>=' or "
-                         "'>'",
-                         symbol(predicate.comparison)));
+    c.report(
+        Code::equality_of_distances, predicate.span,
+        fmt::format("'{}' compares distances, which are rounded; expected '<=', '<', '>=' or '>'",
+                    symbol(predicate.comparison)));
     return false;
 }
 
@@ -134,8 +134,7 @@ Sides declared_sides(Context& c, const ast::Predicate& declaration) {
     const auto& calibrated = std::get<ast::Calibrated>(declaration.threshold);
     if (comparison == Comparison::equal || comparison == Comparison::not_equal) {
         c.report(Code::comparison_form, calibrated.span,
-                 fmt::format("a calibrated threshold stands behind '<=', '<', '>=' or '>', not "
-                             "behind '{}'",
+                 fmt::format("a calibrated threshold needs '<=', '<', '>=' or '>', found '{}'",
                              symbol(comparison)));
         return {std::nullopt, comparison, std::nullopt};
     }

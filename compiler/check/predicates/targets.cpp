@@ -25,11 +25,10 @@ std::optional<Matrix> rows_of(Context& c, const ast::Target::Source& source,
     if (const auto* frames = std::get_if<ast::Frames>(&source)) return read_frames(c, *frames);
     const auto& vector = std::get<ast::VectorLiteral>(source);
     const std::string words{c.file.text(vector.span)};
-    c.report(
-         Code::target_is_vector, vector.span,
-         "a target is a set of embeddings, one a row, so a literal is a matrix; this is a vector")
+    c.report(Code::target_is_vector, vector.span,
+             "a target is a set of embeddings, one per row: expected a matrix, found a vector")
         .note(words.size() <= 60 ? fmt::format("for a set of one embedding write [{}]", words)
-                                 : "for a set of one embedding put it in another pair of brackets");
+                                 : "for a set of one embedding add another pair of brackets");
     return std::nullopt;
 }
 

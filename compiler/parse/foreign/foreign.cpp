@@ -69,18 +69,17 @@ std::optional<Native> written_together(Foreign kind, std::string_view word) {
         const auto foreign = foreign_word(kind, stem);
         if (!is_letter && !foreign && !own_word(kind, stem)) return std::nullopt;
         const std::string here = foreign ? foreign->word : std::string(stem);
-        return Native{here,
-                      fmt::format("the interval stands behind the operator: {}[0, 2 s]", here)};
+        return Native{here, fmt::format("the interval follows the operator: {}[0, 2 s]", here)};
     }
     if (word.size() > 2 && word[1] == '_' && letters.find(word[0]) != letters.npos)
-        return Native{"", fmt::format("the interval stands behind the operator: {}[0, 2 s]",
-                                      word.substr(0, 1))};
+        return Native{
+            "", fmt::format("the interval follows the operator: {}[0, 2 s]", word.substr(0, 1))};
     const bool only_letters = kind == Foreign::prefix && word.size() > 1 &&
                               word.find_first_not_of(kPrefixLetters) == word.npos;
     if (!only_letters) return std::nullopt;
     std::string apart(1, word[0]);
     for (const char letter : word.substr(1)) apart += fmt::format(" {}", letter);
-    return Native{apart, fmt::format("a blank stands between operators: '{}'", apart)};
+    return Native{apart, fmt::format("operators are separated by blanks: '{}'", apart)};
 }
 
 bool is_prefix_operator(const Token* token) {
@@ -109,20 +108,21 @@ std::string note_on_interval(const Stuck& stuck, const Token& found, const sourc
     if (rule == EtlParser::RuleBound || rule == EtlParser::RuleAmount) {
         if (is(stuck.previous, {EtlParser::LBRACKET}) &&
             (compared || is_found({EtlParser::COLON, EtlParser::COMMA})))
-            return "both bounds are written: [0, 2 s], or [2 s, inf]";
+            return "an interval needs both bounds: [0, 2 s], or [2 s, inf]";
         if (is(stuck.previous, {EtlParser::COMMA}) && is_found({EtlParser::RBRACKET}))
-            return "without an upper bound it is [a, inf]";
+            return "without an upper bound, write [a, inf]";
     }
     if (rule != EtlParser::RuleInterval) return {};
     if (stuck.expects(EtlParser::COMMA)) {
         if (is_found({EtlParser::RBRACKET}))
-            return fmt::format("both bounds are written: [0, {}]", text_of(*stuck.previous, file));
+            return fmt::format("an interval needs both bounds: [0, {}]",
+                               text_of(*stuck.previous, file));
         if (is_found(
                 {EtlParser::COLON, EtlParser::MINUS, EtlParser::NUMBER, EtlParser::SEMICOLON}) ||
             text_of(found, file) == "to")
-            return "a comma stands between the bounds: [0, 2 s]";
+            return "bounds are separated by a comma: [0, 2 s]";
     }
-    return is_found({EtlParser::RPAREN}) ? "an interval holds both its bounds: [a, b]" : "";
+    return is_found({EtlParser::RPAREN}) ? "an interval includes both bounds: [a, b]" : "";
 }
 
 /// Explains F(0, 2) p and F[0, 2]s p.
@@ -134,8 +134,7 @@ std::string note_on_brackets(const Stuck& stuck, const Token& found, const sourc
     const bool unit = is(stuck.previous, {EtlParser::MICROSECONDS, EtlParser::MILLISECONDS,
                                           EtlParser::SECONDS, EtlParser::MIN, EtlParser::STEPS});
     if (unit && is(stuck.before_previous, {EtlParser::RBRACKET}) && stuck.in_formula())
-        return fmt::format("the unit stands behind each bound: [0, 2 {}]",
-                           text_of(*stuck.previous, file));
+        return fmt::format("the unit follows the bound: [0, 2 {}]", text_of(*stuck.previous, file));
     return {};
 }
 
@@ -146,22 +145,21 @@ std::string note_on_arguments(const Stuck& stuck, const Token& found, const sour
     const bool whole = stuck.in_formula();
     if (rule == EtlParser::RuleArgument || rule == EtlParser::RuleCalibrated)
         return fmt::format(
-            "calibration takes a method, and arguments by their names: "
-            "calibrated(conformal, alpha = {}{})",
+            "calibration needs a method and named arguments: calibrated(conformal, alpha = {}{})",
             alpha, whole ? ", against = missed_alarm" : "");
     if (rule == EtlParser::RuleFittedArgument || rule == EtlParser::RuleFitted)
-        return "fitting takes a method, and arguments by their names: "
-               "fitted(medoids, k = 8, of = z, where = f)";
+        return "fitting needs a method and named arguments: fitted(medoids, k = 8, of = z, where = "
+               "f)";
     return {};
 }
 
 std::string note_on_sign(const Stuck& stuck, const Token& found) {
     if (is(&found, {EtlParser::COLON}) && stuck.rule_around() == EtlParser::RuleDeclaration &&
         stuck.expects(EtlParser::ASSIGN))
-        return "'=' stands behind the name";
+        return "'=' follows the name";
     if (stuck.declaration == EtlParser::INPUT &&
         stuck.rule_around() == EtlParser::RuleDeclaration && stuck.expects(EtlParser::COLON))
-        return "the type stands behind the name: input x : f32;";
+        return "the type follows the name: input x : f32;";
     if (!is(&found, {EtlParser::ASSIGN, EtlParser::COLON}) || stuck.previous == nullptr) return {};
     switch (stuck.previous->getType()) {
         case EtlParser::RATE: return "a rate has no '=': rate 10 Hz;";

@@ -48,20 +48,20 @@ constexpr std::array kHints{
     Hint{"− –", "this is not the minus sign '-'", "-"},
     Hint{"∞", "infinity is written 'inf'", "inf"},
     Hint{"µ μ", "microseconds are 'us'", "u"},
-    Hint{"…", "a comma stands between the bounds: [0, 2 s]"},
+    Hint{"…", "bounds are separated by a comma: [0, 2 s]"},
     Hint{":=", "a declaration has '=' after its name", "="},
     Hint{"%", "a comment begins with '//'; there are no remainders"},
     Hint{"#", "a comment begins with '//'", "//"},
     Hint{"{ }", "a spec has no blocks; formulas are grouped by '( )'"},
-    Hint{"' ‘ ’", "a file name stands between double quotes"},
-    Hint{"„ « » “ ”", "a file name stands between plain double quotes"},
-    Hint{"\xC2\xA0", "this is a no-break space; put a plain space", " "},
-    Hint{"\xE2\x80\x87", "this is a figure space; put a plain space", " "},
-    Hint{"\xE2\x80\x89", "this is a thin space; put a plain space", " "},
-    Hint{"\xE2\x80\xAF", "this is a narrow no-break space; put a plain space", " "},
-    Hint{"\xE3\x80\x80", "this is an ideographic space; put a plain space", " "},
-    Hint{"\xE2\x80\x8B", "this is a space of no width; take it away"},
-    Hint{"\xEF\xBB\xBF", "this is a byte order mark; take it away"},
+    Hint{"' ‘ ’", "file names are written in double quotes"},
+    Hint{"„ « » “ ”", "file names are written in plain double quotes"},
+    Hint{"\xC2\xA0", "this is a no-break space; use a plain space", " "},
+    Hint{"\xE2\x80\x87", "this is a figure space; use a plain space", " "},
+    Hint{"\xE2\x80\x89", "this is a thin space; use a plain space", " "},
+    Hint{"\xE2\x80\xAF", "this is a narrow no-break space; use a plain space", " "},
+    Hint{"\xE3\x80\x80", "this is an ideographic space; use a plain space", " "},
+    Hint{"\xE2\x80\x8B", "this is a space of no width; remove it"},
+    Hint{"\xEF\xBB\xBF", "this is a byte order mark; remove it"},
 };
 
 /// Some mean something else where an operand should begin.
@@ -99,7 +99,7 @@ void add_hint(diag::Diagnostic& to, std::string_view written, const Token* previ
     }
 }
 
-constexpr const char* kCommaInInterval = "a comma stands between the bounds: [0, 2 s]";
+constexpr const char* kCommaInInterval = "bounds are separated by a comma: [0, 2 s]";
 
 /// `0.` and `..` in 0..2.
 bool begins_dots(Span span, const source::File& file) {
