@@ -82,8 +82,7 @@ TEST(Consistency, CountsFollowFromAlphaAndTheScores) {
               "'predicates.p.n' is 18446744073709551615, expected a number of scores from 1");
     EXPECT_EQ(
         said(pooled("f1"), [](Entry& e) { e.scores.clear(); }),
-        "'predicates.p.scores' has 0 elements, expected 1 or 2, the score that was taken and the "
-        "next");
+        "'predicates.p.scores' has 0 elements, expected 1 or 2: the chosen score and the next");
     EXPECT_EQ(said(pooled("class_conditional"), [](Entry& e) { e.scores.push_back(9); }),
               "'predicates.p.scores' has 2 elements, expected 1: the chosen score");
 }
@@ -96,10 +95,10 @@ TEST(Consistency, EpisodesAreThereOnceEach) {
         "'episodes' has 8 elements, expected at least 9: one for each score of 'predicates.p'");
     std::vector<std::uint64_t> twice = episodes(10);
     twice[7] = twice[2];
-    EXPECT_EQ(said(
-                  good, [](Entry&) {}, true, twice),
-              "'episodes[7]' is '0000000000000012', which stands in it before; expected each "
-              "episode once");
+    EXPECT_EQ(
+        said(
+            good, [](Entry&) {}, true, twice),
+        "'episodes[7]' is '0000000000000012', which occurs earlier; expected each episode once");
     EXPECT_EQ(said(good, [](Entry& e) { e.against = "missed_alarm"; }, true, {}),
               "'predicates.p.episodes' has 0 elements, expected at least 9: one for each score of "
               "'predicates.p'");

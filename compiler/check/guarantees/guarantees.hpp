@@ -49,7 +49,7 @@ std::string origin(const Threshold& threshold);
 /// held the threshold back. docs/calibration.md derives it.
 std::string miss_bound(const Predicate& predicate);
 
-/// Explains "robustness 0 aside" to readers of claims.
+/// Explains "except at robustness 0" to readers of claims.
 inline constexpr std::string_view kZeroAside =
     "Robustness 0 counts as satisfied, even if a comparison that is its own truth is false there.";
 
