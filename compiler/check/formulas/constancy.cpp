@@ -25,10 +25,6 @@ Constancy combine(const Operands& operands, Constancy deciding) {
     return std::all_of(operands.begin(), operands.end(), is(other)) ? other : varies;
 }
 
-Constancy disjunction(const Operands& operands) {
-    return combine(operands, always);
-}
-
 Constancy equivalence(Constancy a, Constancy b) {
     if (a == varies || b == varies) return varies;
     return a == b ? always : never;
@@ -64,8 +60,8 @@ Constancy of(const Formula& formula, const Operands& operands) {
         case Kind::boolean_input: return varies;
         case Kind::negation: return negation(operands[0]);
         case Kind::conjunction: return combine(operands, never);
-        case Kind::disjunction: return disjunction(operands);
-        case Kind::implication: return disjunction({negation(operands[0]), operands[1]});
+        case Kind::disjunction: return combine(operands, always);
+        case Kind::implication: return combine({negation(operands[0]), operands[1]}, always);
         case Kind::equivalence: return equivalence(operands[0], operands[1]);
         case Kind::next:
         case Kind::previous:
@@ -79,8 +75,7 @@ Constancy of(const Formula& formula, const Operands& operands) {
         case Kind::until:
         case Kind::since: return until(operands[0], operands[1], present);
         case Kind::release: return release(operands[0], operands[1], present);
-        case Kind::weak_until:
-            return release(operands[1], disjunction({operands[0], operands[1]}), present);
+        case Kind::weak_until: return release(operands[1], combine(operands, always), present);
     }
     return varies;
 }

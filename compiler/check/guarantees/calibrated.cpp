@@ -59,11 +59,9 @@ bool is_alpha(Context& c, const ast::Calibrated::Argument& argument) {
         warn_of_large_alpha(c, *number);
         return true;
     }
-    const auto [text, span] = number != nullptr
-                                  ? std::pair(shown(*number), number->span)
-                                  : std::pair(std::get<ast::Name>(argument.value).text,
-                                              std::get<ast::Name>(argument.value).span);
-    c.report(Code::calibration_argument, span,
+    const std::string text =
+        number != nullptr ? shown(*number) : std::get<ast::Name>(argument.value).text;
+    c.report(Code::calibration_argument, ast::span_of(argument.value),
              fmt::format("alpha = {}; expected a number above 0 and below 1", text));
     return false;
 }
@@ -127,8 +125,7 @@ std::optional<Against> against_of(Context& c, const ast::Calibrated::Argument& a
     const auto* name = std::get_if<ast::Name>(&argument.value);
     for (const Against against : {Against::missed_alarm, Against::missed_success})
         if (name != nullptr && name->text == word(against)) return against;
-    const Span span = name != nullptr ? name->span : std::get<ast::Number>(argument.value).span;
-    c.report(Code::calibration_argument, span,
+    c.report(Code::calibration_argument, ast::span_of(argument.value),
              "expected against = missed_alarm or against = missed_success");
     return std::nullopt;
 }

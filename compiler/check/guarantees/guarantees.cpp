@@ -66,33 +66,23 @@ std::map<Index, Polarity> predicates_in(const Model& model, Literal root) {
 }
 
 /// Splits a formula into its conjuncts, each once.
-class Conjuncts {
-public:
-    explicit Conjuncts(const Model& model) : model_(model), seen_(model.formulas.size()) {}
-
-    std::vector<Literal> of(Literal literal) && {
-        collect(literal);
-        return std::move(conjuncts_);
-    }
-
-private:
-    void collect(Literal literal) {
-        bool& seen =
-            literal.negated ? seen_[literal.formula].negative : seen_[literal.formula].positive;
+std::vector<Literal> conjuncts_of(const Model& model, Literal root) {
+    std::vector<Polarity> visited(model.formulas.size());
+    std::vector<Literal> conjuncts;
+    const auto collect = [&](const auto& self, Literal at) -> void {
+        bool& seen = at.negated ? visited[at.formula].negative : visited[at.formula].positive;
         if (seen) return;
         seen = true;
-        const Kind kind = model_.formulas[literal.formula].kind;
+        const Kind kind = model.formulas[at.formula].kind;
         const bool splits =
-            kind == Kind::negation || (kind == Kind::conjunction && !literal.negated) ||
-            ((kind == Kind::disjunction || kind == Kind::implication) && literal.negated);
-        if (!splits) return conjuncts_.push_back(literal);
-        for (const Literal operand : operands_of(model_, literal)) collect(operand);
-    }
-
-    const Model& model_;
-    std::vector<Polarity> seen_;
-    std::vector<Literal> conjuncts_;
-};
+            kind == Kind::negation || (kind == Kind::conjunction && !at.negated) ||
+            ((kind == Kind::disjunction || kind == Kind::implication) && at.negated);
+        if (!splits) return conjuncts.push_back(at);
+        for (const Literal operand : operands_of(model, at)) self(self, operand);
+    };
+    collect(collect, root);
+    return conjuncts;
+}
 
 /// Adds decimals in (0, 1) exactly: digits after the point, from the right.
 std::string sum(const std::vector<std::string>& alphas) {
@@ -130,7 +120,7 @@ std::string_view uncovered(const Model& model, Index predicate) {
 
 /// Whether the literal is false at its threshold, where robustness is 0 and thus satisfied: true
 /// for `<` and `>`, and for negated `<=` and `>=`.
-bool says_no_at_zero(const Predicate& predicate, const Polarity& polarity) {
+bool fails_at_zero(const Predicate& predicate, const Polarity& polarity) {
     return predicate.strict() ? polarity.positive : polarity.negative;
 }
 
@@ -146,7 +136,7 @@ Claim claim(const Model& model, Literal part, Values values) {
         if (!why.empty() && result.why.empty())
             result.why = fmt::format("'{}' {}", model.predicates[predicate].shown(), why);
         if (model.predicates[predicate].threshold.origin != ThresholdOrigin::conformal) {
-            no_at_zero |= says_no_at_zero(model.predicates[predicate], polarity);
+            no_at_zero |= fails_at_zero(model.predicates[predicate], polarity);
             continue;
         }
         // Without a sample it may miss its truth, and with it an alarm.
@@ -217,7 +207,7 @@ std::vector<Claim> claims(const Model& model, const Monitor& monitor, Values val
     }
     std::vector<Claim> result{claim(model, {monitor.formula, false}, values)};
     if (result.front().kind != Claim::Kind::nothing) return result;
-    const std::vector<Literal> conjuncts = Conjuncts(model).of({monitor.formula, false});
+    const std::vector<Literal> conjuncts = conjuncts_of(model, {monitor.formula, false});
     if (conjuncts.size() < 2) return result;
     for (const Literal conjunct : conjuncts) {
         Claim part = claim(model, conjunct, values);

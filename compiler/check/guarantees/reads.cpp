@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <vector>
 
@@ -23,23 +24,13 @@ constexpr char kHashed = '#';
 enum class Atoms : std::uint8_t { compared, truths };
 
 std::string_view word(InputType type) {
-    switch (type) {
-        case InputType::scalar: return "scalar";
-        case InputType::boolean: return "bool";
-        case InputType::f32: return "f32";
-        case InputType::f16: return "f16";
-        case InputType::i8: return "i8";
-    }
-    return "";
+    constexpr std::array<std::string_view, 5> kWords{"scalar", "bool", "f32", "f16", "i8"};
+    return kWords[static_cast<std::size_t>(type)];
 }
 
 std::string_view word(Restarts restarts) {
-    switch (restarts) {
-        case Restarts::never: return "";
-        case Restarts::on_request: return "restartable ";
-        case Restarts::when_final: return "repeating ";
-    }
-    return "";
+    constexpr std::array<std::string_view, 3> kWords{"", "restartable ", "repeating "};
+    return kWords[static_cast<std::size_t>(restarts)];
 }
 
 class Reading {
@@ -226,25 +217,24 @@ private:
     std::map<std::string, std::set<std::string>> texts_;
 };
 
-template <class Add>
-Reads read(const Model& model, const Add& add) {
-    Reading reading(model);
-    add(reading);
-    return std::move(reading).take();
-}
-
 }  // namespace
 
 Reads reads(const Model& model, Index predicate) {
-    return read(model, [&](Reading& reading) { reading.add_calibrated(predicate); });
+    Reading reading(model);
+    reading.add_calibrated(predicate);
+    return std::move(reading).take();
 }
 
 Reads reads(const Model& model, const Monitor& monitor) {
-    return read(model, [&](Reading& reading) { reading.add_monitor(monitor); });
+    Reading reading(model);
+    reading.add_monitor(monitor);
+    return std::move(reading).take();
 }
 
 Reads reads(const Model& model, const Fitted& fitted) {
-    return read(model, [&](Reading& reading) { reading.add_fitted(fitted); });
+    Reading reading(model);
+    reading.add_fitted(fitted);
+    return std::move(reading).take();
 }
 
 std::vector<std::string> differences(const Reads& then, const Reads& now) {

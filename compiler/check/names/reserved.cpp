@@ -94,6 +94,18 @@ bool contains(const std::array<std::string_view, N>& table, std::string_view nam
     return std::binary_search(table.begin(), table.end(), name);
 }
 
+/// Mathematical functions also exist for the types _Float32 to _Float128: acosf32, acosf64x.
+bool in_library(std::string_view name) {
+    for (const std::string_view suffix : {"f32", "f32x", "f64", "f64x", "f128"}) {
+        if (!name.ends_with(suffix)) continue;
+        const std::string base(name.substr(0, name.size() - suffix.size()));
+        if (contains(kLibrary, base) && contains(kLibrary, base + "f") &&
+            contains(kLibrary, base + "l"))
+            return true;
+    }
+    return contains(kLibrary, name);
+}
+
 bool is_upper(char c) {
     return std::isupper(static_cast<unsigned char>(c)) != 0;
 }
@@ -141,7 +153,7 @@ std::optional<std::string_view> why_forbidden(std::string_view name, bool is_nam
     if (in_capitals(name)) return "is all capitals, like macros of C";
     if (contains(kMacros, name) || macro_family(name))
         return "is a macro of common C headers or compilers";
-    if (is_namespace && contains(kLibrary, name))
+    if (is_namespace && in_library(name))
         return "is a name of the C library, so no namespace can have it";
     return std::nullopt;
 }

@@ -36,7 +36,7 @@ std::string in_lower_case(std::string_view word) {
     return result;
 }
 
-Native meant(std::string_view here) {
+Native replacement(std::string_view here) {
     return {std::string(here), fmt::format("did you mean '{}'?", here)};
 }
 
@@ -45,7 +45,7 @@ std::optional<Native> foreign_word(Foreign kind, std::string_view word) {
         return r.kind == kind && is_listed(r.written, word);
     });
     if (row == kRows.end()) return std::nullopt;
-    if (row->note.empty()) return meant(row->here);
+    if (row->note.empty()) return replacement(row->here);
     return Native{std::string(row->here), std::string(row->note)};
 }
 
@@ -54,9 +54,9 @@ std::optional<Native> own_word(Foreign kind, std::string_view lower) {
     for (const ast::Operator& op : ast::kOperators)
         if (kind == (op.level == ast::kPrefix ? Foreign::prefix : Foreign::infix) &&
             op.word == lower)
-            return meant(op.symbol);
+            return replacement(op.symbol);
     for (const std::string& word : own_words(kind))
-        if (in_lower_case(word) == lower) return meant(word);
+        if (in_lower_case(word) == lower) return replacement(word);
     return std::nullopt;
 }
 
@@ -93,7 +93,7 @@ Diagnostic no_operator(Code code, source::Span span, std::string_view written, c
     return result;
 }
 
-// ---- forms, each with what is to be said of it; empty: it is another
+// ---- notes on forms; empty if the form is another
 
 std::string note_on_interval(const Stuck& stuck, const Token& found, const source::File& file) {
     const auto is_found = [&](std::initializer_list<std::size_t> types) {
