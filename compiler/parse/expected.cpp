@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <set>
 #include <string_view>
 
 namespace etlc::parse {
@@ -41,7 +42,7 @@ const std::vector<Group>& groups() {
          false},
         {{EtlParser::F32, EtlParser::BOOL}, "a type (f32, f32[D], f16[D], i8[D] or bool)", true},
         {{EtlParser::DISTANCE, EtlParser::MAHALANOBIS},
-         fmt::format("a distance ({})", distances_in_words(" or ")),
+         fmt::format("a distance ({})", diag::alternatives(distance_forms())),
          true},
         {{EtlParser::SECONDS, EtlParser::STEPS}, "a unit (us, ms, s, min or steps)", true},
         {{EtlParser::MICROSECONDS, EtlParser::SECONDS}, "a unit of time (us, ms, s or min)", true},
@@ -139,26 +140,22 @@ bool another_item_could_follow(const Stuck& stuck) {
     }
 }
 
-bool contains(const std::vector<std::size_t>& types, std::size_t type) {
-    return std::find(types.begin(), types.end(), type) != types.end();
-}
-
 /// Lists groups first, each token once, then the remaining tokens by their spelling.
 std::vector<std::string> listed(const Stuck& stuck) {
     std::vector<std::string> words;
-    Types covered{EtlParser::MINUS};  // begins a number
+    std::set<std::size_t> covered{EtlParser::MINUS};  // begins a number
     if (expects_name(stuck))
         for (std::size_t type = EtlParser::IN; type <= EtlParser::IDENTIFIER; ++type)
-            covered.push_back(type);
+            covered.insert(type);
     for (const Group& group : groups()) {
         const bool fresh = std::none_of(group.types.begin(), group.types.end(),
-                                        [&covered](auto t) { return contains(covered, t); });
+                                        [&](std::size_t t) { return covered.contains(t); });
         if (!fresh || !has_all(stuck, group.types)) continue;
         words.emplace_back(group.words);
-        covered.insert(covered.end(), group.types.begin(), group.types.end());
+        covered.insert(group.types.begin(), group.types.end());
     }
     for (const std::size_t type : kSpelled)
-        if (stuck.expects(type) && !contains(covered, type))
+        if (stuck.expects(type) && !covered.contains(type))
             words.push_back(fmt::format("'{}'", keyword(type)));
     return words;
 }
@@ -202,25 +199,11 @@ std::vector<std::string> expected_spellings(const Stuck& stuck) {
     return words;
 }
 
-std::string distances_in_words(std::string_view before_last) {
-    const std::vector<std::string>& words = distance_words();
-    std::string text;
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        if (i > 0) text += i + 1 < words.size() ? ", " : before_last;
-        text += words[i];
-        if (words[i] == "mahalanobis") text += "(M)";
-    }
-    return text;
-}
-
-const std::vector<std::string>& callable_words() {
-    static const std::vector<std::string> words = [] {
-        std::vector<std::string> all = distance_words();
-        for (const char* function : {"abs", "sqrt", "min", "max", "kth"})
-            all.emplace_back(function);
-        return all;
-    }();
-    return words;
+std::vector<std::string> distance_forms() {
+    std::vector<std::string> forms = distance_words();
+    std::replace(forms.begin(), forms.end(), std::string("mahalanobis"),
+                 std::string("mahalanobis(M)"));
+    return forms;
 }
 
 std::string description_of_reserved(std::size_t type) {

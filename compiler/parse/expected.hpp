@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "parse/syntax_error.hpp"
@@ -22,11 +21,8 @@ std::vector<std::string> expected_spellings(const Stuck& stuck);
 /// Returns the names of distances.
 const std::vector<std::string>& distance_words();
 
-/// Lists all distances, "l2, l1 or mahalanobis(M)" for the separator " or " before the last.
-std::string distances_in_words(std::string_view before_last);
-
-/// Returns the names of distances and functions.
-const std::vector<std::string>& callable_words();
+/// Returns how distances are written: "l2", "mahalanobis(M)".
+std::vector<std::string> distance_forms();
 
 /// Describes an operator or a reserved word: "the operator 'eventually'".
 std::string description_of_reserved(std::size_t type);

@@ -1,6 +1,7 @@
 #include "parse/syntax_error.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "parse/expected.hpp"
 #include "parse/foreign/foreign.hpp"
@@ -127,11 +128,13 @@ private:
                               quoted(*stuck_.previous, file_), quoted(word, file_))
                 : fmt::format("{} is neither a distance nor a function", quoted(word, file_)),
             span_of(word)};
+        std::vector<std::string> callables = distance_words();
+        callables.insert(callables.end(), {"abs", "sqrt", "min", "max", "kth"});
         if (word.getType() == EtlParser::IDENTIFIER && !add_native(result, Foreign::callable, word))
-            add_nearest(result, word, callable_words());
+            add_nearest(result, word, callables);
         if (result.notes.empty())
             result.note(fmt::format("distances: {}; functions: abs, sqrt, min, max",
-                                    distances_in_words(", ")));
+                                    fmt::join(distance_forms(), ", ")));
         return result;
     }
 

@@ -84,6 +84,15 @@ struct Context {
     diag::Diagnostic& report(diag::Code code, Span span, std::string message) {
         return sink.report(code, span, std::move(message));
     }
+    /// Report an error, and return what checks return after one: false, or no value.
+    bool refuse(diag::Code code, Span span, std::string message) {
+        report(code, span, std::move(message));
+        return false;
+    }
+    std::nullopt_t no_value(diag::Code code, Span span, std::string message) {
+        report(code, span, std::move(message));
+        return std::nullopt;
+    }
     /// Reports an error in a data file. If the file or a part of it is missing, --check turns the
     /// error into a note, and nothing that needs the data is checked.
     diag::Diagnostic& report_data(diag::Diagnostic found, bool is_missing) {

@@ -81,8 +81,7 @@ bool set_settings(Context& c, const ast::Encoder& declaration, Encoder& encoder)
                 ? set_setting(encoder, setting.key.text, numbers)
                 : std::optional(fmt::format("{} is given twice", setting.key.text));
         if (!mistake) continue;
-        c.report(Code::encoder_form, setting.span, *mistake);
-        return false;
+        return c.refuse(Code::encoder_form, setting.span, *mistake);
     }
     return true;
 }

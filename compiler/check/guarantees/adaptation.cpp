@@ -90,8 +90,7 @@ std::optional<Adaptation> check_adaptation(Context& c, const ast::Calibrated& wr
     if (c.sink.errors() > errors) return std::nullopt;
     const auto refuse = [&](const ast::Number& at,
                             std::string message) -> std::optional<Adaptation> {
-        c.report(Code::calibration_argument, at.span, std::move(message));
-        return std::nullopt;
+        return c.no_value(Code::calibration_argument, at.span, std::move(message));
     };
     if (!Decimal::parse(gamma->text).is_positive())
         return refuse(*gamma, fmt::format("gamma = {}; expected a number above 0", gamma->text));

@@ -61,9 +61,8 @@ bool is_alpha(Context& c, const ast::Calibrated::Argument& argument) {
     }
     const std::string text =
         number != nullptr ? shown(*number) : std::get<ast::Name>(argument.value).text;
-    c.report(Code::calibration_argument, ast::span_of(argument.value),
-             fmt::format("alpha = {}; expected a number above 0 and below 1", text));
-    return false;
+    return c.refuse(Code::calibration_argument, ast::span_of(argument.value),
+                    fmt::format("alpha = {}; expected a number above 0 and below 1", text));
 }
 
 /// Checks that the arguments are those of the method, each at most once.
@@ -93,14 +92,13 @@ std::optional<std::string> alpha_of(Context& c, const ast::Calibrated& written,
         if (argument.key.text == "alpha" && !method.arguments.empty() && is_alpha(c, argument))
             alpha = std::get<ast::Number>(argument.value).text;
     if (c.sink.errors() > errors) return std::nullopt;
-    if (!method.arguments.empty() && alpha.empty()) {
-        c.report(Code::calibration_argument, written.span,
-                 fmt::format("{} needs its error rate; expected {}", method.name,
-                             method.origin == ThresholdOrigin::adaptive
-                                 ? std::string(kAdaptiveForm)
-                                 : fmt::format("calibrated({}, alpha = 0.1)", method.name)));
-        return std::nullopt;
-    }
+    if (!method.arguments.empty() && alpha.empty())
+        return c.no_value(
+            Code::calibration_argument, written.span,
+            fmt::format("{} needs its error rate; expected {}", method.name,
+                        method.origin == ThresholdOrigin::adaptive
+                            ? std::string(kAdaptiveForm)
+                            : fmt::format("calibrated({}, alpha = 0.1)", method.name)));
     return alpha;
 }
 
@@ -125,9 +123,8 @@ std::optional<Against> against_of(Context& c, const ast::Calibrated::Argument& a
     const auto* name = std::get_if<ast::Name>(&argument.value);
     for (const Against against : {Against::missed_alarm, Against::missed_success})
         if (name != nullptr && name->text == word(against)) return against;
-    c.report(Code::calibration_argument, ast::span_of(argument.value),
-             "expected against = missed_alarm or against = missed_success");
-    return std::nullopt;
+    return c.no_value(Code::calibration_argument, ast::span_of(argument.value),
+                      "expected against = missed_alarm or against = missed_success");
 }
 
 }  // namespace
@@ -160,12 +157,11 @@ std::optional<MonitorCalibration> check_monitor_calibrated(Context& c,
         if (argument.key.text == "against") against = against_of(c, argument);
     const auto alpha = alpha_of(c, written, whole);
     if (!alpha || c.sink.errors() > errors) return std::nullopt;
-    if (!against) {
-        c.report(Code::calibration_argument, written.span,
-                 fmt::format("a monitor is calibrated against one kind of error; expected {}",
-                             kMonitorForm));
-        return std::nullopt;
-    }
+    if (!against)
+        return c.no_value(
+            Code::calibration_argument, written.span,
+            fmt::format("a monitor is calibrated against one kind of error; expected {}",
+                        kMonitorForm));
     MonitorCalibration result{uncalibrated(written, *method, *alpha), *against};
     result.threshold.text =
         fmt::format("calibrated(conformal, alpha = {}, against = {})", *alpha, word(*against));

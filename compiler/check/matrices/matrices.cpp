@@ -23,32 +23,24 @@ std::string origin_of(const ast::Load& load) {
 /// Reports an array that cannot be a matrix.
 bool has_usable_shape(Context& c, const data::Array& array, const ast::Load& load) {
     const std::string origin = origin_of(load);
-    if (array.element == data::Element::boolean) {
-        c.report(Code::matrix_elements, load.span,
-                 fmt::format("{} has bools; expected numbers", origin));
-        return false;
-    }
-    if (array.shape.empty() || array.shape.size() > 2) {
-        c.report(
+    if (array.element == data::Element::boolean)
+        return c.refuse(Code::matrix_elements, load.span,
+                        fmt::format("{} has bools; expected numbers", origin));
+    if (array.shape.empty() || array.shape.size() > 2)
+        return c.refuse(
             Code::matrix_shape, load.span,
             fmt::format(
                 "{} has shape {}; expected two dimensions (rows, columns), or one for a single row",
                 origin, array.shape_text()));
-        return false;
-    }
     for (const std::uint64_t extent : array.shape) {
-        if (extent == 0) {
-            c.report(
+        if (extent == 0)
+            return c.refuse(
                 Code::empty_matrix, load.span,
                 fmt::format("{} has shape {}, so it holds no values", origin, array.shape_text()));
-            return false;
-        }
-        if (extent > std::numeric_limits<std::uint32_t>::max()) {
-            c.report(
+        if (extent > std::numeric_limits<std::uint32_t>::max())
+            return c.refuse(
                 Code::matrix_shape, load.span,
                 fmt::format("{} has shape {}, which is too large", origin, array.shape_text()));
-            return false;
-        }
     }
     return true;
 }
@@ -59,12 +51,11 @@ bool round_values(Context& c, const data::Array& array, const ast::Load& load, M
     for (std::size_t i = 0; i < array.values.size(); ++i) {
         matrix.values.push_back(static_cast<float>(array.values[i]));
         if (std::isfinite(matrix.values.back())) continue;
-        c.report(
+        return c.refuse(
             Code::value_not_finite, load.span,
             fmt::format(
                 "{} has {:g} at row {}, column {} (both from 0), which is not a finite float32",
                 origin_of(load), array.values[i], i / matrix.columns, i % matrix.columns));
-        return false;
     }
     return true;
 }
@@ -143,31 +134,26 @@ std::optional<Matrix> read_matrix(Context& c, const ast::Load& load) {
 }
 
 std::optional<Matrix> read_matrix(Context& c, const ast::MatrixLiteral& literal) {
-    if (literal.rows.empty() || literal.rows[0].empty()) {
-        c.report(Code::empty_matrix, literal.span, "a matrix without values");
-        return std::nullopt;
-    }
+    if (literal.rows.empty() || literal.rows[0].empty())
+        return c.no_value(Code::empty_matrix, literal.span, "a matrix without values");
     const std::size_t columns = literal.rows[0].size();
     for (std::size_t i = 0; i < literal.rows.size(); ++i) {
         const auto& row = literal.rows[i];
         if (row.size() == columns) continue;
         const Span span =
             row.empty() ? literal.span : source::join(row.front().span, row.back().span);
-        c.report(
+        return c.no_value(
             Code::ragged_matrix, span,
             fmt::format(
                 "row {} (from 0) has {}, row 0 has {}; all rows of a matrix have the same length",
                 i, diag::counted(row.size(), "value"), columns));
-        return std::nullopt;
     }
     return literal_matrix(c, literal.rows);
 }
 
 std::optional<Matrix> read_matrix(Context& c, const ast::VectorLiteral& literal) {
-    if (literal.values.empty()) {
-        c.report(Code::empty_matrix, literal.span, "a vector without values");
-        return std::nullopt;
-    }
+    if (literal.values.empty())
+        return c.no_value(Code::empty_matrix, literal.span, "a vector without values");
     auto matrix = literal_matrix(c, {literal.values});
     if (matrix) matrix->one_dimensional = true;
     return matrix;

@@ -16,13 +16,12 @@ using diag::Code;
 bool set_offset(Context& c, const ast::Projection::Numbers& written, Projection& projection) {
     auto offset = read_matrix(c, written);
     if (!offset) return false;
-    if (offset->rows != 1 || offset->columns != projection.dimension) {
-        c.report(Code::projection_form, span_of(written),
-                 fmt::format("the offset has shape ({}, {}); expected one row of {}, one for each "
-                             "column of the matrix",
-                             offset->rows, offset->columns, projection.dimension));
-        return false;
-    }
+    if (offset->rows != 1 || offset->columns != projection.dimension)
+        return c.refuse(
+            Code::projection_form, span_of(written),
+            fmt::format("the offset has shape ({}, {}); expected one row of {}, one for each "
+                        "column of the matrix",
+                        offset->rows, offset->columns, projection.dimension));
     projection.offset = std::move(offset->values);
     return true;
 }

@@ -62,13 +62,12 @@ std::optional<Source> read_source(Context& c, const ast::Weights& weights) {
         const Index index = resolve(c, *name, NameKind::target);
         if (index == kNone) return std::nullopt;
         const Target& target = c.model.targets[index];
-        if (target.fitted != kNone) {
-            c.report(Code::fitting_argument, name->span,
-                     fmt::format("the rows of '{}' are fitted and cannot be weights; expected a "
-                                 "matrix, or fitted(discriminant, of = POINT, where = FORMULA)",
-                                 name->text));
-            return std::nullopt;
-        }
+        if (target.fitted != kNone)
+            return c.no_value(
+                Code::fitting_argument, name->span,
+                fmt::format("the rows of '{}' are fitted and cannot be weights; expected a "
+                            "matrix, or fitted(discriminant, of = POINT, where = FORMULA)",
+                            name->text));
         Matrix matrix{target.rows,   target.dimension, false,      target.values,
                       target.origin, target.path,      target.hash};
         return Source{std::move(matrix), target.name};
@@ -110,13 +109,12 @@ bool make_symmetric(Context& c, Matrix& w, Span span) {
             const double b = w.values[j * n + i];
             const double size = std::sqrt(static_cast<double>(w.values[i * n + i]) *
                                           static_cast<double>(w.values[j * n + j]));
-            if (std::abs(a - b) > kSymmetryTolerance * size) {
-                c.report(Code::weights_not_symmetric, span,
-                         fmt::format("the weights are not symmetric: {:g} at row {}, column {} and "
-                                     "{:g} at row {}, column {} (from 0)",
-                                     a, i, j, b, j, i));
-                return false;
-            }
+            if (std::abs(a - b) > kSymmetryTolerance * size)
+                return c.refuse(
+                    Code::weights_not_symmetric, span,
+                    fmt::format("the weights are not symmetric: {:g} at row {}, column {} and "
+                                "{:g} at row {}, column {} (from 0)",
+                                a, i, j, b, j, i));
             w.values[i * n + j] = w.values[j * n + i] = static_cast<float>((a + b) / 2);
         }
     }
@@ -143,13 +141,12 @@ std::size_t first_bad_pivot(const Matrix& w) {
 bool check_definite(Context& c, Matrix& w, bool diagonal, Span span) {
     const std::size_t n = w.columns;
     const std::size_t bad = first_not_positive(w.values, n, diagonal ? 1 : n + 1);
-    if (bad < n) {
-        c.report(Code::weights_not_definite, span,
-                 fmt::format("the weights are not positive definite: element {} (from 0) of the "
-                             "diagonal is {:g}",
-                             bad, w.values[bad * (diagonal ? 1 : n + 1)]));
-        return false;
-    }
+    if (bad < n)
+        return c.refuse(
+            Code::weights_not_definite, span,
+            fmt::format("the weights are not positive definite: element {} (from 0) of the "
+                        "diagonal is {:g}",
+                        bad, w.values[bad * (diagonal ? 1 : n + 1)]));
     if (diagonal) return true;
     if (!make_symmetric(c, w, span)) return false;
     const std::size_t row = first_bad_pivot(w);
@@ -167,12 +164,11 @@ std::optional<Weights> fitted_weights(Context& c, const ast::Fitted& written, In
     const Index index = check_fitted(c, written, Fitted::Slot::metric);
     if (index == kNone) return std::nullopt;
     const Fitted& fitted = c.model.fitted[index];
-    if (fitted.point != point) {
-        c.report(Code::wrong_space, written.span,
-                 fmt::format("the weights are fitted to {}, the distance is from {}",
-                             c.model.points[fitted.point].text, c.model.points[point].text));
-        return std::nullopt;
-    }
+    if (fitted.point != point)
+        return c.no_value(
+            Code::wrong_space, written.span,
+            fmt::format("the weights are fitted to {}, the distance is from {}",
+                        c.model.points[fitted.point].text, c.model.points[point].text));
     Weights weights;
     weights.text = fitted.declaration;
     weights.fitted = index;
@@ -198,11 +194,11 @@ std::optional<Weights> check_weights(Context& c, const ast::Weights& weights, In
     if (!fits) {
         const std::string shape = w.one_dimensional ? fmt::format("({})", w.columns)
                                                     : fmt::format("({}, {})", w.rows, w.columns);
-        c.report(Code::weights_shape, span,
-                 fmt::format("the weights have shape {}; for points of dimension {} expected ({}, "
-                             "{}), or the {} elements of a diagonal",
-                             shape, dimension, dimension, dimension, dimension));
-        return std::nullopt;
+        return c.no_value(
+            Code::weights_shape, span,
+            fmt::format("the weights have shape {}; for points of dimension {} expected ({}, "
+                        "{}), or the {} elements of a diagonal",
+                        shape, dimension, dimension, dimension, dimension));
     }
     if (!check_definite(c, w, diagonal, span)) return std::nullopt;
     return Weights{std::move(w.values), diagonal, std::move(w.path), std::move(source->text),
@@ -273,10 +269,10 @@ private:
             distance_.kth = static_cast<std::uint32_t>(*n);
             return true;
         }
-        c_.report(Code::kth_out_of_range, written_.aggregation->span,
-                  fmt::format("kth({}) of target '{}'; expected a whole number from 1 to its {}",
-                              shown(rank), target().name, diag::counted(target().rows, "row")));
-        return false;
+        return c_.refuse(
+            Code::kth_out_of_range, written_.aggregation->span,
+            fmt::format("kth({}) of target '{}'; expected a whole number from 1 to its {}",
+                        shown(rank), target().name, diag::counted(target().rows, "row")));
     }
 
     /// cosine and angular compare directions, which a zero vector lacks.

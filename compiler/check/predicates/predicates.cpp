@@ -35,10 +35,9 @@ bool sign_fits(Context& c, const Expr& expression, const Threshold& threshold) {
             Code::negative_threshold, threshold.span,
             fmt::format("lo = {} is negative, but distances never are", threshold.adaptation->lo));
     else
-        c.report(
+        return c.refuse(
             Code::negative_threshold, threshold.span,
             fmt::format("the threshold {} is negative, but distances never are", threshold.text));
-    return false;
 }
 
 /// Returns a single number, with its sign.
@@ -95,11 +94,10 @@ bool can_be_equal(Context& c, const Predicate& predicate) {
     bool measures = false;
     for_each_distance(predicate.expression, [&](Index /*distance*/) { measures = true; });
     if (!predicate.equality() || !measures) return true;
-    c.report(
+    return c.refuse(
         Code::equality_of_distances, predicate.span,
         fmt::format("'{}' compares distances, which are rounded; expected '<=', '<', '>=' or '>'",
                     symbol(predicate.comparison)));
-    return false;
 }
 
 /// Returns the predicate, or nothing after an error.

@@ -34,18 +34,14 @@ std::optional<Matrix> rows_of(Context& c, const ast::Target::Source& source,
 
 /// Appends rows from another source.
 bool append(Context& c, Matrix& all, Matrix rows, Span span) {
-    if (rows.columns != all.columns) {
-        c.report(Code::dimension_mismatch, span,
-                 fmt::format("these rows have dimension {}, those before them {}", rows.columns,
-                             all.columns));
-        return false;
-    }
-    if (rows.rows > std::numeric_limits<std::uint32_t>::max() - all.rows) {
-        c.report(Code::matrix_shape, span,
-                 fmt::format("a target of more than {} rows",
-                             std::numeric_limits<std::uint32_t>::max()));
-        return false;
-    }
+    if (rows.columns != all.columns)
+        return c.refuse(Code::dimension_mismatch, span,
+                        fmt::format("these rows have dimension {}, those before them {}",
+                                    rows.columns, all.columns));
+    if (rows.rows > std::numeric_limits<std::uint32_t>::max() - all.rows)
+        return c.refuse(Code::matrix_shape, span,
+                        fmt::format("a target of more than {} rows",
+                                    std::numeric_limits<std::uint32_t>::max()));
     for (EncodedRows of : rows.encoded) {
         of.first += all.rows;
         all.encoded.push_back(of);
@@ -88,10 +84,9 @@ bool set_space(Context& c, const ast::Point& written, Target& target) {
     const Point& point = c.model.points[index];
     if (point.is_projected()) target.space = index;
     if (point.dimension == target.dimension) return true;
-    c.report(Code::dimension_mismatch, written.span,
-             fmt::format("{} has dimension {}, the rows of '{}' have {}", point.text,
-                         point.dimension, target.name, target.dimension));
-    return false;
+    return c.refuse(Code::dimension_mismatch, written.span,
+                    fmt::format("{} has dimension {}, the rows of '{}' have {}", point.text,
+                                point.dimension, target.name, target.dimension));
 }
 
 bool set_fitted(Context& c, const ast::Fitted& written, Target& target) {

@@ -37,19 +37,17 @@ bool has_too_many_digits(Context& c, const ast::Number& number) {
 bool has_usable_length(Context& c, const ast::Rate& rate) {
     const double length = seconds(quantity(rate));
     if (length >= 1e-12 && length <= 1e8) return true;
-    c.report(Code::rate_out_of_range, rate.number.span,
-             fmt::format("a step of {:.3g} s; expected one between 1e-12 s and 1e8 s", length));
-    return false;
+    return c.refuse(
+        Code::rate_out_of_range, rate.number.span,
+        fmt::format("a step of {:.3g} s; expected one between 1e-12 s and 1e8 s", length));
 }
 
 bool is_usable(Context& c, const ast::Rate& rate) {
     if (has_too_many_digits(c, rate.number)) return false;
-    if (!Decimal::parse(rate.number.text).is_positive()) {
-        c.report(Code::rate_out_of_range, rate.number.span,
-                 fmt::format("the {} is {}; expected a positive number", rate_word(rate),
-                             shown(rate.number)));
-        return false;
-    }
+    if (!Decimal::parse(rate.number.text).is_positive())
+        return c.refuse(Code::rate_out_of_range, rate.number.span,
+                        fmt::format("the {} is {}; expected a positive number", rate_word(rate),
+                                    shown(rate.number)));
     return has_usable_length(c, rate);
 }
 
@@ -133,11 +131,9 @@ std::optional<std::uint32_t> rounded_steps(Context& c, const ast::Bound& bound,
 std::optional<std::uint32_t> duration_steps(Context& c, const ast::Bound& bound) {
     if (c.step.broken || has_too_many_digits(c, bound.number)) return std::nullopt;
     const Decimal value = Decimal::parse(bound.number.text);
-    if (value.negative) {
-        c.report(Code::bound_not_whole, bound.span,
-                 fmt::format("the bound {} is negative", bound_text(bound)));
-        return std::nullopt;
-    }
+    if (value.negative)
+        return c.no_value(Code::bound_not_whole, bound.span,
+                          fmt::format("the bound {} is negative", bound_text(bound)));
     if (c.step.rate == nullptr) {
         if (!c.incomplete)
             c.report(Code::no_rate, bound.span,
@@ -204,28 +200,22 @@ bool is_finite_duration(Context& c, const ast::Bound& bound) {
 std::optional<Steps> interval_steps(Context& c, const ast::Interval& interval) {
     const ast::Bound& low = interval.low;
     const ast::Bound& high = interval.high;
-    if (is_infinite(low) || high.number.text == "-inf") {
-        c.report(Code::bound_not_finite, is_infinite(low) ? low.span : high.span,
-                 fmt::format("{} is not allowed here; only the upper bound may be inf",
-                             bound_text(is_infinite(low) ? low : high)));
-        return std::nullopt;
-    }
+    if (is_infinite(low) || high.number.text == "-inf")
+        return c.no_value(Code::bound_not_finite, is_infinite(low) ? low.span : high.span,
+                          fmt::format("{} is not allowed here; only the upper bound may be inf",
+                                      bound_text(is_infinite(low) ? low : high)));
     if (!has_no_unit_of_its_own(low) && !has_no_unit_of_its_own(high) &&
-        is_duration(low) != is_duration(high)) {
-        c.report(Code::mixed_interval, interval.span,
-                 fmt::format("one bound is in steps and one is a duration: {} and {}",
-                             bound_text(low), bound_text(high)));
-        return std::nullopt;
-    }
+        is_duration(low) != is_duration(high))
+        return c.no_value(Code::mixed_interval, interval.span,
+                          fmt::format("one bound is in steps and one is a duration: {} and {}",
+                                      bound_text(low), bound_text(high)));
     const auto low_steps = bound_steps(c, low);
     const auto high_steps = bound_steps(c, high);
     if (!low_steps || !high_steps) return std::nullopt;
-    if (*low_steps > *high_steps) {
-        c.report(Code::interval_reversed, interval.span,
-                 fmt::format("the lower bound {} is above the upper bound {}", bound_text(low),
-                             bound_text(high)));
-        return std::nullopt;
-    }
+    if (*low_steps > *high_steps)
+        return c.no_value(Code::interval_reversed, interval.span,
+                          fmt::format("the lower bound {} is above the upper bound {}",
+                                      bound_text(low), bound_text(high)));
     return Steps{*low_steps, *high_steps};
 }
 
