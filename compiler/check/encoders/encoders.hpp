@@ -1,6 +1,6 @@
-// Encoders: the preprocessing of images before their models, from a spec or from a .json file beside
-// the model, and whether embeddings in an episode were made by them. A setting is given once, or
-// alike in both places; an episode that does not name its encoder is accepted with a warning.
+// Encoders: the preprocessing of images before their models, from a spec or from a .json file
+// beside the model, and whether embeddings in an episode were made by them. A setting is given
+// once, or alike in both places; an episode that does not name its encoder causes a warning.
 #pragma once
 
 #include <optional>

@@ -28,16 +28,13 @@ std::optional<Threshold> literal_threshold(Context& c, const ast::Number& number
 
 /// A distance is never negative, but a difference of two may be.
 bool sign_fits(Context& c, const Expr& expression, const Threshold& threshold) {
-    const bool negative = threshold.range().low < 0;  // unknown before calibration
-    if (expression.kind != Expr::Kind::distance || !negative) return true;
-    if (threshold.adaptation)
-        c.report(
-            Code::negative_threshold, threshold.span,
-            fmt::format("lo = {} is negative, but distances never are", threshold.adaptation->lo));
-    else
-        return c.refuse(
-            Code::negative_threshold, threshold.span,
-            fmt::format("the threshold {} is negative, but distances never are", threshold.text));
+    if (expression.kind != Expr::Kind::distance || !(threshold.range().low < 0))
+        return true;  // also before calibration, when it is NaN
+    const std::string negative = threshold.adaptation
+                                     ? fmt::format("lo = {}", threshold.adaptation->lo)
+                                     : fmt::format("the threshold {}", threshold.text);
+    return c.refuse(Code::negative_threshold, threshold.span,
+                    fmt::format("{} is negative, but distances never are", negative));
 }
 
 /// Returns a single number, with its sign.
