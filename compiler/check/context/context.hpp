@@ -95,7 +95,7 @@ struct Context {
     }
     /// Reports an error in a data file. If the file or a part of it is missing, --check turns the
     /// error into a note, and nothing that needs the data is checked.
-    diag::Diagnostic& report_data(diag::Diagnostic found, bool is_missing) {
+    diag::Diagnostic& report_data(diag::Diagnostic found, bool is_missing = true) {
         found.is_allowed = is_missing && options.allow_missing;
         lacks_data = lacks_data || found.is_allowed;
         return sink.report(std::move(found));

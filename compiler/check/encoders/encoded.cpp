@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "check/context/context.hpp"
 #include "check/encoders/encoders.hpp"
+#include "check/guarantees/provenance.hpp"
 #include "check/matrices/matrices.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
@@ -28,14 +30,9 @@ std::optional<embedded::File> read_file(Context& c, const Encoder& first) {
                          fmt::format("'{}' makes embeddings", first.name));
     c.report_data({Code::embedded_missing,
                    fmt::format("'{}' makes embeddings, but there is no file {}", first.name, path),
-                   first.span},
-                  true)
+                   first.span})
         .note("'etlc embed' makes it from the images in the spec; --embedded selects another file");
     return std::nullopt;
-}
-
-std::string then_and_now(std::string_view what, const std::string& then, const std::string& now) {
-    return fmt::format("{} was: {}; it is: {}", what, then, now);
 }
 
 /// Returns the differences since the encoder was run. A missing model is no difference: it is not
@@ -43,10 +40,10 @@ std::string then_and_now(std::string_view what, const std::string& then, const s
 std::vector<std::string> changes(Context& c, Encoder encoder, const embedded::Encoder& then) {
     std::vector<std::string> found;
     if (then.declaration != encoder.declaration)
-        found.push_back(then_and_now("the declaration", then.declaration, encoder.declaration));
+        found.push_back(changed("the declaration", then.declaration, encoder.declaration));
     if (encoder.dimension != 0 && then.dimension != encoder.dimension)
-        found.push_back(then_and_now("the dimension", std::to_string(then.dimension),
-                                     std::to_string(encoder.dimension)));
+        found.push_back(changed("the dimension", std::to_string(then.dimension),
+                                std::to_string(encoder.dimension)));
     if (then.kind != embedded::kCommand && !then.kind.starts_with(embedded::kOnnxRuntime))
         found.emplace_back(
             "an earlier etlc ran it with OpenCV, whose results may differ, or with an unknown "
@@ -63,7 +60,7 @@ std::vector<std::string> changes(Context& c, Encoder encoder, const embedded::En
     }
     if (now->model != then.model) found.push_back(fmt::format("{} has changed", encoder.model));
     if (now->settings != then.settings)
-        found.push_back(then_and_now("the settings", then.settings, now->settings));
+        found.push_back(changed("the settings", then.settings, now->settings));
     return found;
 }
 
@@ -75,7 +72,7 @@ std::optional<Encoded> encoded_of(Context& c, const ast::Target::Source& source,
     const auto* const images = std::get_if<ast::Images>(&source);
     if (!encoder) {
         c.report(Code::encoder_use, result.span,
-                 fmt::format("{} by which encoder? A target holds embeddings",
+                 fmt::format("{} need an encoder, since a target consists of embeddings",
                              images != nullptr ? "images" : "frames of a video"))
             .note(images != nullptr ? "for example: target T = images(\"bay/*.png\") by NAME;"
                                     : "for a recording with embeddings, name the input: "
@@ -101,22 +98,16 @@ std::optional<Encoded> encoded_of(Context& c, const ast::Target::Source& source,
     return result;
 }
 
-std::vector<std::string> paths_in(const embedded::Entry& entry) {
-    std::vector<std::string> paths;
-    for (const embedded::Source& source : entry.sources) paths.push_back(source.path);
-    return paths;
-}
-
 /// Returns the differences since the images were embedded. If all files are missing there is no
 /// difference: they are not needed to build a monitor.
 std::vector<std::string> changes(Context& c, const Encoded& encoded, const embedded::Entry& entry) {
     const auto now = files_of(encoded, c.file.path());
     if (!now) return {};
     std::vector<std::string> found;
-    const std::vector<std::string> then = paths_in(entry);
+    std::set<std::string> then;
+    for (const embedded::Source& source : entry.sources) then.insert(source.path);
     for (const std::string& path : *now)
-        if (std::find(then.begin(), then.end(), path) == then.end())
-            found.push_back(fmt::format("{} is new", path));
+        if (!then.contains(path)) found.push_back(fmt::format("{} is new", path));
     for (const embedded::Source& source : entry.sources) {
         if (std::find(now->begin(), now->end(), source.path) == now->end()) {
             found.push_back(fmt::format("{} is gone", source.path));
@@ -165,8 +156,7 @@ std::optional<Matrix> read_encoded(Context& c, const ast::Target::Source& source
     const auto found = c.embedded_file->entries.find(encoded->text);
     if (found == c.embedded_file->entries.end()) {
         c.report_data({Code::embedded_missing,
-                       fmt::format("{} has no entry for {}", path, encoded->text), encoded->span},
-                      true)
+                       fmt::format("{} has no entry for {}", path, encoded->text), encoded->span})
             .note("'etlc embed' makes it");
         return std::nullopt;
     }
@@ -205,8 +195,7 @@ void check_embeddings(Context& c) {
             c.report_data(
                  {Code::embedded_missing,
                   fmt::format("{} has no embeddings by '{}'", c.embedded_file->path, encoder.name),
-                  encoder.span},
-                 true)
+                  encoder.span})
                 .note(std::string(kEmbedAgain));
             continue;
         }

@@ -24,6 +24,9 @@ Reads reads(const Model& model, Index predicate);
 Reads reads(const Model& model, const Monitor& monitor);
 Reads reads(const Model& model, const Fitted& fitted);
 
+/// Returns "WHAT was: THEN; it is: NOW".
+std::string changed(std::string_view what, std::string_view then, std::string_view now);
+
 /// Returns the differences as sentences: "predicate a was: x <= 0.5; it is: x <= 1".
 std::vector<std::string> differences(const Reads& then, const Reads& now);
 

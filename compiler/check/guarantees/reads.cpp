@@ -237,6 +237,10 @@ Reads reads(const Model& model, const Fitted& fitted) {
     return std::move(reading).take();
 }
 
+std::string changed(std::string_view what, std::string_view then, std::string_view now) {
+    return fmt::format("{} was: {}; it is: {}", what, then, now);
+}
+
 std::vector<std::string> differences(const Reads& then, const Reads& now) {
     std::vector<std::string> found;
     const auto text = [](const Reads& all, const std::string& key) {
@@ -250,8 +254,7 @@ std::vector<std::string> differences(const Reads& then, const Reads& now) {
         const std::string after = text(now, key);
         if (before == after) continue;
         const bool hashed = before[0] == kHashed && after[0] == kHashed;
-        found.push_back(hashed ? fmt::format("{} changed", key)
-                               : fmt::format("{} was: {}; it is: {}", key, before, after));
+        found.push_back(hashed ? fmt::format("{} changed", key) : changed(key, before, after));
     }
     return found;
 }

@@ -97,8 +97,7 @@ public:
 
 private:
     void add(std::string_view what, std::string_view then, std::string_view now) {
-        found_.push_back(
-            fmt::format("the {} was: {}; it is: {}", what, trimmed(then), trimmed(now)));
+        found_.push_back(changed(fmt::format("the {}", what), trimmed(then), trimmed(now)));
     }
 
     static std::string_view trimmed(std::string_view text) {

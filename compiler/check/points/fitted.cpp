@@ -178,10 +178,9 @@ std::optional<fitted::File> read_file(Context& c, const Fitted& first) {
     if (exists(path))
         return read_made(c, path, fitted::read, first.span,
                          fmt::format("'{}' is fitted", first.name));
-    c.report_data(
-         {Code::fitted_missing,
-          fmt::format("'{}' is fitted, but there is no file {}", first.name, path), first.span},
-         true)
+    c.report_data({Code::fitted_missing,
+                   fmt::format("'{}' is fitted, but there is no file {}", first.name, path),
+                   first.span})
         .note("'etlc fit' makes one from labelled demonstrations; --fitted selects another");
     return std::nullopt;
 }
@@ -191,10 +190,6 @@ bool is_current(Context& c, const Fitted& fitted, const std::vector<std::string>
         c, Code::fitted_stale, fitted.span,
         fmt::format("'{}' in {} was fitted for something else", fitted.name, c.fitted_file->path),
         differences, kFitAgain);
-}
-
-std::string difference(std::string_view what, std::string_view then, std::string_view now) {
-    return fmt::format("{} was: {}; it is: {}", what, then, now);
 }
 
 }  // namespace
@@ -228,19 +223,18 @@ const fitted::Entry* fitted_entry(Context& c, Index index) {
     if (found == c.fitted_file->entries.end()) {
         c.report_data({Code::fitted_missing,
                        fmt::format("{} has no entry for '{}'", c.fitted_file->path, fitted.name),
-                       fitted.span},
-                      true)
+                       fitted.span})
             .note(std::string(kFitAgain));
         return nullptr;
     }
     const fitted::Entry& entry = found->second;
     std::vector<std::string> differences;
     if (entry.declaration != fitted.declaration)
-        differences.push_back(difference("the declaration", entry.declaration, fitted.declaration));
+        differences.push_back(changed("the declaration", entry.declaration, fitted.declaration));
     else if (entry.rows != fitted.rows || entry.columns != fitted.columns)
-        differences.push_back(difference("its shape",
-                                         fmt::format("{} x {}", entry.rows, entry.columns),
-                                         fmt::format("{} x {}", fitted.rows, fitted.columns)));
+        differences.push_back(changed("its shape",
+                                      fmt::format("{} x {}", entry.rows, entry.columns),
+                                      fmt::format("{} x {}", fitted.rows, fitted.columns)));
     fitted.filled = is_current(c, fitted, differences);
     return fitted.filled ? &entry : nullptr;
 }
@@ -251,9 +245,9 @@ void check_fitted_entries(Context& c) {
         const fitted::Entry& entry = c.fitted_file->entries.at(fitted.name);
         const FittedProvenance now = provenance(c.model, fitted);
         std::vector<std::string> differences;
-        if (entry.of != now.of) differences.push_back(difference("the point", entry.of, now.of));
+        if (entry.of != now.of) differences.push_back(changed("the point", entry.of, now.of));
         if (stated(entry.truth) != now.truth)
-            differences.push_back(difference("the truth", entry.truth, now.truth));
+            differences.push_back(changed("the truth", entry.truth, now.truth));
         if (differences.empty() && !entry.reads.empty())
             differences = check::differences(entry.reads, now.reads);
         is_current(c, fitted, differences);
