@@ -1,4 +1,4 @@
-// How the operators of the language are written and how tightly they bind, for the syntax tree and
+// The operators of the language, how they are written and how tightly they bind, for the tree and
 // the typed model.
 #pragma once
 

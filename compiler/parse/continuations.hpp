@@ -1,4 +1,4 @@
-// What may follow at a place in a spec, for completion: the words that the grammar accepts there,
+// Completion: what may follow at a place in a spec. Lists the words that the grammar accepts there,
 // and what a name would stand for. Text after the place is ignored. The parser that compiles specs
 // is asked, one word at a time.
 #pragma once
@@ -12,7 +12,7 @@
 
 namespace etlc::parse {
 
-/// What a name stands for at a place.
+/// The meaning of a name at a place.
 enum class Role : std::uint8_t {
     none,     ///< no name fits, or one that is being declared
     operand,  ///< in a formula or an expression

@@ -12,7 +12,7 @@ using grammar::EtlLexer;
 
 namespace {
 
-/// What is open between one pair of brackets.
+/// Operators that are open between one pair of brackets.
 struct Level {
     int base = 0;      ///< depth outside the bracket, plus one
     int arrows = 0;    ///< `->` in a row

@@ -1,4 +1,4 @@
-// What calibrated thresholds guarantee about the verdicts of a monitor, for its whole formula or
+// The guarantees of calibrated thresholds for the verdicts of a monitor: for its whole formula or
 // for each conjunct. Robustness is monotonic in every literal of the negation normal form: if all
 // calibrated predicates are positive and none misses its truth, no verdict misses a success of the
 // ground-truth monitor; if all are negative, none misses an alarm. A union bound adds the alphas.

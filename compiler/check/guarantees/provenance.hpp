@@ -38,7 +38,7 @@ struct Provenance {
     /// input name, the declaration of inputs whose samples it changes (float16 or int8, scale,
     /// range and hold); and fingerprints of encoders.
     std::map<std::string, std::string> targets;
-    /// The same hashes for the truth formula.
+    /// Such hashes for the truth formula.
     std::map<std::string, std::string> truth_targets;
     Reads reads;
 };
@@ -61,7 +61,7 @@ Provenance provenance(const Model& model, Index predicate);
 /// out, `truth` lists the labels of each, `targets` are those of both.
 Provenance provenance(const Model& model, const Monitor& monitor, const Labelling& labelling = {});
 
-/// What a fitted element depends on besides the demonstrations.
+/// The texts and hashes that a fitted element depends on besides the demonstrations.
 struct FittedProvenance {
     std::string of;     ///< the point and the hashes of its maps, "Q(z), Q = 0123456789abcdef"
     std::string truth;  ///< `where`, the labels of its predicates and what they measure; or "true"
