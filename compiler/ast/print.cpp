@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <memory>
 #include <string_view>
 #include <utility>
 
@@ -58,8 +59,9 @@ std::string text_of(const Images& images) {
 std::string text_of(const Calibrated& calibrated);
 std::string text_of(const Fitted& fitted);
 
-std::string text_of(const FormulaPtr& formula) {
-    return print(*formula);
+template <class Node>
+std::string text_of(const std::unique_ptr<Node>& node) {
+    return print(*node);
 }
 
 std::string text_of(const Point& point) {
@@ -68,10 +70,6 @@ std::string text_of(const Point& point) {
     for (auto map = point.projections.rbegin(); map != point.projections.rend(); ++map)
         text = fmt::format("{}({})", map->text, text);
     return text;
-}
-
-std::string text_of(const ExprPtr& expression) {
-    return print(*expression);
 }
 
 template <class... Alternatives>
@@ -93,11 +91,21 @@ std::string text_of(const Distance& distance) {
                        text_of(distance.point), distance.target.text);
 }
 
-std::string text_of(const Fitted& fitted) {
+/// "calibrated(f1)", "fitted(kmeans, k = 8, ...)".
+template <class Call>
+std::string call_text(std::string_view word, const Call& call) {
     std::string arguments;
-    for (const Fitted::Argument& a : fitted.arguments)
+    for (const auto& a : call.arguments)
         arguments += fmt::format(", {} = {}", a.key.text, text_of(a.value));
-    return fmt::format("fitted({}{})", fitted.method.text, arguments);
+    return fmt::format("{}({}{})", word, call.method.text, arguments);
+}
+
+std::string text_of(const Fitted& fitted) {
+    return call_text("fitted", fitted);
+}
+
+std::string text_of(const Calibrated& calibrated) {
+    return call_text("calibrated", calibrated);
 }
 
 // ---- formulas -----------------------------------------------------------------------------------
@@ -165,13 +173,6 @@ void append(std::string& text, const Formula& f, FormulaLevel needed) {
 }
 
 // ---- declarations -------------------------------------------------------------------------------
-
-std::string text_of(const Calibrated& calibrated) {
-    std::string arguments;
-    for (const Calibrated::Argument& a : calibrated.arguments)
-        arguments += fmt::format(", {} = {}", a.key.text, text_of(a.value));
-    return fmt::format("calibrated({}{})", calibrated.method.text, arguments);
-}
 
 std::string text_of(const Type& type) {
     constexpr std::array<std::string_view, 4> kWords{"f32", "f16", "i8", "bool"};

@@ -64,6 +64,12 @@ void warn_of_similarities(Context& c) {
     }
 }
 
+void report_same(Context& c, std::string_view kind, const Entity& entity, const Entity& first) {
+    c.report(Code::same_definition, entity.span,
+             fmt::format("'{}' is the same {} as '{}'", entity.name, kind, first.name))
+        .note(first.span, fmt::format("'{}' is declared here", first.name));
+}
+
 void warn_of_same_predicates(Context& c) {
     std::map<std::string, const Entity*> first;
     for (Index i = 0; i < c.scope.all(NameKind::predicate).size(); ++i) {
@@ -76,15 +82,12 @@ void warn_of_same_predicates(Context& c) {
         if (predicate.missing) text += fmt::format(" missing {}", *predicate.missing);
         const auto [before, is_new] = first.try_emplace(text, &entity);
         if (is_new) continue;
-        c.report(
-             Code::same_definition, entity.span,
-             fmt::format("'{}' is the same predicate as '{}'", entity.name, before->second->name))
-            .note(before->second->span, fmt::format("'{}' is declared here", before->second->name));
+        report_same(c, "predicate", entity, *before->second);
     }
 }
 
-// ---- formulas, each warned of once an operator or monitor
-// ----------------------------------------
+// ---- formulas, one warning for each operator or monitor
+// -------------------------------------------
 
 using Kind = Formula::Kind;
 
@@ -245,9 +248,7 @@ private:
         const auto [first, is_new] = monitors_.try_emplace(
             {structures_[monitor.formula], monitor.sliding, monitor.restarts}, &entity);
         if (is_new) return;
-        c_.report(Code::same_definition, entity.span,
-                  fmt::format("'{}' is the same monitor as '{}'", entity.name, first->second->name))
-            .note(first->second->span, fmt::format("'{}' is declared here", first->second->name));
+        report_same(c_, "monitor", entity, *first->second);
     }
 
     Context& c_;
