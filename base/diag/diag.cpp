@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <tuple>
 
 namespace etlc::diag {
@@ -28,7 +30,7 @@ Diagnostic& did_you_mean(Diagnostic& to, const std::string& word,
 }
 
 Diagnostic& Sink::report(Code code, source::Span span, std::string message) {
-    return report(Diagnostic{code, std::move(message), span, {}, 0, 0, {}});
+    return report(Diagnostic{code, std::move(message), span});
 }
 
 Diagnostic& Sink::report(Diagnostic diagnostic) {
@@ -55,10 +57,10 @@ void Sink::drop_warnings_of_spec() {
 
 std::vector<Diagnostic> Sink::sorted() const {
     std::vector<Diagnostic> result = diagnostics_;
-    // Stable, so that what a stage found at one place stays in the order in which it was found. A
-    // finding about the whole spec has no span and comes first.
+    // A stable sort keeps the order in which a stage found things at one place. A finding about the
+    // whole spec has no span and comes first.
     std::stable_sort(result.begin(), result.end(), [](const Diagnostic& a, const Diagnostic& b) {
-        // The spec's own findings have no file name, which sorts before every name.
+        // Findings in the spec have no file name, which sorts before every name.
         const auto place = [](const Diagnostic& d) {
             const std::uint32_t begin = d.span && d.file.empty() ? d.span->begin : 0;
             return std::tuple<const std::string&, std::uint32_t, std::uint32_t, std::uint32_t>(
@@ -70,12 +72,9 @@ std::vector<Diagnostic> Sink::sorted() const {
 }
 
 std::string_view word(Severity severity) {
-    switch (severity) {
-        case Severity::error: return "error";
-        case Severity::warning: return "warning";
-        case Severity::note: break;
-    }
-    return "note";
+    return severity == Severity::error     ? "error"
+           : severity == Severity::warning ? "warning"
+                                           : "note";
 }
 
 std::string counted(std::uint64_t n, const std::string& noun) {
@@ -89,6 +88,63 @@ std::string alternatives(const std::vector<std::string>& words) {
         text += words[i];
     }
     return text;
+}
+
+namespace {
+
+/// Longer names are generated rather than misspelt; comparing them would only cost time.
+constexpr std::size_t kLongest = 64;
+/// Costs are in half edits: the same letter in the other case costs half as much as another letter.
+constexpr int kEdit = 2;
+constexpr int kCase = 1;
+
+int substitution(char a, char b) {
+    if (a == b) return 0;
+    const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+    return lower(a) == lower(b) ? kCase : kEdit;
+}
+
+/// Returns the Damerau-Levenshtein distance with adjacent transpositions (optimal string
+/// alignment), in half edits.
+int distance(std::string_view a, std::string_view b) {
+    std::array<std::array<int, kLongest + 1>, 3> rows{};
+    for (std::size_t j = 0; j <= b.size(); ++j) rows[0][j] = kEdit * static_cast<int>(j);
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        auto& row = rows[i % 3];
+        const auto& above = rows[(i + 2) % 3];
+        const auto& two_above = rows[(i + 1) % 3];
+        row[0] = kEdit * static_cast<int>(i);
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            row[j] = std::min({above[j] + kEdit, row[j - 1] + kEdit,
+                               above[j - 1] + substitution(a[i - 1], b[j - 1])});
+            const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+            if (swapped) row[j] = std::min(row[j], two_above[j - 2] + kEdit);
+        }
+    }
+    return rows[a.size() % 3][b.size()];
+}
+
+}  // namespace
+
+std::optional<std::string> nearest_name(std::string_view name,
+                                        const std::vector<std::string>& candidates) {
+    if (name.empty() || name.size() > kLongest) return std::nullopt;
+    const std::string* best = nullptr;
+    int best_distance = 0;
+    for (const std::string& candidate : candidates) {
+        if (candidate.empty() || candidate.size() > kLongest) continue;
+        // One edit in three letters is allowed, rounded up from two letters on: `p1` may mean `p2`,
+        // but `a` does not mean `b`.
+        const auto longer = static_cast<int>(std::max(name.size(), candidate.size()));
+        const int allowed = std::max(kCase, kEdit * ((longer + 1) / 3));
+        const int difference = static_cast<int>(name.size()) - static_cast<int>(candidate.size());
+        if (kEdit * std::abs(difference) > allowed) continue;
+        const int found = distance(name, candidate);
+        if (found > allowed || (best != nullptr && found >= best_distance)) continue;
+        best = &candidate;
+        best_distance = found;
+    }
+    return best != nullptr ? std::optional(*best) : std::nullopt;
 }
 
 }  // namespace etlc::diag

@@ -1,7 +1,5 @@
-// Diagnostics: collecting them. Rendering is in render.hpp.
-// Takes: a code, a place, words. Gives: the list, in the order of their places.
-// Keeps true: each cause is reported once; nothing is printed before a stage has reported all it
-// finds.
+// Collects diagnostics; render.hpp prints them. Each cause is reported once, and nothing is printed
+// before a stage has reported everything that it finds.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +16,7 @@ namespace etlc::diag {
 
 enum class Severity : std::uint8_t { error, warning, note };
 
-std::string_view word(Severity severity);  ///< "error"
+std::string_view word(Severity severity);
 
 enum class Code : std::uint16_t {
 #define DIAGNOSTIC(code, severity, name, summary) name,
@@ -41,19 +39,20 @@ struct Note {
     std::string text;
 };
 
-/// One finding. Its place is a span of the spec, or another file (with line and column where they
-/// are known).
+/// One finding. Its place is a span of the spec, or another file, with line and column where they
+/// are known.
 struct Diagnostic {
     Code code;
     std::string message;
-    std::optional<source::Span> span;  ///< of the spec
-    std::string file;                  ///< another file than the spec; empty: the spec
-    std::uint32_t line = 0;            ///< of `file`, from 1; 0: unknown
+    std::optional<source::Span> span;  ///< in the spec
+    std::string file;                  ///< a file other than the spec; empty: the spec
+    std::uint32_t line = 0;            ///< in `file`, from 1; 0: unknown
     std::uint32_t column = 0;
     std::vector<Note> notes;
-    /// What would be an error elsewhere, and is allowed here: something that is not there yet.
+    /// Something is missing that may still be missing here; the finding is a note instead of an
+    /// error.
     bool is_allowed = false;
-    /// What could stand in place of `span`, where there is one thing that was probably meant.
+    /// Replacement for `span`, where only one was probably meant.
     std::string meant{};
 
     Severity severity() const { return is_allowed ? Severity::note : info(code).severity; }
@@ -64,39 +63,40 @@ struct Diagnostic {
     }
 };
 
-/// Asks for `word` in place of the span. `where`: the place that has the word.
+/// Adds the note "did you mean 'WORD'?". `where` is the declaration of the word.
 Diagnostic& did_you_mean(Diagnostic& to, const std::string& word,
                          std::optional<source::Span> where = {});
 
-/// Collects what the stages find. Passed by reference through the pipeline.
+/// Collects the findings of all stages, which get it by reference.
 class Sink {
 public:
-    /// -Werror: what warnings find is refused too.
+    /// With -Werror, warnings refuse the spec too.
     explicit Sink(bool warnings_are_errors = false) : warnings_are_errors_(warnings_are_errors) {}
 
-    /// The returned reference is good until the next report.
+    /// The returned reference is valid until the next report.
     Diagnostic& report(Code code, source::Span span, std::string message);
     Diagnostic& report(Diagnostic diagnostic);
 
-    /// What another sink has collected, each with this note; empty: none.
+    /// Adds the findings of another sink, each with `note` unless that is empty.
     void add(const Sink& other, const std::string& note);
 
-    /// What was found in the spec and is no error, is not told: for commands that use a spec, of
-    /// which `etlc SPEC --check` tells it. Warnings that are errors stay.
+    /// Removes warnings about the spec: commands that only use a spec leave them to `etlc SPEC
+    /// --check`. Warnings that are errors stay.
     void drop_warnings_of_spec();
 
     bool has_errors() const { return errors_ > 0; }
-    /// Warnings count as what -Werror makes of them.
+    /// Returns the severity, an error for warnings under -Werror.
     Severity severity(const Diagnostic& found) const {
         const Severity severity = found.severity();
         return warnings_are_errors_ && severity == Severity::warning ? Severity::error : severity;
     }
-    /// Whether nothing may come of the spec. Stages stop at errors, so that the warnings of all of
-    /// them are told.
+    /// Whether the spec is refused. Stages stop at errors only, so that the warnings of all stages
+    /// are reported.
     bool refused() const { return has_errors() || (warnings_are_errors_ && warnings() > 0); }
     std::size_t errors() const { return errors_; }
     std::size_t warnings() const { return warnings_; }
-    /// In the order of their places in the spec; those of other files last.
+    /// Returns the findings in the order of their places in the spec; those in other files come
+    /// last.
     std::vector<Diagnostic> sorted() const;
 
 private:
@@ -106,17 +106,17 @@ private:
     bool warnings_are_errors_;
 };
 
-/// What went wrong with a file other than the spec, found by a stage that does not know why the
-/// file was read.
+/// A problem with a file other than the spec, found by a stage that does not know why the file was
+/// read.
 struct Failure {
     Code code;
-    std::string message;  ///< names the array, what was found and what was expected; not the file
-                          ///< (data::in_file adds it)
+    /// names the array, what was found and what was expected; data::in_file adds the file
+    std::string message;
     std::uint32_t line = 0;
     std::uint32_t column = 0;
 };
 
-/// A value, or why there is none.
+/// A value, or the failure that prevented it.
 template <class T>
 class Result {
 public:
@@ -135,14 +135,14 @@ private:
     std::variant<T, Failure> content_;
 };
 
-/// The candidate nearest to `name` by edit distance, where one is near enough to be meant.
+/// Returns the candidate nearest to `name` by edit distance, if one is near enough to be meant.
 std::optional<std::string> nearest_name(std::string_view name,
                                         const std::vector<std::string>& candidates);
 
-/// What may stand at a place: "f32, f16 or i8".
+/// Joins words as alternatives: "f32, f16 or i8".
 std::string alternatives(const std::vector<std::string>& words);
 
-/// "1 episode", "2 episodes".
+/// Returns a count with its noun: "1 episode", "2 episodes".
 std::string counted(std::uint64_t n, const std::string& noun);
 
 }  // namespace etlc::diag

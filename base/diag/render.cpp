@@ -3,16 +3,129 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
-#include "diag/source_view.hpp"
 #include "source/escape.hpp"
+#include "source/utf8.hpp"
 
 namespace etlc::diag {
 
 namespace {
 
-/// Diagnostics shown in the text form; the summary counts them all.
+/// Diagnostics printed as text; the summary counts all of them.
 constexpr std::size_t kMaxShown = 200;
+
+/// Columns printed of a longer line.
+constexpr std::size_t kWindow = 120;
+constexpr std::size_t kContextBefore = 40;
+constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
+constexpr std::string_view kEllipsis = "...";
+
+/// One character of a line: its bytes, and the number of columns that it takes.
+struct Cell {
+    std::string_view bytes;
+    std::size_t offset;  ///< in the line
+    std::uint8_t width;
+};
+
+/// Returns the columns of a code point, after Unicode's East Asian Width and the general categories
+/// Mn and Cf, by their main blocks.
+std::uint8_t width_of(char32_t c) {
+    static constexpr std::array<source::CodePoints, 8> kZero{{{0x300, 0x36F},
+                                                              {0x483, 0x489},
+                                                              {0x591, 0x5BD},
+                                                              {0x610, 0x61A},
+                                                              {0x64B, 0x65F},
+                                                              {0x200B, 0x200F},
+                                                              {0x20D0, 0x20FF},
+                                                              {0xFE00, 0xFE0F}}};
+    static constexpr std::array<source::CodePoints, 10> kWide{{{0x1100, 0x115F},
+                                                               {0x2E80, 0x303E},
+                                                               {0x3041, 0x33FF},
+                                                               {0x3400, 0x4DBF},
+                                                               {0x4E00, 0x9FFF},
+                                                               {0xA000, 0xA4CF},
+                                                               {0xAC00, 0xD7A3},
+                                                               {0xF900, 0xFAFF},
+                                                               {0xFF00, 0xFF60},
+                                                               {0x1F300, 0x1FAFF}}};
+    if (source::is_in(kZero, c)) return 0;
+    return source::is_in(kWide, c) || (c >= 0x20000 && c <= 0x3FFFD) ? 2 : 1;
+}
+
+std::vector<Cell> cells_of(std::string_view line, std::size_t offset) {
+    std::vector<Cell> cells;
+    for (std::size_t i = 0; i < line.size();) {
+        const std::size_t length = source::utf8_length(line.substr(i));
+        const std::string_view bytes = line.substr(i, length == 0 ? 1 : length);
+        const char32_t value = length == 0 ? U'\0' : source::code_point(bytes);
+        const bool shown = value == U'\t' || !source::is_hidden(value);
+        cells.push_back(
+            {shown ? bytes : kReplacement, offset + i, shown ? width_of(value) : std::uint8_t{1}});
+        i += bytes.size();
+    }
+    return cells;
+}
+
+/// The part of a long line that is decoded; a line may have megabytes.
+struct Part {
+    std::size_t begin;
+    std::size_t end;
+};
+
+/// Moves back to the first byte of a character, at most three bytes, since the text may not be
+/// UTF-8.
+std::size_t character_begin(std::string_view line, std::size_t at) {
+    for (int i = 0; i < 3 && at > 0 && at < line.size() && source::is_continuation(line[at]); ++i)
+        --at;
+    return at;
+}
+
+Part part_around(std::string_view line, std::size_t at) {
+    if (line.size() <= kWindow) return {0, line.size()};
+    const std::size_t end_at_most = line.size() - kWindow;
+    const std::size_t begin =
+        character_begin(line, std::min(at > kContextBefore ? at - kContextBefore : 0, end_at_most));
+    return {begin, character_begin(line, std::min(line.size(), begin + kWindow))};
+}
+
+/// A source line and its carets, as a terminal shows them. The carets stand under the span whatever
+/// the line holds (tabs, wide and combining characters, bytes that are not UTF-8), and both lines
+/// have a bounded width.
+struct SourceView {
+    /// The line, or the part around the span between "..." where it is very long.
+    std::string text;
+    std::string carets;  ///< blanks (tabs where the line has them), then ^~~~
+};
+
+SourceView view(const source::File& file, source::Span span) {
+    const std::uint32_t line_number = file.position(span.begin).line;
+    const std::string_view line = file.line_text(line_number);
+    const std::size_t begin =
+        std::min<std::size_t>(span.begin - file.line_begin(line_number), line.size());
+    const std::size_t past = std::max(span.begin, span.end) - file.line_begin(line_number);
+    const std::size_t end =
+        std::clamp<std::size_t>(past, begin, line.size());  // only the first line of a longer span
+
+    const Part part = part_around(line, begin);
+    SourceView result;
+    if (part.begin > 0) result = {std::string(kEllipsis), std::string(kEllipsis.size(), ' ')};
+    bool started = false;
+    for (const Cell& cell : cells_of(line.substr(part.begin, part.end - part.begin), part.begin)) {
+        result.text += cell.bytes;
+        if (cell.offset < begin) {
+            result.carets += cell.bytes == "\t" ? std::string("\t") : std::string(cell.width, ' ');
+        } else if (!started || cell.offset < end) {
+            const std::size_t width = std::max<std::size_t>(cell.width, 1);
+            result.carets += std::string(width, '~');
+            if (!started) result.carets[result.carets.size() - width] = '^';
+            started = true;
+        }
+    }
+    if (!started) result.carets += '^';  // just after the last character of the line
+    if (part.end < line.size()) result.text += kEllipsis;
+    return result;
+}
 
 struct Palette {
     std::string_view bold, error, warning, note, caret, reset;

@@ -1,7 +1,5 @@
-// Diagnostics as text with carets, and as JSON.
-// Takes: the spec's file and a sink. Gives: `spec.etl:12:24: error: ... [E0204]`, the source line,
-// a caret under the span, then notes; or one JSON array. Keeps true: the same findings give the
-// same bytes.
+// Prints diagnostics as text with carets (`spec.etl:12:24: error: ... [E0204]`, the source line, a
+// caret under the span, then notes) or as JSON. The same findings give the same bytes.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "diag/render.hpp"
@@ -9,31 +10,27 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// file, line, column, end_line, end_column; null where unknown. The end is the position just after
-/// the span.
-void add_place(Json& to, const source::File& spec, const std::optional<source::Span>& span) {
-    to["file"] = spec.path();
-    for (const char* key : {"line", "column", "end_line", "end_column"}) to[key] = nullptr;
-    if (!span) return;
+/// Line, column, end_line and end_column; 0 where unknown. The end is just after the span.
+using Place = std::array<std::uint32_t, 4>;
+
+Place place_of(const source::File& spec, const std::optional<source::Span>& span) {
+    if (!span) return {};
     const source::Position begin = spec.position(span->begin);
     const source::Position end = spec.position(std::max(span->begin, span->end));
-    to["line"] = begin.line;
-    to["column"] = begin.column;
-    to["end_line"] = end.line;
-    to["end_column"] = end.column;
+    return {begin.line, begin.column, end.line, end.column};
 }
 
-void add_place(Json& to, const Diagnostic& diagnostic) {
-    to["file"] = diagnostic.file;
-    for (const char* key : {"line", "column", "end_line", "end_column"}) to[key] = nullptr;
-    if (diagnostic.line > 0) to["line"] = diagnostic.line;
-    if (diagnostic.line > 0 && diagnostic.column > 0) to["column"] = diagnostic.column;
+void add_place(Json& to, const std::string& file, const Place& place) {
+    constexpr std::array kKeys{"line", "column", "end_line", "end_column"};
+    to["file"] = file;
+    for (std::size_t i = 0; i < kKeys.size(); ++i)
+        to[kKeys[i]] = place[i] > 0 ? Json(place[i]) : Json();
 }
 
 Json note_of(const source::File& spec, const Note& note) {
     Json result;
     result["message"] = note.text;
-    add_place(result, spec, note.span);
+    add_place(result, spec.path(), place_of(spec, note.span));
     return result;
 }
 
@@ -45,9 +42,10 @@ Json diagnostic_of(const source::File& spec, const Diagnostic& diagnostic, Sever
     result["message"] = diagnostic.message;
     const bool in_spec = diagnostic.file.empty();
     if (in_spec)
-        add_place(result, spec, diagnostic.span);
+        add_place(result, spec.path(), place_of(spec, diagnostic.span));
     else
-        add_place(result, diagnostic);
+        add_place(result, diagnostic.file,
+                  {diagnostic.line, diagnostic.line > 0 ? diagnostic.column : 0});
     result["notes"] = Json::array();
     if (!in_spec && diagnostic.span)
         result["notes"].push_back(note_of(spec, {diagnostic.span, "named here"}));

@@ -1,8 +1,8 @@
 #include "source/escape.hpp"
 
-#include <array>
+#include <fmt/format.h>
+
 #include <cctype>
-#include <cstdio>
 
 #include "source/utf8.hpp"
 
@@ -10,13 +10,8 @@ namespace etlc::source {
 
 namespace {
 
-std::string hexadecimal(const char* format, unsigned value) {
-    std::array<char, 16> text;
-    const int size = std::snprintf(text.data(), text.size(), format, value);
-    return {text.data(), static_cast<std::size_t>(size)};
-}
-
-/// Calls `take` with each character, or byte that is no part of one, and whether it is a character.
+/// Calls `take` with each character, or each byte that belongs to none, and whether it is a
+/// character.
 template <class Take>
 void for_each_character(std::string_view text, const Take& take) {
     while (!text.empty()) {
@@ -35,9 +30,9 @@ std::string visible(std::string_view text) {
         if (!is_hidden(value))
             result += character;
         else if (character.size() == 1)
-            result += hexadecimal("\\x%02x", static_cast<unsigned char>(character[0]));
+            result += fmt::format("\\x{:02x}", static_cast<unsigned char>(character[0]));
         else
-            result += hexadecimal("\\u{%X}", static_cast<unsigned>(value));
+            result += fmt::format("\\u{{{:X}}}", static_cast<unsigned>(value));
     });
     return result;
 }
@@ -57,7 +52,7 @@ std::string visible_lines(std::string_view text) {
 std::string code_line(std::string_view text) {
     std::string line = visible(text);
     line.erase(line.find_last_not_of(' ') + 1);
-    // A backslash joins the next line to this one, and so does the trigraph for it.
+    // A backslash joins the next line to this one, and so does its trigraph.
     if (line.ends_with('\\')) return line + "x5c";
     if (line.ends_with("?\?/")) return line.substr(0, line.size() - 1) + "\\x2f";
     return line;
@@ -70,7 +65,7 @@ std::string json_string(std::string_view text) {
         if (!valid)
             result += "\\ufffd";
         else if (byte < 0x20)
-            result += hexadecimal("\\u%04x", byte);
+            result += fmt::format("\\u{:04x}", byte);
         else
             result.append(byte == '"' || byte == '\\' ? "\\" : "").append(character);
     });
@@ -105,7 +100,7 @@ std::optional<std::string> depfile_path(std::string_view path, InRule place) {
         if (c == '$') result += '$';
         result += c;
     }
-    // A home folder; a member of an archive; an end that one of them takes for its own.
+    // These are a home folder, a member of an archive, and an end that make or ninja interprets.
     if (path.empty() || path[0] == '~' ||
         std::string_view(") :").find(path.back()) != std::string_view::npos)
         return std::nullopt;

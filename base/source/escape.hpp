@@ -1,7 +1,6 @@
-// Text from outside - names of files, words of the spec, of data and of thresholds - made fit for
-// what it is printed to. Takes: any bytes. Gives: text that cannot break out of its place, and
-// shows a reader what it is. Keeps true: every outside text is printed through one of these, and
-// none of them changes plain words.
+// Escapes text from outside (file names, words of the spec, of data and of thresholds) for what it
+// is printed to, so that it cannot break out of its place and a reader sees what it is. All such
+// text is printed through these functions; plain words stay as they are.
 #pragma once
 
 #include <optional>
@@ -10,28 +9,28 @@
 
 namespace etlc::source {
 
-/// For terminals and messages, in one line: hidden characters (is_hidden) become \u{202E}, single
-/// bytes such as those that are not UTF-8 \x1b.
+/// Escapes for terminals and messages, in one line: hidden characters (is_hidden) become \u{202E},
+/// control bytes and bytes that are not UTF-8 become \x1b.
 std::string visible(std::string_view text);
 
-/// The same for reports of many lines, which keep their line ends.
+/// Escapes a report of many lines in the same way; line ends stay.
 std::string visible_lines(std::string_view text);
 
-/// For a line of generated code that ends in an outside text, as a comment: visible, and the next
-/// line is not part of it.
+/// Escapes text at the end of a comment in generated code, so that the next line does not belong to
+/// it.
 std::string code_line(std::string_view text);
 
-/// For JSON: in double quotes; bytes that are not UTF-8 become U+FFFD.
+/// Returns the text as a JSON string in quotes; bytes that are not UTF-8 become U+FFFD.
 std::string json_string(std::string_view text);
 
-/// A cell of a CSV row: in quotes where it has to be.
+/// Returns the text as a cell of a CSV row, in quotes where necessary.
 std::string csv_cell(std::string_view text);
 
-/// For DOT: in double quotes.
+/// Returns the text as a DOT string in quotes.
 std::string dot_string(std::string_view text);
 
-/// For a dependency file: a path as make and ninja both read it; nothing where one of them cannot
-/// (each has names that the other takes).
+/// Escapes a path for a dependency file that make and ninja both read; nothing where one of them
+/// cannot (each accepts names that the other does not).
 enum class InRule { target, prerequisite };
 std::optional<std::string> depfile_path(std::string_view path, InRule place);
 

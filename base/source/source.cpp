@@ -3,17 +3,19 @@
 #include <algorithm>
 #include <limits>
 
+#include "source/utf8.hpp"
+
 namespace etlc::source {
 
 namespace {
 
-/// Code points are counted once per block, so that a position costs the same wherever it is in a
-/// line of megabytes.
+/// Code points are counted once per block, so that finding a position costs the same everywhere in
+/// a line of megabytes.
 constexpr std::uint32_t kBlock = 1024;
 
 std::uint32_t count_code_points(std::string_view text) {
-    const auto begins_one = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };
-    return static_cast<std::uint32_t>(std::count_if(text.begin(), text.end(), begins_one));
+    return static_cast<std::uint32_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return !is_continuation(c); }));
 }
 
 }  // namespace
@@ -23,7 +25,7 @@ Span join(Span a, Span b) {
 }
 
 File::File(std::string path, std::string text) : path_(std::move(path)), text_(std::move(text)) {
-    // Offsets have 32 bits; whoever reads files refuses such a size long before.
+    // Offsets have 32 bits; callers that read files refuse such a size long before.
     if (text_.size() >= std::numeric_limits<std::uint32_t>::max())
         text_.resize(std::numeric_limits<std::uint32_t>::max() - 1);
     const std::string_view all = text_;

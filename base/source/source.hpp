@@ -1,7 +1,7 @@
-// The text of one input file and the places in it.
-// Takes: a path and its bytes. Gives: spans (byte ranges), and their line and column.
-// Keeps true: every offset in [0, size] has a position; lines end at \n or \r\n; columns count code
-// points from 1.
+// Holds the text of one input file and maps byte offsets to lines and columns. Every offset in [0,
+// size] has a position; lines end at
+//  or \r
+// ; columns count code points from 1.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct Span {
     bool operator==(const Span&) const = default;
 };
 
-/// The smallest span that covers both.
+/// Returns the smallest span that covers both.
 Span join(Span a, Span b);
 
 /// Line and column, both from 1, as editors show them.
@@ -39,7 +39,7 @@ public:
 
     Position position(std::uint32_t offset) const;
     std::uint32_t line_count() const { return static_cast<std::uint32_t>(line_begins_.size()); }
-    /// The words of line `line` (from 1), without its line end.
+    /// Returns line `line` (from 1) without its line end.
     std::string_view line_text(std::uint32_t line) const;
     std::uint32_t line_begin(std::uint32_t line) const { return line_begins_[line - 1]; }
 
@@ -50,7 +50,7 @@ private:
     std::string text_;
     std::vector<std::uint32_t> line_begins_{0};
     std::vector<std::uint32_t> code_points_before_{
-        0};  ///< entry i: in the first i blocks of 1024 bytes
+        0};  ///< entry i counts those in the first i blocks of 1024 bytes
 };
 
 }  // namespace etlc::source

@@ -1,8 +1,5 @@
 #include "source/utf8.hpp"
 
-#include <algorithm>
-#include <array>
-
 namespace etlc::source {
 
 std::size_t utf8_length(std::string_view text) {
@@ -14,9 +11,8 @@ std::size_t utf8_length(std::string_view text) {
     const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
     if (text.size() < length) return 0;
     for (std::size_t i = 1; i < length; ++i)
-        if ((byte(i) & 0xC0U) != 0x80U) return 0;
-    // The second byte rules out what a shorter form could say, surrogates, and values above
-    // U+10FFFF.
+        if (!is_continuation(text[i])) return 0;
+    // The second byte excludes overlong forms, surrogates and values above U+10FFFF.
     const bool overlong = (lead == 0xE0 && byte(1) < 0xA0) || (lead == 0xF0 && byte(1) < 0x90);
     const bool surrogate = lead == 0xED && byte(1) >= 0xA0;
     const bool too_large = lead == 0xF4 && byte(1) >= 0x90;
@@ -44,30 +40,25 @@ char32_t code_point(std::string_view character) {
 }
 
 bool is_hidden(char32_t character) {
-    struct Range {
-        char32_t first, last;
-    };
     // C0; DEL and C1; soft hyphen; Arabic letter mark; fillers; Mongolian vowel separators; zero
     // widths, directions; separators, embeddings; joiners, isolates; byte order mark; annotations;
     // tags.
-    constexpr std::array<Range, 15> kHidden{{{0, 0x1F},
-                                             {0x7F, 0x9F},
-                                             {0xAD, 0xAD},
-                                             {0x61C, 0x61C},
-                                             {0x115F, 0x1160},
-                                             {0x17B4, 0x17B5},
-                                             {0x180B, 0x180F},
-                                             {0x200B, 0x200F},
-                                             {0x2028, 0x202E},
-                                             {0x2060, 0x206F},
-                                             {0x3164, 0x3164},
-                                             {0xFEFF, 0xFEFF},
-                                             {0xFFA0, 0xFFA0},
-                                             {0xFFF0, 0xFFFB},
-                                             {0xE0000, 0xE0FFF}}};
-    return std::any_of(kHidden.begin(), kHidden.end(), [character](Range r) {
-        return r.first <= character && character <= r.last;
-    });
+    constexpr std::array<CodePoints, 15> kHidden{{{0, 0x1F},
+                                                  {0x7F, 0x9F},
+                                                  {0xAD, 0xAD},
+                                                  {0x61C, 0x61C},
+                                                  {0x115F, 0x1160},
+                                                  {0x17B4, 0x17B5},
+                                                  {0x180B, 0x180F},
+                                                  {0x200B, 0x200F},
+                                                  {0x2028, 0x202E},
+                                                  {0x2060, 0x206F},
+                                                  {0x3164, 0x3164},
+                                                  {0xFEFF, 0xFEFF},
+                                                  {0xFFA0, 0xFFA0},
+                                                  {0xFFF0, 0xFFFB},
+                                                  {0xE0000, 0xE0FFF}}};
+    return is_in(kHidden, character);
 }
 
 }  // namespace etlc::source

@@ -1,7 +1,6 @@
-// The spec as written: one plain struct a construct, each with its span. Names are not resolved,
-// nothing is checked. Takes: what parse/ saw. Gives: check/ its input, and `--emit ast` its text.
-// Keeps true: declarations stand in file order; && and || are n-ary, so a long chain is not a deep
-// tree.
+// The spec as written: one plain struct for each construct, with its span. Names are not resolved
+// and nothing is checked. Declarations are in file order; && and || are n-ary, so a long chain is
+// not a deep tree.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "ast/operators.hpp"
 #include "source/source.hpp"
 
 namespace etlc::ast {
@@ -23,13 +23,13 @@ struct Name {
     Span span;
 };
 
-/// A decimal number, kept as its exact text: it rounds once, where it is used.
+/// A decimal number as its exact text, which is rounded once, where it is used.
 struct Number {
-    std::string text;  ///< with a leading '-' where it was negated; or "inf", "-inf" (bounds and
-                       ///< ranges only)
+    /// with a leading '-' where it was negated; "inf" or "-inf" in bounds and ranges only
+    std::string text;
     Span span;
-    std::string constant{};  ///< the constant that stands for it; until check/ puts its value into
-                             ///< `text`, that is the name as well
+    /// name of the constant used here; `text` is that name too until check/ substitutes the value
+    std::string constant{};
 };
 
 // ---- expressions: EXPR --------------------------------------------------------------------------
@@ -42,24 +42,24 @@ struct MatrixLiteral {
 /// load("file.npy") or load("file.npz", "key")
 struct Load {
     std::string path;
-    std::string key;  ///< empty: none given
+    std::string key;  ///< empty if none was given
     Span path_span;
     Span key_span;
     Span span;
 };
 
-/// [1, 2, 3]: the diagonal of a weight matrix.
+/// [1, 2, 3], the diagonal of a weight matrix.
 struct VectorLiteral {
     std::vector<Number> values;
     Span span;
 };
 
-/// frames("file.npz", "z", [120, 180]), or frames("file.npz", "z", [10, 50], stride = 5); of a
-/// video frames("file.mp4", [120, 180])
+/// frames("file.npz", "z", [120, 180]), or frames("file.npz", "z", [10, 50], stride = 5); for a
+/// video frames("file.mp4", [120, 180]).
 struct Frames {
     std::string path;
-    std::string key;             ///< empty: of a video
-    std::vector<Number> frames;  ///< with a stride: the first and the last
+    std::string key;             ///< empty for a video
+    std::vector<Number> frames;  ///< with a stride, the first and the last
     std::optional<Number> stride;
     Span path_span;
     Span key_span;
@@ -69,18 +69,24 @@ struct Frames {
 
 /// images("bay/*.png")
 struct Images {
-    std::string path;  ///< of an image, a folder or a pattern
+    std::string path;  ///< an image, a folder or a pattern
     Span path_span;
     Span span;
 };
 
 /// z, [px, py], P(z) or P(Q([px, py])).
 struct Point {
-    std::vector<Name> projections;  ///< from the outermost
+    std::vector<Name> projections;  ///< outermost first
     std::vector<Name> inputs;       ///< one embedding input, or the scalars of a vector
     bool is_vector = false;         ///< written with brackets
     Span span;
 };
+
+/// Returns the span of the alternative that a variant holds.
+template <class... Alternatives>
+Span span_of(const std::variant<Alternatives...>& value) {
+    return std::visit([](const auto& v) { return v.span; }, value);
+}
 
 struct Formula;
 using FormulaPtr = std::unique_ptr<Formula>;
@@ -96,20 +102,20 @@ struct Fitted {
     Span span;
 };
 
-/// M of mahalanobis(M): loaded, a literal matrix or diagonal, fitted, or the name of a target.
+/// M in mahalanobis(M): loaded, a literal matrix or diagonal, fitted, or the name of a target.
 using Weights = std::variant<Load, MatrixLiteral, VectorLiteral, Fitted, Name>;
 
 struct Aggregation {
-    enum class Kind : std::uint8_t { min, max, mean, kth };
+    using Kind = AggregationKind;
     Kind kind = Kind::min;
-    std::optional<Number> n;  ///< of kth(n)
+    std::optional<Number> n;  ///< n in kth(n)
     Span span;
 };
 
 /// AGG DIST(point, target)
 struct Distance {
     std::optional<Aggregation> aggregation;
-    Name metric;  ///< a word of distances.def; its span is the word's
+    Name metric;  ///< a word of distances.def
     std::optional<Weights> weights;
     Point point;
     Name target;
@@ -120,44 +126,22 @@ struct Expr;
 using ExprPtr = std::unique_ptr<Expr>;
 
 struct Expr {
-    enum class Kind : std::uint8_t {
-        number,
-        name,
-        distance,
-        negate,
-        add,
-        subtract,
-        multiply,
-        divide,
-        abs,
-        sqrt,
-        min,
-        max
-    };
+    using Kind = ExprKind;
     Kind kind = Kind::number;
-    std::string text;                    ///< number: its digits; name: the input or constant
-    std::string constant;                ///< number: the name that stood for it, as in Number
-    std::unique_ptr<Distance> distance;  ///< kind distance
-    /// Operands, in order; add and multiply etc. are binary, left-associated.
+    std::string text;      ///< digits of a number, or name of an input or constant
+    std::string constant;  ///< name of the constant that gave the number, as in Number
+    std::unique_ptr<Distance> distance;  ///< only for kind distance
+    /// Operands in order; add, multiply etc. are binary and associate to the left.
     std::vector<ExprPtr> arguments;
     Span span;
 };
 
 // ---- formulas -----------------------------------------------------------------------------------
 
-enum class Comparison : std::uint8_t {
-    less_equal,
-    less,
-    greater_equal,
-    greater,
-    equal,
-    not_equal,
-};
-
-/// The unit of what says that it is a number of steps: `2 steps`, `1 step`.
+/// The unit of explicit numbers of steps: `2 steps`, `1 step`.
 inline constexpr std::string_view kStepsUnit = "steps";
 
-/// One bound of an interval, or of `held` or `hold`: steps, a duration, or inf.
+/// One bound of an interval, or the time in `held` or `hold`: steps, a duration, or inf.
 struct Bound {
     Number number;
     std::string unit;  ///< "", "us", "ms", "s", "min", kStepsUnit
@@ -176,51 +160,36 @@ struct Formula {
         constant_false,
         name,
         comparison,
-        negation,
-        conjunction,
-        disjunction,
-        implication,
-        equivalence,
-        next,
-        eventually,
-        always,
-        until,
-        weak_until,
-        release,
-        previous,
-        once,
-        historically,
-        since,
-        rise,
-        fall,
-        held,
+#define OPERATOR(name, ...) name,
+#include "ast/operators.def"
+#undef OPERATOR
     };
     Kind kind = Kind::constant_true;
-    std::string name;  ///< kind name
-    /// Conjunction and disjunction: two or more; implication etc.: left, right.
+    std::string name;  ///< only for kind name
+    /// Two or more for conjunction and disjunction; left and right for implication etc.
     std::vector<FormulaPtr> operands;
-    std::optional<Interval> interval;  ///< of held[D]: [0, D]
-    ExprPtr left;                      ///< comparison: EXPR CMP EXPR
+    std::optional<Interval> interval;  ///< [0, D] for held[D]
+    ExprPtr left;                      ///< EXPR CMP EXPR, for kind comparison
     Comparison comparison = Comparison::less_equal;
     ExprPtr right;
-    Span operator_span;  ///< of the operator's own word or symbol
+    Span operator_span;  ///< only the operator's word or symbol
     Span span;
 };
 
 // ---- declarations -------------------------------------------------------------------------------
 
-/// What becomes of a duration that is not a whole number of steps; exact: it is an error.
+/// Rounding of a duration that is not a whole number of steps; with `exact` it is an error.
 enum class Rounding : std::uint8_t { exact, up, down, nearest };
 
 struct Rate {
     Number number;
-    bool is_period = false;  ///< period N ms; else rate N Hz
-    std::string unit;        ///< "Hz", or "us", "ms", "s", "min"; "": that of a constant
+    bool is_period = false;  ///< period N ms; otherwise rate N Hz
+    std::string unit;  ///< "Hz", or "us", "ms", "s", "min"; empty where a constant has the unit
     Rounding durations = Rounding::exact;
     Span span;
 };
 
-std::string_view word(Rounding rounding);  ///< "up"
+std::string_view word(Rounding rounding);
 
 /// const NAME = NUMBER UNIT
 struct Constant {
@@ -263,7 +232,7 @@ struct Input {
     std::optional<Name> encoder;  ///< `by NAME`
     std::optional<Range> range;
     std::optional<Bound> hold;
-    std::optional<bool> missing;  ///< what a sample that is not there counts as
+    std::optional<bool> missing;  ///< value that replaces a missing sample
     Span span;
 };
 
@@ -278,12 +247,12 @@ struct Projection {
 };
 
 struct Target {
-    /// A VectorLiteral is an error that check/ explains.
+    /// A VectorLiteral is an error, which check/ explains.
     using Source = std::variant<Load, MatrixLiteral, VectorLiteral, Frames, Images, Fitted>;
 
     Name name;
-    std::vector<Source> sources;  ///< one that is fitted stands alone
-    std::optional<Name> encoder;  ///< `by NAME`: of the images and videos among the sources
+    std::vector<Source> sources;  ///< a fitted source is the only one
+    std::optional<Name> encoder;  ///< `by NAME`, for the images and videos among the sources
     std::optional<Point> space;   ///< `of P(z)`
     Span span;
 };
@@ -304,7 +273,7 @@ struct Predicate {
     ExprPtr expression;
     Comparison comparison = Comparison::less_equal;
     std::variant<ExprPtr, Calibrated> threshold;
-    std::optional<bool> missing;  ///< what it counts as where it is unknown
+    std::optional<bool> missing;  ///< value of the predicate where it is unknown
     Span span;
 };
 
@@ -333,15 +302,15 @@ using Declaration = std::variant<Rate, Constant, Encoder, Input, Projection, Tar
                                  Truth, Let, Monitor>;
 
 struct Spec {
-    Name name;  ///< empty text: missing or unreadable, already reported
+    Name name;  ///< empty if missing or unreadable, which has been reported
     std::vector<Declaration> declarations;
-    /// Names of declarations that could not be read. check/ takes them as declared, so that one
-    /// broken line does not make every use of its name an error too. The reserved word `rate`
-    /// stands for a `rate` or `period` declaration.
+    /// Names in declarations that could not be read. check/ takes them as declared, so that one
+    /// broken line does not make every use of its name an error. The reserved word `rate` stands
+    /// for a `rate` or `period` declaration.
     std::vector<Name> unreadable;
 };
 
-/// A spec rebuilt as text, one declaration a line in canonical form. `--emit ast`; parsing it again
+/// Prints a spec in canonical form, one declaration a line, for `--emit ast`; parsing the text
 /// gives the same tree.
 std::string print(const Spec& spec);
 std::string print(const Formula& formula);

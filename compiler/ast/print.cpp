@@ -1,20 +1,15 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <memory>
 #include <string_view>
 #include <utility>
 
 #include "ast/ast.hpp"
-#include "ast/operators.hpp"
 
 namespace etlc::ast {
 
 namespace {
-
-std::string_view symbol(Comparison comparison) {
-    constexpr std::array<std::string_view, 6> kSymbols{"<=", "<", ">=", ">", "==", "!="};
-    return kSymbols[static_cast<std::size_t>(comparison)];
-}
 
 template <class Items, class Print>
 std::string joined(const Items& items, std::string_view separator, Print print) {
@@ -64,8 +59,9 @@ std::string text_of(const Images& images) {
 std::string text_of(const Calibrated& calibrated);
 std::string text_of(const Fitted& fitted);
 
-std::string text_of(const FormulaPtr& formula) {
-    return print(*formula);
+template <class Node>
+std::string text_of(const std::unique_ptr<Node>& node) {
+    return print(*node);
 }
 
 std::string text_of(const Point& point) {
@@ -76,22 +72,14 @@ std::string text_of(const Point& point) {
     return text;
 }
 
-std::string text_of(const ExprPtr& expression) {
-    return print(*expression);
-}
-
 template <class... Alternatives>
 std::string text_of(const std::variant<Alternatives...>& value) {
     return std::visit([](const auto& v) { return text_of(v); }, value);
 }
 
 std::string text_of(const Aggregation& aggregation) {
-    switch (aggregation.kind) {
-        case Aggregation::Kind::min: return "min ";
-        case Aggregation::Kind::max: return "max ";
-        case Aggregation::Kind::mean: return "mean ";
-        case Aggregation::Kind::kth: break;
-    }
+    if (aggregation.kind != Aggregation::Kind::kth)
+        return fmt::format("{} ", word(aggregation.kind));
     return fmt::format("kth({}) ", aggregation.n ? aggregation.n->text : "1");
 }
 
@@ -103,85 +91,26 @@ std::string text_of(const Distance& distance) {
                        text_of(distance.point), distance.target.text);
 }
 
-std::string text_of(const Fitted& fitted) {
+/// "calibrated(f1)", "fitted(kmeans, k = 8, ...)".
+template <class Call>
+std::string call_text(std::string_view word, const Call& call) {
     std::string arguments;
-    for (const Fitted::Argument& a : fitted.arguments)
+    for (const auto& a : call.arguments)
         arguments += fmt::format(", {} = {}", a.key.text, text_of(a.value));
-    return fmt::format("fitted({}{})", fitted.method.text, arguments);
+    return fmt::format("{}({}{})", word, call.method.text, arguments);
 }
 
-// ---- expressions --------------------------------------------------------------------------------
-
-/// How tight an expression binds, from the loosest.
-enum ExprLevel : std::uint8_t { kSum, kProduct, kSign, kPrimary };
-
-ExprLevel level_of(const Expr& expression) {
-    switch (expression.kind) {
-        case Expr::Kind::add:
-        case Expr::Kind::subtract: return kSum;
-        case Expr::Kind::multiply:
-        case Expr::Kind::divide: return kProduct;
-        case Expr::Kind::negate: return kSign;
-        default: return kPrimary;
-    }
+std::string text_of(const Fitted& fitted) {
+    return call_text("fitted", fitted);
 }
 
-/// Appends, so that a long chain takes linear time.
-class ExprPrinter {
-public:
-    explicit ExprPrinter(std::string& text) : text_(text) {}
-
-    void print(const Expr& e, ExprLevel needed) {
-        const bool brackets = level_of(e) < needed;
-        if (brackets) text_ += '(';
-        print(e);
-        if (brackets) text_ += ')';
-    }
-
-private:
-    void print(const Expr& e) {
-        switch (e.kind) {
-            case Expr::Kind::number:
-            case Expr::Kind::name: text_ += e.text; break;
-            case Expr::Kind::distance: text_ += text_of(*e.distance); break;
-            case Expr::Kind::negate:
-                text_ += '-';
-                print(*e.arguments[0], kSign);
-                break;
-            case Expr::Kind::add: binary(e, " + "); break;
-            case Expr::Kind::subtract: binary(e, " - "); break;
-            case Expr::Kind::multiply: binary(e, " * "); break;
-            case Expr::Kind::divide: binary(e, " / "); break;
-            case Expr::Kind::abs: call(e, "abs"); break;
-            case Expr::Kind::sqrt: call(e, "sqrt"); break;
-            case Expr::Kind::min: call(e, "min"); break;
-            case Expr::Kind::max: call(e, "max"); break;
-        }
-    }
-
-    void binary(const Expr& e, std::string_view op) {
-        const ExprLevel level = level_of(e);
-        print(*e.arguments[0], level);
-        text_ += op;
-        print(*e.arguments[1], static_cast<ExprLevel>(level + 1));  // left associative
-    }
-
-    void call(const Expr& e, std::string_view function) {
-        text_ += function;
-        text_ += '(';
-        for (const ExprPtr& argument : e.arguments) {
-            if (&argument != &e.arguments.front()) text_ += ", ";
-            print(*argument, kSum);
-        }
-        text_ += ')';
-    }
-
-    std::string& text_;
-};
+std::string text_of(const Calibrated& calibrated) {
+    return call_text("calibrated", calibrated);
+}
 
 // ---- formulas -----------------------------------------------------------------------------------
 
-/// "1 step", "n steps"
+/// "1 step", "n steps".
 std::string unit_word(const Number& number, const std::string& unit) {
     return unit == kStepsUnit && number.text == "1" ? "step" : unit;
 }
@@ -197,74 +126,53 @@ std::string text_of(const Interval& interval) {
     return fmt::format("[{}, {}]", text_of(interval.low), text_of(interval.high));
 }
 
-class FormulaPrinter {
-public:
-    explicit FormulaPrinter(std::string& text) : text_(text) {}
+FormulaLevel level_of(const Formula& f) {
+    if (const Operator* const op = operator_of(f.kind)) return op->level;
+    return f.kind == Formula::Kind::comparison ? kComparison : kAtom;
+}
 
-    void print(const Formula& f, FormulaLevel needed) {
-        const bool brackets = operator_of(f.kind).level < needed;
-        if (brackets) text_ += '(';
-        print(f);
-        if (brackets) text_ += ')';
+/// Returns the level that an operand needs to stand without brackets.
+FormulaLevel needed_by(const Formula& f, bool is_first) {
+    switch (level_of(f)) {
+        case kIff: return is_first ? kIff : kImplies;
+        case kImplies: return is_first ? kOr : kImplies;
+        case kOr: return kAnd;
+        case kAnd: return kBinary;
+        case kBinary: return is_first ? kPrefix : kBinary;
+        // `!x > 0` means !(x > 0); the brackets help readers who know another language.
+        default: return f.operands[0]->kind == Formula::Kind::comparison ? kAtom : kPrefix;
     }
+}
 
-private:
-    void print(const Formula& f) {
-        const Operator op = operator_of(f.kind);
-        switch (op.level) {
-            case kAtom:
-                text_ += f.kind == Formula::Kind::name ? std::string_view(f.name) : op.symbol;
-                break;
-            case kComparison: comparison(f); break;
-            case kPrefix: prefix(f, op); break;
-            case kIff: chain(f, op, kIff, kImplies); break;
-            case kImplies: chain(f, op, kOr, kImplies); break;
-            case kOr: chain(f, op, kAnd, kAnd); break;
-            case kAnd: chain(f, op, kBinary, kBinary); break;
-            case kBinary: chain(f, op, kPrefix, kBinary); break;
-        }
-    }
+std::string operator_text(const Formula& f) {
+    std::string text(operator_of(f.kind)->symbol);
+    if (f.kind == Formula::Kind::held) return text + fmt::format("[{}]", text_of(f.interval->high));
+    return f.interval ? text + text_of(*f.interval) : text;
+}
 
-    void comparison(const Formula& f) {
-        ExprPrinter(text_).print(*f.left, kSum);
-        text_ += fmt::format(" {} ", symbol(f.comparison));
-        ExprPrinter(text_).print(*f.right, kSum);
-    }
-
-    void prefix(const Formula& f, const Operator& op) {
-        text_ += op.symbol;
-        if (f.kind == Formula::Kind::held)
-            text_ += fmt::format("[{}]", text_of(f.interval->high));
-        else if (f.interval)
-            text_ += text_of(*f.interval);
-        if (f.kind != Formula::Kind::negation) text_ += ' ';
-        // `!x > 0` is !(x > 0); the brackets are there for readers who know another language.
-        const bool compared = f.operands[0]->kind == Formula::Kind::comparison;
-        print(*f.operands[0], compared ? kAtom : kPrefix);
-    }
-
-    /// The first operand needs `first` or tighter, the others `rest`.
-    void chain(const Formula& f, const Operator& op, FormulaLevel first, FormulaLevel rest) {
+/// Appends, so that a long chain takes linear time.
+void append(std::string& text, const Formula& f, FormulaLevel needed) {
+    const FormulaLevel level = level_of(f);
+    if (level < needed) text += '(';
+    if (f.kind == Formula::Kind::name) {
+        text += f.name;
+    } else if (level == kAtom) {
+        text += f.kind == Formula::Kind::constant_true ? "true" : "false";
+    } else if (level == kComparison) {
+        text += fmt::format("{} {} {}", print(*f.left), symbol(f.comparison), print(*f.right));
+    } else {
+        if (level == kPrefix) text += operator_text(f);
+        if (level == kPrefix && f.kind != Formula::Kind::negation) text += ' ';
         for (const FormulaPtr& operand : f.operands) {
             const bool is_first = &operand == &f.operands.front();
-            if (!is_first) {
-                text_ += fmt::format(" {}{} ", op.symbol, f.interval ? text_of(*f.interval) : "");
-            }
-            print(*operand, is_first ? first : rest);
+            if (!is_first) text += fmt::format(" {} ", operator_text(f));
+            append(text, *operand, needed_by(f, is_first));
         }
     }
-
-    std::string& text_;
-};
+    if (level < needed) text += ')';
+}
 
 // ---- declarations -------------------------------------------------------------------------------
-
-std::string text_of(const Calibrated& calibrated) {
-    std::string arguments;
-    for (const Calibrated::Argument& a : calibrated.arguments)
-        arguments += fmt::format(", {} = {}", a.key.text, text_of(a.value));
-    return fmt::format("calibrated({}{})", calibrated.method.text, arguments);
-}
 
 std::string text_of(const Type& type) {
     constexpr std::array<std::string_view, 4> kWords{"f32", "f16", "i8", "bool"};
@@ -366,13 +274,17 @@ std::string print(const Spec& spec) {
 
 std::string print(const Formula& formula) {
     std::string text;
-    FormulaPrinter(text).print(formula, kIff);
+    append(text, formula, kIff);
     return text;
 }
 
 std::string print(const Expr& expression) {
     std::string text;
-    ExprPrinter(text).print(expression, kSum);
+    const auto leaf = [](const Expr& e) {
+        return e.kind == Expr::Kind::distance ? text_of(*e.distance) : e.text;
+    };
+    const auto argument = [](const ExprPtr& e) -> const Expr& { return *e; };
+    append(text, expression, leaf, argument);
     return text;
 }
 

@@ -1,8 +1,6 @@
 #include "check/check.hpp"
 
-#include "check/context/steps.hpp"
-#include "check/guarantees/retargetable.hpp"
-#include "check/inspect.hpp"
+#include "check/context/context.hpp"
 
 namespace etlc::check {
 

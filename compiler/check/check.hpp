@@ -1,25 +1,55 @@
-// Syntax tree to typed spec.
-// Takes: the tree, and the files it loads (paths relative to the spec). Gives: the model, or
-// nothing where there was an error. Keeps true: all errors are reported in one go, each cause once;
-// a broken declaration hides no other and causes no cascade.
+// Checks a syntax tree and returns the typed model. All errors are reported in one run, each cause
+// once; a broken declaration hides no other errors and causes no cascade.
 #pragma once
 
 #include <optional>
+#include <string>
+#include <unordered_map>
 
 #include "ast/ast.hpp"
+#include "check/context/matrix.hpp"
 #include "check/context/options.hpp"
+#include "check/context/scope.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::check {
 
-/// Nothing where there was an error, or where a target is allowed to be missing and is.
+/// Returns nothing after an error, or where a target is missing and --check allows it.
 std::optional<Model> check(ast::Spec spec, const source::File& file, const Options& options,
                            diag::Sink& sink);
 
-/// What `etlc embed` needs: of the model the encoders, the inputs, what the targets encode, and the
-/// rate. Nothing where there was an error in these.
+/// Checks what `etlc embed` needs: encoders, inputs, the images and videos of targets, and the
+/// rate. Returns nothing after an error in these.
 std::optional<Model> check_encoded(ast::Spec spec, const source::File& file, const Options& options,
                                    diag::Sink& sink);
+
+/// The result for a spec that may have errors, for editors: the model as far as it could be built,
+/// and the meaning of each name. Elements with errors are marked broken; their model elements are
+/// not valid.
+struct Inspected {
+    struct Named {
+        NameKind kind = NameKind::unreadable;
+        Index index = 0;  ///< in the model's elements of that kind
+        bool broken = false;
+    };
+
+    Model model;
+    bool complete = false;  ///< whether check() would return a model
+    std::unordered_map<std::string, Named> names;
+    /// The rate or period, "20" and "Hz"; empty if the spec has no usable one.
+    std::string step_number;
+    std::string step_unit;
+
+    /// Returns null if the name is unknown or its declaration is broken.
+    const Named* find(const std::string& name) const {
+        const auto found = names.find(name);
+        return found == names.end() || found->second.broken ? nullptr : &found->second;
+    }
+};
+
+/// `known` caches the contents of files between calls; afterwards it holds those of this spec.
+Inspected inspect(ast::Spec spec, const source::File& file, const Options& options,
+                  KnownMatrices& known, diag::Sink& sink);
 
 }  // namespace etlc::check

@@ -1,5 +1,5 @@
 // --emit report: the figures of the head of the file, and those of its parts.
-#include "check/formulas/gaps.hpp"
+#include "check/formulas/horizons.hpp"
 #include "diag/diag.hpp"
 #include "emit/context.hpp"
 #include "emit/emit.hpp"

@@ -1,7 +1,6 @@
-// ANTLR's parse tree to ast:: structs.
-// Takes: the contexts of one declaration. Gives: its struct. Throws SyntaxError where the grammar
-// takes more than the language: expressions in place of formulas and the other way round, chained
-// comparisons, trees of more than kMaxHeight.
+// Turns ANTLR's parse trees into ast:: structs. Throws SyntaxError where the grammar accepts more
+// than the language: expressions in place of formulas and vice versa, chained comparisons, trees
+// higher than kMaxHeight.
 #pragma once
 
 #include <string>
@@ -20,7 +19,7 @@ class Builder {
 public:
     explicit Builder(const source::File& file) : file_(file) {}
 
-    /// A `spec NAME;` gives its name.
+    /// Returns the name in `spec NAME;`, or the declaration.
     std::variant<ast::Name, ast::Declaration> declaration(
         Grammar::DeclarationContext& context) const;
 
@@ -35,11 +34,11 @@ private:
     using Formula = Tree<ast::FormulaPtr>;
 
     // declarations.cpp
-    static ast::Rounding rounding(Grammar::RoundingContext* context);  ///< null: none is written
+    static ast::Rounding rounding(Grammar::RoundingContext* context);  ///< null if not written
     ast::Rate period(Grammar::PeriodDeclarationContext& context, source::Span span) const;
     ast::Constant constant(Grammar::ConstDeclarationContext& context, source::Span span) const;
     ast::Encoder encoder(Grammar::EncoderDeclarationContext& context, source::Span span) const;
-    /// Null: none is written.
+    /// `context` is null if not written.
     std::optional<ast::Name> encoded_by(Grammar::EncodedByContext* context) const;
     ast::Input input(Grammar::InputDeclarationContext& context, source::Span span) const;
     ast::Type type(Grammar::TypeContext& context) const;
@@ -50,10 +49,12 @@ private:
     ast::Target::Source target_source(Grammar::SourceContext& context) const;
     ast::Predicate predicate(Grammar::PredicateDeclarationContext& context,
                              source::Span span) const;
-    static std::optional<bool> missing(Grammar::MissingContext* context);  ///< null: not written
+    static std::optional<bool> missing(Grammar::MissingContext* context);  ///< null if not written
     ast::Monitor monitor(Grammar::MonitorDeclarationContext& context, source::Span span) const;
     ast::Calibrated calibrated(Grammar::CalibratedContext& context) const;
     std::string content(const Token& string) const;  ///< without its quotes
+    template <class Named, class Context>
+    void set_file(Named& to, const Context& context) const;  ///< sets path and key
     ast::Load load(Grammar::LoadContext& context) const;
     ast::Frames frames(Grammar::FramesContext& context) const;
     ast::Fitted fitted(Grammar::FittedContext& context) const;
@@ -62,8 +63,7 @@ private:
         Grammar::LiteralContext& context) const;
     ast::Name name(const Grammar::NameContext& context) const;
     ast::Number number(const Token& token) const;
-    /// Of a rule that is an amount with or without '-': the text of both, blanks between them left
-    /// out.
+    /// Reads an amount with an optional '-' into one text without blanks.
     ast::Number number(const ParserRuleContext& context) const;
 
     // expressions.cpp
@@ -74,7 +74,9 @@ private:
     Expression expression(Grammar::PrimaryContext& context) const;
     Expression call(const Token& function, const std::vector<Grammar::FormulaContext*>& arguments,
                     const ParserRuleContext& whole) const;
-    /// Operands of one level of precedence, grouped to the left.
+    static Expression combined(ast::ExprKind kind, source::Span span, source::Span op,
+                               std::vector<Expression> arguments);
+    /// Reads operands of one level of precedence, grouped to the left.
     template <class Operand>
     Expression chain(const ParserRuleContext& context) const;
     std::unique_ptr<ast::Distance> distance(Grammar::DistanceContext& context) const;
@@ -92,9 +94,9 @@ private:
     Formula formula(Grammar::ComparisonContext& context) const;
     Formula formula(Grammar::PrimaryContext& context) const;
     template <class Operand>
-    Formula n_ary(const ParserRuleContext& context, ast::Formula::Kind kind) const;
-    Formula combined(ast::Formula::Kind kind, const Token& op, source::Span span, Formula left,
-                     Formula right) const;
+    Formula n_ary(const ParserRuleContext& context) const;
+    static Formula combined(const Token& op, source::Span span, std::vector<Formula> operands);
+    static Formula combined(const Token& op, source::Span span, Formula left, Formula right);
     Formula prefix(const Token& op, Grammar::PrefixedContext& operand,
                    const ParserRuleContext& whole) const;
     Formula compared(Grammar::SumContext& left, Grammar::ComparisonContext& context) const;

@@ -5,7 +5,6 @@
 #include "EtlLexer.h"
 #include "EtlParser.h"
 #include "parse/expected.hpp"
-#include "parse/nesting.hpp"
 #include "parse/stream/slices.hpp"
 #include "parse/stream/tokens.hpp"
 
@@ -16,7 +15,7 @@ using grammar::EtlParser;
 
 namespace {
 
-/// The parser reads them once for each word. Longer declarations are matrices.
+/// Longer declarations are matrices, and the parser reads the tokens once for each word.
 constexpr std::size_t kMostTokens = 2000;
 
 /// Thrown where the parser cannot go on.
@@ -24,27 +23,11 @@ struct Stopped {
     const Token* at;
 };
 
-class Stop final : public antlr4::ANTLRErrorStrategy {
-public:
-    void reset(antlr4::Parser* /*parser*/) override {}
-    Token* recoverInline(antlr4::Parser* parser) override {
-        throw Stopped{parser->getCurrentToken()};
-    }
-    void recover(antlr4::Parser* /*parser*/, std::exception_ptr error) override {
-        try {
-            std::rethrow_exception(error);
-        } catch (const antlr4::RecognitionException& e) {
-            throw Stopped{e.getOffendingToken()};
-        }
-    }
-    void sync(antlr4::Parser* /*parser*/) override {}
-    bool inErrorRecoveryMode(antlr4::Parser* /*parser*/) override { return false; }
-    void reportMatch(antlr4::Parser* /*parser*/) override {}
-    void reportError(antlr4::Parser* /*parser*/,
-                     const antlr4::RecognitionException& /*error*/) override {}
+class Stop final : public StopAtError {
+    void stop(antlr4::Parser* /*parser*/, const Token* found) override { throw Stopped{found}; }
 };
 
-/// Where the last token was taken.
+/// Records the rules in which the last token was taken.
 class Watch final : public antlr4::tree::ParseTreeListener {
 public:
     explicit Watch(const Token* last) : last_(last) {}
@@ -58,7 +41,7 @@ public:
     void enterEveryRule(antlr4::ParserRuleContext* /*context*/) override {}
     void exitEveryRule(antlr4::ParserRuleContext* /*context*/) override {}
 
-    /// From the innermost; empty: the parser did not come to it, since it has to see more.
+    /// Innermost first; empty if the parser did not reach the token because it needs to see more.
     const std::vector<std::size_t>& rules() const { return rules_; }
 
 private:
@@ -66,7 +49,7 @@ private:
     std::vector<std::size_t> rules_;
 };
 
-/// Whether the parser takes a token behind those of a declaration that was begun.
+/// Asks the parser whether it accepts a token after those of an unfinished declaration.
 class Probe {
 public:
     Probe(Tokens tokens, std::size_t end_offset) : tokens_(std::move(tokens)) {
@@ -77,8 +60,8 @@ public:
 
     bool is_too_deep() const { return too_deep_at(tokens_, {0, tokens_.size() - 2}).has_value(); }
 
-    /// Nothing: it does not. Else the rules in which it stands, from the innermost. Where it could
-    /// be a name or another word, it is taken for a name, unless `following` tells.
+    /// Returns nothing if the token is not accepted, otherwise the rules around it, innermost
+    /// first. A word that could also be a name counts as a name unless `following` decides.
     std::optional<std::vector<std::size_t>> rules_of(std::size_t type,
                                                      std::optional<std::size_t> following = {}) {
         first_->setType(type);
@@ -116,7 +99,7 @@ bool has(const std::vector<std::size_t>& rules, std::size_t rule) {
     return std::find(rules.begin(), rules.end(), rule) != rules.end();
 }
 
-/// Of a name that stands in these rules.
+/// Returns the role of a name within these rules.
 Role role_in(const std::vector<std::size_t>& rules, std::size_t declaration) {
     if (has(rules, EtlParser::RuleAmount))
         return has(rules, EtlParser::RuleBound) ? Role::bound : Role::amount;
@@ -138,41 +121,21 @@ Role role_in(const std::vector<std::size_t>& rules, std::size_t declaration) {
     }
 }
 
-/// Of a token that has one spelling.
-std::string keyword(std::size_t type) {
-    const std::string quoted = EtlLexer(nullptr).getVocabulary().getLiteralName(type);
-    return quoted.size() > 2 ? quoted.substr(1, quoted.size() - 2) : "";
-}
-
-/// The spellings of a token: of an operator two.
+/// Returns the spellings of a token: two for operators.
 std::vector<std::string> spellings(std::size_t type) {
-    switch (type) {
-        case EtlLexer::IFF: return {"<->", "iff"};
-        case EtlLexer::IMPLIES: return {"->", "implies"};
-        case EtlLexer::OR: return {"||", "or"};
-        case EtlLexer::AND: return {"&&", "and"};
-        case EtlLexer::NOT: return {"!", "not"};
-        case EtlLexer::UNTIL: return {"U", "until"};
-        case EtlLexer::WEAK_UNTIL: return {"W", "weak_until"};
-        case EtlLexer::RELEASE: return {"R", "release"};
-        case EtlLexer::SINCE: return {"S", "since"};
-        case EtlLexer::NEXT: return {"X", "next"};
-        case EtlLexer::EVENTUALLY: return {"F", "eventually"};
-        case EtlLexer::ALWAYS: return {"G", "always"};
-        case EtlLexer::PREVIOUS: return {"Y", "previous"};
-        case EtlLexer::ONCE: return {"O", "once"};
-        case EtlLexer::HISTORICALLY: return {"H", "historically"};
-        case EtlLexer::STEPS: return {"steps", "step"};
-        case EtlLexer::DISTANCE: {
-            std::vector<std::string> words = distance_words();
-            std::erase(words, keyword(EtlLexer::MAHALANOBIS));
-            return words;
-        }
-        default: return {keyword(type)};
+    if (const auto kind = operator_kind(type)) {
+        const ast::Operator& op = *ast::operator_of(*kind);
+        if (op.symbol == op.word) return {std::string(op.word)};
+        return {std::string(op.symbol), std::string(op.word)};
     }
+    if (type == EtlLexer::STEPS) return {"steps", "step"};
+    if (type != EtlLexer::DISTANCE) return {keyword(type)};
+    std::vector<std::string> words = distance_words();
+    std::erase(words, keyword(EtlLexer::MAHALANOBIS));
+    return words;
 }
 
-/// Whether the text up to `offset` ends in a comment, which is no token.
+/// Whether the text ends in a comment, which is not a token.
 bool ends_in_comment(std::string_view text, std::size_t from) {
     for (std::size_t i = from; i + 1 < text.size(); ++i) {
         const std::string_view two = text.substr(i, 2);
@@ -188,7 +151,7 @@ bool ends_in_comment(std::string_view text, std::size_t from) {
     return false;
 }
 
-/// A word that ends at the place may go on.
+/// A word that ends at the place may be unfinished.
 bool is_typed(const Token& token, std::uint32_t offset, const source::File& before) {
     const bool word = is_name(token) || is_reserved_word(token, before);
     return word && span_of(token).end == offset;
@@ -198,8 +161,8 @@ bool is_name_in(const std::vector<std::size_t>& rules) {
     return !rules.empty() && rules.front() == EtlParser::RuleName;
 }
 
-/// Whether it is a word of the language here. A contextual word may be a name, which only what
-/// follows tells: what follows distances, functions and operators.
+/// Whether the token is accepted as a word of the language. A contextual word may also be a name,
+/// which only the next token decides: one that follows distances, functions and operators.
 bool is_word(Probe& probe, std::size_t type) {
     const auto rules = probe.rules_of(type);
     if (!rules) return false;
@@ -213,7 +176,7 @@ bool is_word(Probe& probe, std::size_t type) {
     return false;
 }
 
-/// Fills in what the grammar says.
+/// Fills in what the grammar accepts.
 void ask(Continuations& found, Tokens tokens, std::uint32_t offset) {
     const std::size_t declaration = tokens.empty() ? Token::EOF : tokens.front()->getType();
     const std::size_t previous = tokens.empty() ? Token::EOF : tokens.back()->getType();
@@ -225,7 +188,7 @@ void ask(Continuations& found, Tokens tokens, std::uint32_t offset) {
     }
     if (const auto rules = probe.rules_of(EtlLexer::IDENTIFIER))
         found.role = role_in(*rules, declaration);
-    // Within [px, py].
+    // Names between the brackets of [px, py] are scalars.
     const bool in_vector = previous == EtlLexer::LBRACKET || previous == EtlLexer::COMMA;
     if (found.role == Role::point && in_vector) found.role = Role::scalar;
     const auto number = probe.rules_of(EtlLexer::NUMBER);

@@ -1,7 +1,6 @@
-// What may stand at a place of a spec, for completion.
-// Takes: a text, and a place in it; what follows does not count. Gives: the words of the language
-// that the grammar takes there, and what a name would name. Keeps true: it is the parser that
-// compiles specs which is asked, a word at a time.
+// Completion: what may follow at a place in a spec. Lists the words that the grammar accepts there,
+// and what a name would stand for. Text after the place is ignored. The parser that compiles specs
+// is asked, one word at a time.
 #pragma once
 
 #include <cstdint>
@@ -13,37 +12,37 @@
 
 namespace etlc::parse {
 
-/// What a name is at a place.
+/// The meaning of a name at a place.
 enum class Role : std::uint8_t {
-    none,     ///< no name stands there, or one that is declared there
-    operand,  ///< of a formula or an expression
-    point,    ///< an embedding, or a projection
-    scalar,   ///< one of a vector [x, y]
+    none,     ///< no name fits, or one that is being declared
+    operand,  ///< in a formula or an expression
+    point,    ///< an embedding or a projection
+    scalar,   ///< in a vector [x, y]
     target,   ///< of a distance
     weights,  ///< of mahalanobis
     amount,   ///< a constant
     bound,    ///< a constant that is a bound of an interval
     encoder,
-    predicate,             ///< whose truth it is
+    predicate,             ///< in a truth
     calibration,           ///< a method of calibrated(...)
     fitting,               ///< a method of fitted(...)
-    calibration_argument,  ///< the word before its '='
-    fitting_argument,      ///< the same; `of` and `where` are words of the language
+    calibration_argument,  ///< the word before '='
+    fitting_argument,      ///< the word before '='; `of` and `where` are words of the language
 };
 
 struct Continuations {
-    /// The part of a word before the place, which is typed already.
+    /// The part of a word before the place that has already been typed.
     source::Span typed;
-    std::vector<std::string> words;  ///< of the language, each in every spelling
+    std::vector<std::string> words;  ///< of the language, in every spelling
     Role role = Role::none;
-    bool number = false;        ///< one may stand there
+    bool number = false;        ///< a number fits
     bool in_interval = false;   ///< and is a bound
-    std::uint32_t begin = 0;    ///< of the declaration; the place, where none has begun
-    std::string declaration;    ///< the word that began this declaration, "let"; empty: none has
-    std::string number_before;  ///< the number before the place, of which a unit may follow
+    std::uint32_t begin = 0;    ///< of the declaration; the place itself if none has begun
+    std::string declaration;    ///< first word of this declaration, "let"; empty if none has begun
+    std::string number_before;  ///< the number before the place, which a unit may follow
 };
 
-/// `offset` lies in the text. In a comment or a string nothing may stand.
+/// `offset` lies within the text. Nothing may follow in a comment or a string.
 Continuations continuations_at(const source::File& file, std::uint32_t offset);
 
 }  // namespace etlc::parse

@@ -7,12 +7,12 @@ namespace etlc::parse {
 
 namespace {
 
-/// A declaration without its ';'.
+/// Returns the span of a declaration without its ';'.
 source::Span span_of_declaration(const Grammar::DeclarationContext& context, source::Span last) {
     return source::join(span_of(*context.start), last);
 }
 
-/// What stands before the closing ';'.
+/// Returns the span of the last part before the closing ';'.
 source::Span last_part(const Grammar::DeclarationContext& context) {
     auto* const part = context.children[context.children.size() - 2];
     if (auto* const terminal = dynamic_cast<antlr4::tree::TerminalNode*>(part))
@@ -240,6 +240,16 @@ ast::Calibrated Builder::calibrated(Grammar::CalibratedContext& context) const {
     return result;
 }
 
+template <class Named, class Context>
+void Builder::set_file(Named& to, const Context& context) const {
+    to.span = span_of(context);
+    to.path = content(*context.path);
+    to.path_span = span_of(*context.path);
+    if (context.key == nullptr) return;
+    to.key = content(*context.key);
+    to.key_span = span_of(*context.key);
+}
+
 std::string Builder::content(const Token& string) const {
     const source::Span span = span_of(string);
     return std::string(file_.text({span.begin + 1, span.end - 1}));
@@ -247,25 +257,13 @@ std::string Builder::content(const Token& string) const {
 
 ast::Load Builder::load(Grammar::LoadContext& context) const {
     ast::Load result;
-    result.span = span_of(context);
-    result.path = content(*context.path);
-    result.path_span = span_of(*context.path);
-    if (context.key != nullptr) {
-        result.key = content(*context.key);
-        result.key_span = span_of(*context.key);
-    }
+    set_file(result, context);
     return result;
 }
 
 ast::Frames Builder::frames(Grammar::FramesContext& context) const {
     ast::Frames result;
-    result.span = span_of(context);
-    result.path = content(*context.path);
-    result.path_span = span_of(*context.path);
-    if (context.key != nullptr) {
-        result.key = content(*context.key);
-        result.key_span = span_of(*context.key);
-    }
+    set_file(result, context);
     result.frames_span = source::join(span_of(*context.LBRACKET()->getSymbol()),
                                       span_of(*context.RBRACKET()->getSymbol()));
     for (Grammar::AmountContext* const frame : context.amount())
@@ -332,14 +330,14 @@ ast::Number Builder::number(const ParserRuleContext& context) const {
 }
 
 void Builder::fail(diag::Code code, source::Span span, std::string message, std::string note) {
-    diag::Diagnostic diagnostic{code, std::move(message), span, {}, 0, 0, {}};
+    diag::Diagnostic diagnostic{code, std::move(message), span};
     if (!note.empty()) diagnostic.note(std::move(note));
-    throw SyntaxError{std::move(diagnostic), {}, {}};
+    throw SyntaxError{std::move(diagnostic)};
 }
 
 void Builder::too_high(source::Span span) {
     fail(diag::Code::nesting_too_deep, span,
-         fmt::format("more than {} operators depend on one another here", kMaxHeight),
+         fmt::format("more than {} operators are nested here", kMaxHeight),
          "name parts of it with 'let', or load a matrix of numbers as a target");
 }
 

@@ -7,7 +7,7 @@
 
 namespace etlc::parse {
 
-using ExprKind = ast::Expr::Kind;
+using ast::ExprKind;
 
 namespace {
 
@@ -40,7 +40,7 @@ bool is_single(const ParserRuleContext& context) {
     return context.children.size() == 1;
 }
 
-/// The sum that a formula's rule consists of; nullptr where a formula's operator stands in it.
+/// Returns the sum that a formula rule consists of; nullptr if it has an operator of formulas.
 Grammar::SumContext* only_sum(const Grammar::FormulaContext& context) {
     const ParserRuleContext* at = &context;
     while (is_single(*at)) {
@@ -59,6 +59,17 @@ Builder::Expression Builder::expression(Grammar::FormulaContext& context) const 
          "expressions are made of scalar inputs, numbers, distances, + - * / and functions");
 }
 
+Builder::Expression Builder::combined(ExprKind kind, source::Span span, source::Span op,
+                                      std::vector<Expression> arguments) {
+    Expression result{expr_node(kind, span)};
+    for (Expression& argument : arguments) {
+        result.height = std::max(result.height, argument.height + 1);
+        result.root->arguments.push_back(std::move(argument.root));
+    }
+    if (result.height > kMaxHeight) too_high(op);
+    return result;
+}
+
 template <class Operand>
 Builder::Expression Builder::chain(const ParserRuleContext& context) const {
     Expression left = expression(*dynamic_cast<Operand*>(context.children[0]));
@@ -66,13 +77,11 @@ Builder::Expression Builder::chain(const ParserRuleContext& context) const {
         const Token& op =
             *dynamic_cast<antlr4::tree::TerminalNode*>(context.children[i])->getSymbol();
         auto& operand = *dynamic_cast<Operand*>(context.children[i + 1]);
-        Expression right = expression(operand);
-        ast::ExprPtr both =
-            expr_node(expr_kind(op), source::join(span_of(*context.start), span_of(operand)));
-        both->arguments.push_back(std::move(left.root));
-        both->arguments.push_back(std::move(right.root));
-        left = {std::move(both), 1 + std::max(left.height, right.height)};
-        if (left.height > kMaxHeight) too_high(span_of(op));
+        std::vector<Expression> both;
+        both.push_back(std::move(left));
+        both.push_back(expression(operand));
+        left = combined(expr_kind(op), source::join(span_of(*context.start), span_of(operand)),
+                        span_of(op), std::move(both));
     }
     return left;
 }
@@ -89,11 +98,10 @@ Builder::Expression Builder::expression(Grammar::FactorContext& context) const {
     if (auto* const plain = dynamic_cast<Grammar::UnsignedContext*>(&context))
         return expression(*plain->primary());
     auto& negation = dynamic_cast<Grammar::NegationContext&>(context);
-    Expression operand = expression(*negation.factor());
-    ast::ExprPtr result = expr_node(ExprKind::negate, span_of(context));
-    result->arguments.push_back(std::move(operand.root));
-    if (operand.height >= kMaxHeight) too_high(span_of(*context.start));
-    return {std::move(result), operand.height + 1};
+    std::vector<Expression> operand;
+    operand.push_back(expression(*negation.factor()));
+    return combined(ExprKind::negate, span_of(context), span_of(*context.start),
+                    std::move(operand));
 }
 
 Builder::Expression Builder::expression(Grammar::PrimaryContext& context) const {
@@ -122,14 +130,10 @@ Builder::Expression Builder::expression(Grammar::PrimaryContext& context) const 
 Builder::Expression Builder::call(const Token& function,
                                   const std::vector<Grammar::FormulaContext*>& arguments,
                                   const ParserRuleContext& whole) const {
-    Expression result{expr_node(expr_kind(function), span_of(whole)), 1};
-    for (Grammar::FormulaContext* const argument : arguments) {
-        Expression value = expression(*argument);
-        result.root->arguments.push_back(std::move(value.root));
-        result.height = std::max(result.height, value.height + 1);
-    }
-    if (result.height > kMaxHeight) too_high(span_of(function));
-    return result;
+    std::vector<Expression> values;
+    for (Grammar::FormulaContext* const argument : arguments)
+        values.push_back(expression(*argument));
+    return combined(expr_kind(function), span_of(whole), span_of(function), std::move(values));
 }
 
 std::unique_ptr<ast::Distance> Builder::distance(Grammar::DistanceContext& context) const {

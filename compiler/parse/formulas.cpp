@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 
 #include "parse/build.hpp"
 #include "parse/parse.hpp"
@@ -19,35 +18,11 @@ ast::FormulaPtr node(Kind kind, source::Span span) {
     return result;
 }
 
-Kind kind_of(const Token& op) {
-    switch (op.getType()) {
-        case Grammar::TRUE: return Kind::constant_true;
-        case Grammar::FALSE: return Kind::constant_false;
-        case Grammar::NOT: return Kind::negation;
-        case Grammar::NEXT: return Kind::next;
-        case Grammar::EVENTUALLY: return Kind::eventually;
-        case Grammar::ALWAYS: return Kind::always;
-        case Grammar::UNTIL: return Kind::until;
-        case Grammar::WEAK_UNTIL: return Kind::weak_until;
-        case Grammar::RELEASE: return Kind::release;
-        case Grammar::PREVIOUS: return Kind::previous;
-        case Grammar::ONCE: return Kind::once;
-        case Grammar::HISTORICALLY: return Kind::historically;
-        case Grammar::RISE: return Kind::rise;
-        case Grammar::FALL: return Kind::fall;
-        case Grammar::HELD: return Kind::held;
-        case Grammar::SINCE: return Kind::since;
-        default: break;
-    }
-    assert(false);  // the grammar calls no other token an operator
-    return Kind::since;
-}
-
 const Token& symbol(antlr4::tree::ParseTree* child) {
     return *dynamic_cast<antlr4::tree::TerminalNode*>(child)->getSymbol();
 }
 
-/// The primary that a sum consists of; nullptr where an operator of expressions stands in it.
+/// Returns the primary that a sum consists of; nullptr if it has an operator of expressions.
 Grammar::PrimaryContext* only_primary(Grammar::SumContext& context) {
     if (context.children.size() != 1) return nullptr;
     auto& product = dynamic_cast<Grammar::ProductContext&>(*context.children[0]);
@@ -58,36 +33,41 @@ Grammar::PrimaryContext* only_primary(Grammar::SumContext& context) {
 
 }  // namespace
 
-template <class Operand>
-Builder::Formula Builder::n_ary(const ParserRuleContext& context, Kind kind) const {
-    if (context.children.size() == 1) return formula(*dynamic_cast<Operand*>(context.children[0]));
-    Formula result{node(kind, span_of(context)), 1};
-    result.root->operator_span = span_of(symbol(context.children[1]));
-    for (std::size_t i = 0; i < context.children.size(); i += 2) {
-        Formula operand = formula(*dynamic_cast<Operand*>(context.children[i]));
-        result.root->operands.push_back(std::move(operand.root));
+Builder::Formula Builder::combined(const Token& op, source::Span span,
+                                   std::vector<Formula> operands) {
+    Formula result{node(*operator_kind(op.getType()), span)};
+    result.root->operator_span = span_of(op);
+    for (Formula& operand : operands) {
         result.height = std::max(result.height, operand.height + 1);
+        result.root->operands.push_back(std::move(operand.root));
     }
-    if (result.height > kMaxHeight) too_high(result.root->operator_span);
+    if (result.height > kMaxHeight) too_high(span_of(op));
     return result;
 }
 
-Builder::Formula Builder::combined(Kind kind, const Token& op, source::Span span, Formula left,
-                                   Formula right) const {
-    Formula result{node(kind, span), 1 + std::max(left.height, right.height)};
-    result.root->operator_span = span_of(op);
-    result.root->operands.push_back(std::move(left.root));
-    result.root->operands.push_back(std::move(right.root));
-    if (result.height > kMaxHeight) too_high(span_of(op));
-    return result;
+Builder::Formula Builder::combined(const Token& op, source::Span span, Formula left,
+                                   Formula right) {
+    std::vector<Formula> operands;
+    operands.push_back(std::move(left));
+    operands.push_back(std::move(right));
+    return combined(op, span, std::move(operands));
+}
+
+template <class Operand>
+Builder::Formula Builder::n_ary(const ParserRuleContext& context) const {
+    std::vector<Formula> operands;
+    for (std::size_t i = 0; i < context.children.size(); i += 2)
+        operands.push_back(formula(*dynamic_cast<Operand*>(context.children[i])));
+    if (operands.size() == 1) return std::move(operands[0]);
+    return combined(symbol(context.children[1]), span_of(context), std::move(operands));
 }
 
 Builder::Formula Builder::formula(Grammar::FormulaContext& context) const {
     Formula left = formula(*dynamic_cast<Grammar::ImplicationContext*>(context.children[0]));
     for (std::size_t i = 1; i + 1 < context.children.size(); i += 2) {
         auto& operand = dynamic_cast<Grammar::ImplicationContext&>(*context.children[i + 1]);
-        const source::Span span = source::join(span_of(*context.start), span_of(operand));
-        left = combined(Kind::equivalence, symbol(context.children[i]), span, std::move(left),
+        left = combined(symbol(context.children[i]),
+                        source::join(span_of(*context.start), span_of(operand)), std::move(left),
                         formula(operand));
     }
     return left;
@@ -96,22 +76,22 @@ Builder::Formula Builder::formula(Grammar::FormulaContext& context) const {
 Builder::Formula Builder::formula(Grammar::ImplicationContext& context) const {
     Formula left = formula(*context.disjunction());
     if (context.children.size() == 1) return left;
-    return combined(Kind::implication, symbol(context.children[1]), span_of(context),
-                    std::move(left), formula(*context.implication()));
+    return combined(symbol(context.children[1]), span_of(context), std::move(left),
+                    formula(*context.implication()));
 }
 
 Builder::Formula Builder::formula(Grammar::DisjunctionContext& context) const {
-    return n_ary<Grammar::ConjunctionContext>(context, Kind::disjunction);
+    return n_ary<Grammar::ConjunctionContext>(context);
 }
 
 Builder::Formula Builder::formula(Grammar::ConjunctionContext& context) const {
-    return n_ary<Grammar::BinaryTemporalContext>(context, Kind::conjunction);
+    return n_ary<Grammar::BinaryTemporalContext>(context);
 }
 
 Builder::Formula Builder::formula(Grammar::BinaryTemporalContext& context) const {
     Formula left = formula(*context.prefixed());
     if (context.op == nullptr) return left;
-    Formula result = combined(kind_of(*context.op), *context.op, span_of(context), std::move(left),
+    Formula result = combined(*context.op, span_of(context), std::move(left),
                               formula(*context.binaryTemporal()));
     if (auto* const bounds = context.interval()) result.root->interval = interval(*bounds);
     return result;
@@ -119,12 +99,9 @@ Builder::Formula Builder::formula(Grammar::BinaryTemporalContext& context) const
 
 Builder::Formula Builder::prefix(const Token& op, Grammar::PrefixedContext& operand,
                                  const ParserRuleContext& whole) const {
-    Formula inner = formula(operand);
-    Formula result{node(kind_of(op), span_of(whole)), inner.height + 1};
-    result.root->operator_span = span_of(op);
-    result.root->operands.push_back(std::move(inner.root));
-    if (result.height > kMaxHeight) too_high(span_of(op));
-    return result;
+    std::vector<Formula> operands;
+    operands.push_back(formula(operand));
+    return combined(op, span_of(whole), std::move(operands));
 }
 
 Builder::Formula Builder::formula(Grammar::PrefixedContext& context) const {
@@ -163,7 +140,7 @@ Builder::Formula Builder::compared(Grammar::SumContext& left,
     if (written == nullptr)
         fail(diag::Code::comparison_form,
              span_of(dynamic_cast<ParserRuleContext&>(*context.children[2])),
-             "a calibrated threshold stands only in a predicate",
+             "a calibrated threshold is allowed only in a predicate",
              "declare 'predicate NAME = ... calibrated(...);' and use its name here");
     Expression value = expression(left);
     Expression right = expression(*written);
@@ -181,7 +158,10 @@ Builder::Formula Builder::formula(Grammar::PrimaryContext& context) const {
     if (auto* const bracket = dynamic_cast<Grammar::BracketPrimaryContext*>(&context))
         return formula(*bracket->formula());
     if (auto* const constant = dynamic_cast<Grammar::ConstantPrimaryContext*>(&context))
-        return {node(kind_of(*constant->op), span_of(context)), 1};
+        return {node(constant->op->getType() == Grammar::TRUE ? Kind::constant_true
+                                                              : Kind::constant_false,
+                     span_of(context)),
+                1};
     if (auto* const named = dynamic_cast<Grammar::NamePrimaryContext*>(&context)) {
         ast::FormulaPtr result = node(Kind::name, span_of(context));
         result->name = text(*named->start);

@@ -1,9 +1,10 @@
-#include "parse/nesting.hpp"
-
+// Measures how deep a declaration nests, in one pass: everything that the grammar reads by
+// recursion counts.
 #include <vector>
 
 #include "EtlLexer.h"
 #include "parse/parse.hpp"
+#include "parse/stream/slices.hpp"
 
 namespace etlc::parse {
 
@@ -11,9 +12,9 @@ using grammar::EtlLexer;
 
 namespace {
 
-/// What is open between one pair of brackets: everything that the grammar reads by recursion.
+/// Operators that are open between one pair of brackets.
 struct Level {
-    int base = 0;      ///< depth outside the bracket, and one for the bracket
+    int base = 0;      ///< depth outside the bracket, plus one
     int arrows = 0;    ///< `->` in a row
     int untils = 0;    ///< U W R S in a row
     int prefixes = 0;  ///< ! X F G Y O H rise fall held in a row
@@ -22,72 +23,32 @@ struct Level {
     int depth() const { return base + arrows + untils + prefixes + signs; }
 };
 
-bool ends_operand(const Token& token) {
-    switch (token.getType()) {
-        case EtlLexer::NUMBER:
-        case EtlLexer::TRUE:
-        case EtlLexer::FALSE:
-        case EtlLexer::RPAREN:
-        case EtlLexer::RBRACKET: return true;
-        default: return is_name(token);
-    }
-}
-
-bool may_begin_operand(const Token& token) {
-    switch (token.getType()) {
-        case EtlLexer::NUMBER:
-        case EtlLexer::TRUE:
-        case EtlLexer::FALSE:
-        case EtlLexer::LPAREN:
-        case EtlLexer::NOT:
-        case EtlLexer::NEXT:
-        case EtlLexer::EVENTUALLY:
-        case EtlLexer::ALWAYS:
-        case EtlLexer::PREVIOUS:
-        case EtlLexer::ONCE:
-        case EtlLexer::HISTORICALLY: return true;
-        default: return is_name(token);
-    }
-}
-
 /// `rise`, `fall` and `held` are names elsewhere.
 bool is_prefix_word(const Token& token, const Token& next) {
     if (token.getType() == EtlLexer::HELD) return next.getType() == EtlLexer::LBRACKET;
     const bool edge = token.getType() == EtlLexer::RISE || token.getType() == EtlLexer::FALL;
-    return edge && may_begin_operand(next);
+    return edge && begins_operand(next);
 }
 
-void operator_seen(Level& level, std::size_t type, bool after_operand) {
-    const Level before = level;
-    switch (type) {
-        case EtlLexer::MINUS: level.signs = after_operand ? 0 : before.signs + 1; break;
-        case EtlLexer::PLUS:
-        case EtlLexer::TIMES:
-        case EtlLexer::DIVIDE:
-        case EtlLexer::LESS_EQUAL:
-        case EtlLexer::LESS:
-        case EtlLexer::GREATER_EQUAL:
-        case EtlLexer::GREATER:
-        case EtlLexer::EQUAL:
-        case EtlLexer::NOT_EQUAL: level.signs = 0; break;
-        case EtlLexer::NOT:
-        case EtlLexer::NEXT:
-        case EtlLexer::EVENTUALLY:
-        case EtlLexer::ALWAYS:
-        case EtlLexer::PREVIOUS:
-        case EtlLexer::ONCE:
-        case EtlLexer::HISTORICALLY: ++level.prefixes; break;
-        case EtlLexer::UNTIL:
-        case EtlLexer::WEAK_UNTIL:
-        case EtlLexer::RELEASE:
-        case EtlLexer::SINCE: level = {before.base, before.arrows, before.untils + 1, 0, 0}; break;
-        case EtlLexer::AND:
-        case EtlLexer::OR: level = {before.base, before.arrows, 0, 0, 0}; break;
-        case EtlLexer::IMPLIES: level = {before.base, before.arrows + 1, 0, 0, 0}; break;
-        case EtlLexer::IFF:
-        case EtlLexer::COMMA: level = {before.base, 0, 0, 0, 0}; break;
-        default: break;
+void operator_seen(Level& level, const Token& token, bool after_operand) {
+    if (const auto kind = operator_kind(token.getType()); kind && !is_name(token)) {
+        switch (ast::operator_of(*kind)->level) {
+            case ast::kPrefix: ++level.prefixes; return;
+            case ast::kBinary: level = {level.base, level.arrows, level.untils + 1}; return;
+            case ast::kAnd:
+            case ast::kOr: level = {level.base, level.arrows}; return;
+            case ast::kImplies: level = {level.base, level.arrows + 1}; return;
+            default: level = {level.base}; return;
+        }
     }
+    if (token.getType() == EtlLexer::MINUS && !after_operand)
+        ++level.signs;
+    else if (is(&token, {EtlLexer::MINUS, EtlLexer::PLUS, EtlLexer::TIMES, EtlLexer::DIVIDE,
+                         EtlLexer::LESS_EQUAL, EtlLexer::LESS, EtlLexer::GREATER_EQUAL,
+                         EtlLexer::GREATER, EtlLexer::EQUAL, EtlLexer::NOT_EQUAL}))
+        level.signs = 0;
+    else if (token.getType() == EtlLexer::COMMA)
+        level = {level.base};
 }
 
 }  // namespace
@@ -98,16 +59,16 @@ std::optional<std::size_t> too_deep_at(const Tokens& tokens, Slice slice) {
     for (std::size_t i = slice.begin; i < slice.end; ++i) {
         const std::size_t type = tokens[i]->getType();
         if (type == EtlLexer::LPAREN || type == EtlLexer::LBRACKET) {
-            levels.push_back({levels.back().depth() + 1, 0, 0, 0, 0});
+            levels.push_back({levels.back().depth() + 1});
         } else if (type == EtlLexer::RPAREN || type == EtlLexer::RBRACKET) {
             if (levels.size() > 1) levels.pop_back();
         } else if (i + 1 < slice.end && is_prefix_word(*tokens[i], *tokens[i + 1])) {
             ++levels.back().prefixes;
         } else {
-            operator_seen(levels.back(), type, after_operand);
+            operator_seen(levels.back(), *tokens[i], after_operand);
         }
         if (levels.back().depth() > kMaxNesting) return i;
-        after_operand = ends_operand(*tokens[i]);
+        after_operand = ends_operand(tokens[i].get());
     }
     return std::nullopt;
 }

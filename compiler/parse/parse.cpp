@@ -5,8 +5,7 @@
 #include <algorithm>
 
 #include "parse/build.hpp"
-#include "parse/foreign/mistakes.hpp"
-#include "parse/nesting.hpp"
+#include "parse/foreign/foreign.hpp"
 #include "parse/stream/slices.hpp"
 #include "parse/stream/tokens.hpp"
 #include "parse/syntax_error.hpp"
@@ -19,7 +18,7 @@ using diag::Diagnostic;
 
 namespace {
 
-/// Reads one file, declaration by declaration.
+/// Reads one file, one declaration at a time.
 class Reader {
 public:
     Reader(const source::File& file, diag::Sink& sink) : file_(file), sink_(sink), builder_(file) {}
@@ -39,20 +38,14 @@ private:
         if (text.size() > kMaxSpecBytes) {
             sink_
                 .report({Code::spec_too_large,
-                         fmt::format("a spec of {} bytes; at most {} are read", text.size(),
-                                     kMaxSpecBytes),
-                         {},
-                         {},
-                         0,
-                         0,
-                         {}})
+                         fmt::format("the spec has {} bytes; etlc reads at most {}", text.size(),
+                                     kMaxSpecBytes)})
                 .note("target sets of that size belong in .npy files");
             return false;
         }
         const bool utf16 = text.substr(0, 2) == "\xFF\xFE" || text.substr(0, 2) == "\xFE\xFF";
         if (utf16) {
-            sink_.report(
-                {Code::invalid_utf8, "this file is UTF-16; save it as UTF-8", {}, {}, 0, 0, {}});
+            sink_.report({Code::invalid_utf8, "this file is UTF-16; save it as UTF-8"});
             return false;
         }
         if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
@@ -87,12 +80,12 @@ private:
         }
     }
 
-    /// Thrown for a declaration whose trouble has been reported already.
+    /// Thrown for a declaration whose error has already been reported.
     struct Unexplained {};
 
     void refuse_mistakes(Slice slice) const {
         for (std::size_t i = slice.begin; i < slice.end; ++i) {
-            // A string of bytes that are not UTF-8 has been told of with the file's.
+            // A string that is not UTF-8 has been reported for the whole file.
             if (tokens_[i]->getType() == Grammar::STRING) {
                 const std::string_view content = file_.text(span_of(*tokens_[i]));
                 if (source::first_invalid_utf8(content) < content.size()) throw Unexplained{};
@@ -101,7 +94,7 @@ private:
             std::optional<Diagnostic> explained = explain_mistake(
                 *tokens_[i], i > slice.begin ? tokens_[i - 1].get() : nullptr, file_);
             if (!explained) throw Unexplained{};
-            throw SyntaxError{std::move(*explained), {}, {}};
+            throw SyntaxError{std::move(*explained)};
         }
     }
 
@@ -111,13 +104,9 @@ private:
         Diagnostic error{
             Code::nesting_too_deep,
             fmt::format("brackets and operators are nested more than {} deep", kMaxNesting),
-            span_of(*tokens_[*at]),
-            {},
-            0,
-            0,
-            {}};
+            span_of(*tokens_[*at])};
         error.note("name parts of the formula with 'let'");
-        throw SyntaxError{std::move(error), {}, {}};
+        throw SyntaxError{std::move(error)};
     }
 
     std::variant<ast::Name, ast::Declaration> parsed(Slice slice) const {
@@ -144,7 +133,8 @@ private:
         spec_seen_ = true;
     }
 
-    /// Notes what a broken declaration would have declared, as far as its first words tell.
+    /// Records the names that a broken declaration would have declared, as far as its first words
+    /// tell.
     void add_unreadable(Slice slice) {
         const std::size_t last = slice.end;
         std::size_t at = slice.begin;
@@ -164,8 +154,8 @@ private:
         }
     }
 
-    /// A reserved word used as a name breaks every other declaration that uses it: that is one
-    /// cause, told once.
+    /// A reserved word used as a name breaks every other declaration that uses it; this single
+    /// cause is reported once.
     void report_errors() {
         std::vector<std::string> misused;
         for (const SyntaxError& error : errors_)
@@ -193,8 +183,8 @@ private:
         missing.note("a file begins with 'spec NAME;', which names the generated code");
     }
 
-    /// A first declaration that is none, in a file without `spec NAME;`: the missing spec is what
-    /// is wrong with it.
+    /// Whether the error is about a first statement that is no declaration in a file without `spec
+    /// NAME;`. The missing spec is the real error.
     bool is_missing_spec(const SyntaxError& error) const {
         return !spec_seen_ && error.previous.empty() && !error.found.empty() &&
                error.diagnostic.span == span_of(*tokens_.front());

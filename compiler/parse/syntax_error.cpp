@@ -1,10 +1,8 @@
 #include "parse/syntax_error.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <initializer_list>
-
-#include "EtlParser.h"
 #include "parse/expected.hpp"
 #include "parse/foreign/foreign.hpp"
 
@@ -16,13 +14,6 @@ using grammar::EtlParser;
 
 namespace {
 
-bool is(const Token* token, std::initializer_list<std::size_t> types) {
-    if (token == nullptr) return false;
-    for (const std::size_t type : types)
-        if (token->getType() == type) return true;
-    return false;
-}
-
 const std::vector<std::string>& units() {
     static const std::vector<std::string> all{"us", "ms", "s", "min", "steps"};
     return all;
@@ -32,7 +23,7 @@ bool is_aggregation(const Token* token) {
     return is(token, {EtlParser::MIN, EtlParser::MAX, EtlParser::MEAN});
 }
 
-/// Composes the diagnostic of one place.
+/// Composes the diagnostic for one place.
 class Explanation {
 public:
     Explanation(const Stuck& stuck, const Token& found, const source::File& file)
@@ -55,18 +46,14 @@ private:
 
     bool found_is_word() const { return found_.getType() == EtlParser::IDENTIFIER; }
 
-    /// Where what is missing belongs: after the last word on its line rather than before the first
-    /// on the next.
+    /// Returns the place of something missing: after the last word on its line rather than before
+    /// the first word on the next.
     source::Span place() const {
         const source::Span found = span_of(found_);
         if (stuck_.previous == nullptr) return found;
         const std::uint32_t end = span_of(*stuck_.previous).end;
         const bool next_line = file_.position(end).line != file_.position(found.begin).line;
         return next_line || slice_ended() ? source::Span{end, end} : found;
-    }
-
-    Diagnostic at(Code code, source::Span span, std::string message) const {
-        return {code, std::move(message), span, {}, 0, 0, {}};
     }
 
     void add_nearest(Diagnostic& to, const Token& word,
@@ -77,7 +64,7 @@ private:
         if (to.span != span_of(word)) to.meant.clear();
     }
 
-    /// Whether the word is one of another language.
+    /// Explains a word of another language, if it is one.
     bool add_native(Diagnostic& to, Foreign kind, const Token& word) const {
         auto here = native(kind, text(word));
         if (!here) return false;
@@ -87,25 +74,21 @@ private:
     }
 
     Diagnostic no_declaration() const {
-        static const std::vector<std::string> kWords{
-            "spec",  "rate",       "period",  "const",       "encoder",
-            "input", "projection", "target",  "predicate",   "truth",
-            "let",   "monitor",    "sliding", "restartable", "repeating"};
         const bool word = found_is_word();
-        Diagnostic result =
-            at(word ? Code::unknown_keyword : Code::syntax_error, span_of(found_),
-               fmt::format("expected a declaration, found {}", quoted(found_, file_)));
+        Diagnostic result{word ? Code::unknown_keyword : Code::syntax_error,
+                          fmt::format("expected a declaration, found {}", quoted(found_, file_)),
+                          span_of(found_)};
         if (word && !add_native(result, Foreign::declaration, found_))
-            add_nearest(result, found_, kWords);
+            add_nearest(result, found_, own_words(Foreign::declaration));
         if (is(&found_, {EtlParser::NOT, EtlParser::NEXT, EtlParser::EVENTUALLY, EtlParser::ALWAYS,
                          EtlParser::PREVIOUS, EtlParser::ONCE, EtlParser::HISTORICALLY,
                          EtlParser::LPAREN, EtlParser::LBRACKET}))
-            result.note("a formula has a name: monitor NAME = FORMULA;");
+            result.note("a formula needs a name: monitor NAME = FORMULA;");
         if (result.notes.empty())
             result.note(
                 "a declaration begins with spec, rate, period, const, encoder, input, projection, "
-                "target, predicate, truth, let, or with monitor, before which sliding, restartable "
-                "or repeating may stand");
+                "target, predicate, truth, let or monitor; sliding, restartable and repeating come "
+                "before monitor");
         return result;
     }
 
@@ -115,16 +98,16 @@ private:
     }
 
     Diagnostic reserved() const {
-        Diagnostic result =
-            at(Code::reserved_name, span_of(found_),
-               fmt::format("{} is reserved and cannot be a name", quoted(found_, file_)));
+        Diagnostic result{Code::reserved_name,
+                          fmt::format("{} is reserved and cannot be a name", quoted(found_, file_)),
+                          span_of(found_)};
         result.note(fmt::format("{} is {}; choose another name", quoted(found_, file_),
                                 description_of_reserved(found_.getType())));
         return result;
     }
 
-    /// A word before '(' that is neither a distance nor a function, or a word after an aggregation
-    /// that is no distance.
+    /// Whether a word before '(' is neither a distance nor a function, or a word after an
+    /// aggregation is no distance.
     bool unknown_call() const {
         if (is_aggregation(stuck_.previous) && found_is_word()) return true;
         const bool after_operand = stuck_.rule == EtlParser::RulePrimary ||
@@ -138,17 +121,20 @@ private:
     Diagnostic no_such_callable() const {
         const bool aggregated = is_aggregation(stuck_.previous);
         const Token& word = aggregated ? found_ : *stuck_.previous;
-        Diagnostic result =
-            at(Code::unknown_keyword, span_of(word),
-               aggregated
-                   ? fmt::format("expected a distance after {}, found {}",
-                                 quoted(*stuck_.previous, file_), quoted(word, file_))
-                   : fmt::format("{} is neither a distance nor a function", quoted(word, file_)));
+        Diagnostic result{
+            Code::unknown_keyword,
+            aggregated
+                ? fmt::format("expected a distance after {}, found {}",
+                              quoted(*stuck_.previous, file_), quoted(word, file_))
+                : fmt::format("{} is neither a distance nor a function", quoted(word, file_)),
+            span_of(word)};
+        std::vector<std::string> callables = distance_words();
+        callables.insert(callables.end(), {"abs", "sqrt", "min", "max", "kth"});
         if (word.getType() == EtlParser::IDENTIFIER && !add_native(result, Foreign::callable, word))
-            add_nearest(result, word, callable_words());
+            add_nearest(result, word, callables);
         if (result.notes.empty())
             result.note(fmt::format("distances: {}; functions: abs, sqrt, min, max",
-                                    distances_in_words(", ")));
+                                    fmt::join(distance_forms(), ", ")));
         return result;
     }
 
@@ -161,15 +147,15 @@ private:
     }
 
     Diagnostic no_interval() const {
-        Diagnostic result =
-            at(Code::syntax_error, span_of(found_),
-               fmt::format("{} takes no interval", quoted(*stuck_.previous, file_)));
-        result.note("intervals stand after F, G, O, H, U, R and S");
+        Diagnostic result{Code::syntax_error,
+                          fmt::format("{} takes no interval", quoted(*stuck_.previous, file_)),
+                          span_of(found_)};
+        result.note("only F, G, O, H, U, R and S take intervals");
         return result;
     }
 
-    /// A word after a bound is a unit where the interval goes on behind it, or where it is close to
-    /// one; else the interval should have ended before it, as in "F[0, 5 q".
+    /// A word after a bound is a unit if the interval continues after it or it resembles a unit;
+    /// otherwise the interval should have ended before it, as in "F[0, 5 q".
     bool unknown_unit() const {
         const bool word = is_name(found_) || is_reserved_word(found_, file_);
         if (!is(stuck_.previous, {EtlParser::NUMBER}) || !word) return false;
@@ -181,19 +167,21 @@ private:
     }
 
     Diagnostic no_such_unit() const {
-        Diagnostic result =
-            at(Code::unknown_keyword, span_of(found_),
-               fmt::format("expected a unit (us, ms, s, min or steps) after {}, found {}",
-                           quoted(*stuck_.previous, file_), quoted(found_, file_)));
+        Diagnostic result{
+            Code::unknown_keyword,
+            fmt::format("expected a unit (us, ms, s, min or steps) after {}, found {}",
+                        quoted(*stuck_.previous, file_), quoted(found_, file_)),
+            span_of(found_)};
         if (!add_native(result, Foreign::unit, found_)) add_nearest(result, found_, units());
         return result;
     }
 
     Diagnostic expected_found() const {
         const bool unknown = found_is_word() && expects_keyword(stuck_);
-        return at(unknown ? Code::unknown_keyword : Code::syntax_error, place(),
-                  fmt::format("expected {} after {}, found {}", expected_words(stuck_),
-                              quoted(*stuck_.previous, file_), quoted(found_, file_)));
+        return {unknown ? Code::unknown_keyword : Code::syntax_error,
+                fmt::format("expected {} after {}, found {}", expected_words(stuck_),
+                            quoted(*stuck_.previous, file_), quoted(found_, file_)),
+                place()};
     }
 
     void add_notes(Diagnostic& to) const {
@@ -202,39 +190,38 @@ private:
             add_nearest(to, found_, expected_spellings(stuck_));
         if (to.notes.empty()) add_note_on_words(to);
         if (to.notes.empty()) add_note_on_rule(to);
-        if (slice_ended() && to.meant.empty() &&
-            stuck_.expected.contains(std::size_t{EtlParser::SEMICOLON}))
+        if (slice_ended() && to.meant.empty() && stuck_.expects(EtlParser::SEMICOLON))
             to.meant = ";";
     }
 
-    /// What the words found and before suggest was meant.
+    /// Adds a note that the words around the place suggest.
     void add_note_on_words(Diagnostic& to) const {
         const std::size_t found = found_.getType();
-        const bool in_brackets = stuck_.rule == EtlParser::RulePrimary &&
-                                 stuck_.expected.contains(std::size_t{EtlParser::COMMA});
+        const bool in_brackets =
+            stuck_.rule == EtlParser::RulePrimary && stuck_.expects(EtlParser::COMMA);
         if (found == EtlParser::INF)
-            to.note("inf stands only in the bounds of intervals and ranges");
+            to.note("inf is allowed only in bounds of intervals and ranges");
         else if (found == EtlParser::ASSIGN && stuck_.rule != EtlParser::RuleName)
-            to.note("a comparison is '<=', '<', '>=', '>', '==' or '!='");
+            to.note("comparisons are '<=', '<', '>=', '>', '==' and '!='");
         else if (found == EtlParser::RPAREN && in_brackets)
             to.note(
-                "min(...) and max(...) of expressions take two or more; over a target set it is "
-                "'min l2(z, goal)'");
+                "min(...) and max(...) need two or more expressions; over a target set, write 'min "
+                "l2(z, goal)'");
         else if (is(stuck_.previous, {EtlParser::KTH}))
             to.note("kth takes its rank in brackets: kth(3) l2(z, goal)");
-        else if (is_reserved_word(found_, file_) &&
-                 stuck_.expected.contains(std::size_t{EtlParser::IDENTIFIER}) && !slice_ended())
+        else if (is_reserved_word(found_, file_) && stuck_.expects(EtlParser::IDENTIFIER) &&
+                 !slice_ended())
             to.note(fmt::format("{} is reserved: it is {}", quoted(found_, file_),
                                 description_of_reserved(found)));
     }
 
-    /// How the thing that is being read is written.
+    /// Adds a note on how the current construct is written.
     void add_note_on_rule(Diagnostic& to) const {
         const bool in_duration = stuck_.rule == EtlParser::RuleDuration ||
                                  stuck_.parent_rule == EtlParser::RuleDuration ||
                                  is(stuck_.previous, {EtlParser::HELD});
         if (in_duration) {
-            to.note("'held' takes one bound, for how long: held[20 steps] f, held[2 s] f");
+            to.note("'held' takes a single duration: held[20 steps] f, held[2 s] f");
             return;
         }
         switch (stuck_.rule) {
@@ -253,9 +240,7 @@ private:
                     "[0, 20 steps], [0s, 2s]");
                 break;
             case EtlParser::RuleThreshold:
-                to.note(
-                    "what is compared stands on the left, its threshold on the right: x - y <= "
-                    "0.5");
+                to.note("the expression is on the left, its threshold on the right: x - y <= 0.5");
                 break;
             case EtlParser::RuleComparisonOperator:
                 if (stuck_.declaration == EtlParser::PREDICATE)
@@ -283,19 +268,7 @@ SyntaxError explain(const Stuck& stuck, const Token& next, const source::File& f
     return {Explanation(stuck, found, file).make(), text_of(found, file), previous};
 }
 
-Token* Strategy::recoverInline(antlr4::Parser* parser) {
-    give_up(parser, parser->getCurrentToken());
-}
-
-void Strategy::recover(antlr4::Parser* parser, std::exception_ptr error) {
-    try {
-        std::rethrow_exception(error);
-    } catch (const antlr4::RecognitionException& e) {
-        give_up(parser, e.getOffendingToken());
-    }
-}
-
-void Strategy::give_up(antlr4::Parser* parser, const Token* found) {
+void Strategy::stop(antlr4::Parser* parser, const Token* found) {
     const auto index = [this](const Token* token) {
         // Tokens of a slice are in the order of their offsets.
         std::size_t i = slice_.begin;
@@ -316,8 +289,7 @@ void Strategy::give_up(antlr4::Parser* parser, const Token* found) {
                       context->getRuleIndex(),
                       parent != nullptr ? parent->getRuleIndex() : context->getRuleIndex(),
                       tokens_[slice_.begin]->getType(),
-                      found != parser->getCurrentToken(),
-                      &parser->getVocabulary()};
+                      found != parser->getCurrentToken()};
     throw explain(stuck, *tokens_[slice_.end], file_);
 }
 

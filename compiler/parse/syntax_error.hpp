@@ -1,7 +1,5 @@
-// What stops the reading of one declaration.
-// Takes: the place where ANTLR's parser is stuck. Gives: one diagnostic in the user's terms, thrown
-// as SyntaxError. Keeps true: parsing stops at a declaration's first error; ANTLR's own recovery
-// and messages are never used.
+// Explains an error in one declaration in the user's terms, as a SyntaxError. Parsing stops at a
+// declaration's first error.
 #pragma once
 
 #include <string>
@@ -13,36 +11,26 @@ namespace etlc::parse {
 
 struct SyntaxError {
     diag::Diagnostic diagnostic;
-    /// The words at the place: an error that only follows from a reserved word used as a name is
-    /// told by them.
-    std::string found;
-    std::string previous;
+    /// The words at the place; they identify errors that only follow from a reserved word used as a
+    /// name.
+    std::string found{};
+    std::string previous{};
 };
 
-class Strategy final : public antlr4::ANTLRErrorStrategy {
+class Strategy final : public StopAtError {
 public:
     Strategy(const source::File& file, const Tokens& tokens, Slice slice)
         : file_(file), tokens_(tokens), slice_(slice) {}
 
-    void reset(antlr4::Parser* /*parser*/) override {}
-    Token* recoverInline(antlr4::Parser* parser) override;
-    void recover(antlr4::Parser* parser, std::exception_ptr error) override;
-    void sync(antlr4::Parser* /*parser*/) override {}
-    bool inErrorRecoveryMode(antlr4::Parser* /*parser*/) override { return false; }
-    void reportMatch(antlr4::Parser* /*parser*/) override {}
-    void reportError(antlr4::Parser* /*parser*/,
-                     const antlr4::RecognitionException& /*error*/) override {}
-
 private:
-    [[noreturn]] void give_up(antlr4::Parser* parser, const Token* found);
+    void stop(antlr4::Parser* parser, const Token* found) override;
 
     const source::File& file_;
     const Tokens& tokens_;
     Slice slice_;
 };
 
-/// `next`: the first token after the slice, which is what the user sees where the slice ended too
-/// early.
+/// `next` is the first token after the slice, which the user sees where the slice ended too early.
 SyntaxError explain(const Stuck& stuck, const Token& next, const source::File& file);
 
 }  // namespace etlc::parse

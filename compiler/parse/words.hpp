@@ -1,7 +1,5 @@
-// The words of a text, for editors.
-// Takes: a file. Gives: what the lexer makes of it, with the place of each word; blanks and
-// comments lie between them. Keeps true: any bytes are words; they stand in order and do not
-// overlap.
+// The words of a text, for editors: the lexer's tokens with their places, in order. Blanks and
+// comments lie between them; any bytes are words.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +14,7 @@ namespace etlc::parse {
 struct Word {
     enum class Kind : std::uint8_t {
         reserved,    ///< cannot be a name
-        contextual,  ///< a word of the language where it can be one, else a name
+        contextual,  ///< a word of the language in some places, otherwise a name
         name,
         number,
         string,
@@ -29,7 +27,7 @@ struct Word {
 
 std::vector<Word> words_of(const source::File& file);
 
-/// Whether the grammar takes `text` as a name, as it does contextual words.
+/// Whether the grammar accepts `text` as a name; contextual words count.
 bool is_name(std::string_view text);
 
 }  // namespace etlc::parse

@@ -1,7 +1,5 @@
-// From the typed model to the plan: lowered, optimised, planned.
-// Takes: a model, as check/ gives it or made from such a one (a ground truth, say), and the limits.
-// Gives: the plan with all that it points to. Keeps true: one place that knows this order; whoever
-// needs the plan of a model asks here.
+// Compiles a typed model to a plan: lowered, optimised, planned. All callers that need the plan of
+// a model use this function, so only it knows the order of the stages.
 #pragma once
 
 #include <memory>
@@ -20,17 +18,17 @@ struct Options {
     plan::Limits limits;
     check::Values values = check::Values::robustness;
     plan::Storage targets_as = plan::Storage::f32;
-    std::optional<plan::RecorderRequest> recorder;  ///< of the class; nothing else has one
+    std::optional<plan::RecorderRequest> recorder;  ///< only for the class
 };
 
-/// A spec through all stages. The model stays where it is: graph and plan point to it.
+/// A spec after all stages. The model stays at its address, since graph and plan point to it.
 struct Compiled {
     std::unique_ptr<check::Model> model;
     std::unique_ptr<ir::Program> program;
     plan::Plan plan;
 };
 
-/// Nothing where the plan exceeds the limits, as the sink then says.
+/// Returns nothing if the plan exceeds the limits, with an error in the sink.
 std::optional<Compiled> compile(check::Model model, const Options& options, diag::Sink& sink);
 
 }  // namespace etlc::pipeline

@@ -72,38 +72,39 @@ TEST(Claims, AreReadOffTheNegationNormalForm) {
     EXPECT_EQ(claims_of("F held[3] a"), success + "0.1");
     EXPECT_EQ(claims_of("G !held[3] a"), alarm + "0.1");
     EXPECT_EQ(claims_of("G (near -> F a)"), success + "0.1");  // on scalars alone: its own truth
-    EXPECT_EQ(claims_of("F (s > 0.5 && flag)"),
-              "exact, robustness 0 aside: nothing in it is calibrated, and its predicates are "
-              "their own truth");
+    EXPECT_EQ(
+        claims_of("F (s > 0.5 && flag)"),
+        "exact, except at robustness 0: no predicate is calibrated, and each is its own truth");
 }
 
 TEST(Claims, NothingWhereNothingIsKnown) {
-    EXPECT_EQ(claims_of("F e"), "nothing: 'e' is calibrated for F1");
-    EXPECT_EQ(claims_of("F (a && c)"), "nothing: 'c' covers frames, not episodes");
+    EXPECT_EQ(claims_of("F e"), "no guarantee: 'e' is calibrated for F1");
+    EXPECT_EQ(claims_of("F (a && c)"), "no guarantee: 'c' is calibrated for frames, not episodes");
     EXPECT_EQ(claims_of("F (a && literal)"),
-              "nothing: 'literal' has a literal threshold and is not its own truth");
+              "no guarantee: 'literal' has a threshold that was not calibrated");
     EXPECT_EQ(claims_of("F (a && meant)"),
-              "nothing: 'meant' has a literal threshold and is not its own truth");
-    EXPECT_EQ(claims_of("F (a && !b)"), "nothing: 'a' stands in it plain, 'b' negated");
-    EXPECT_EQ(claims_of("F (a <-> flag)"), "nothing: 'a' stands in it both plain and negated");
-    EXPECT_EQ(claims_of("G !rise a"), "nothing: 'a' stands in it both plain and negated");
-    EXPECT_EQ(claims_of("F fall a"), "nothing: 'a' stands in it both plain and negated");
-    EXPECT_EQ(claims_of("F (half && rest)"), "nothing: the alphas of its predicates add up to 1");
+              "no guarantee: 'meant' has a threshold that was not calibrated");
+    EXPECT_EQ(claims_of("F (a && !b)"), "no guarantee: 'a' occurs plain and 'b' negated");
+    EXPECT_EQ(claims_of("F (a <-> flag)"), "no guarantee: 'a' occurs both plain and negated");
+    EXPECT_EQ(claims_of("G !rise a"), "no guarantee: 'a' occurs both plain and negated");
+    EXPECT_EQ(claims_of("F fall a"), "no guarantee: 'a' occurs both plain and negated");
+    EXPECT_EQ(claims_of("F (half && rest)"),
+              "no guarantee: the alphas of its predicates add up to 1");
 }
 
 TEST(Claims, MixedConjunctsSpeakForThemselves) {
     EXPECT_EQ(claims_of("F a && G !b"),
-              "nothing: 'a' stands in it plain, 'b' negated"
+              "no guarantee: 'a' occurs plain and 'b' negated"
               " | [F a] P(some verdict of a new episode misses a success) <= 0.1"
               " | [G !b] P(some verdict of a new episode misses an alarm) <= 0.05");
     EXPECT_EQ(claims_of("!(G a -> F b)"),
-              "nothing: 'a' stands in it plain, 'b' negated"
+              "no guarantee: 'a' occurs plain and 'b' negated"
               " | [G a] P(some verdict of a new episode misses a success) <= 0.1"
               " | [!(F b)] P(some verdict of a new episode misses an alarm) <= 0.05");
     EXPECT_EQ(claims_of("F a && F e"),
-              "nothing: 'e' is calibrated for F1"
+              "no guarantee: 'e' is calibrated for F1"
               " | [F a] P(some verdict of a new episode misses a success) <= 0.1"
-              " | [F e] nothing: 'e' is calibrated for F1");
+              " | [F e] no guarantee: 'e' is calibrated for F1");
 }
 
 // ---- simulation ---------------------------------------------------------------------------------

@@ -7,7 +7,7 @@
 
 #include "changing.hpp"
 #include "check/check.hpp"
-#include "check/guarantees/reads.hpp"
+#include "check/guarantees/provenance.hpp"
 #include "parse/parse.hpp"
 
 namespace etlc::tests {

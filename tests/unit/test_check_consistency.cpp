@@ -72,7 +72,7 @@ TEST(Consistency, CountsFollowFromAlphaAndTheScores) {
     EXPECT_EQ(said(good, [](Entry& e) { e.n = 0; }),
               "'predicates.p.n' is 0, expected a number of scores from 1");
     EXPECT_EQ(said(good, [](Entry& e) { e.alpha = "0.05"; }),
-              "'predicates.p.n' is 9, expected at least 19, which alpha = 0.05 takes");
+              "'predicates.p.n' is 9, expected at least 19, which alpha = 0.05 needs");
     EXPECT_EQ(said(good, [](Entry& e) { std::swap(e.scores[2], e.scores[3]); }),
               "'predicates.p.scores[3]' is 1, expected at least 1.5, the score before it");
     EXPECT_EQ(said(pooled("class_conditional"), [](Entry& e) { e.n = 100; }),
@@ -82,10 +82,9 @@ TEST(Consistency, CountsFollowFromAlphaAndTheScores) {
               "'predicates.p.n' is 18446744073709551615, expected a number of scores from 1");
     EXPECT_EQ(
         said(pooled("f1"), [](Entry& e) { e.scores.clear(); }),
-        "'predicates.p.scores' has 0 elements, expected 1 or 2, the score that was taken and the "
-        "next");
+        "'predicates.p.scores' has 0 elements, expected 1 or 2: the chosen score and the next");
     EXPECT_EQ(said(pooled("class_conditional"), [](Entry& e) { e.scores.push_back(9); }),
-              "'predicates.p.scores' has 2 elements, expected 1, the score that was taken");
+              "'predicates.p.scores' has 2 elements, expected 1: the chosen score");
 }
 
 TEST(Consistency, EpisodesAreThereOnceEach) {
@@ -96,10 +95,10 @@ TEST(Consistency, EpisodesAreThereOnceEach) {
         "'episodes' has 8 elements, expected at least 9: one for each score of 'predicates.p'");
     std::vector<std::uint64_t> twice = episodes(10);
     twice[7] = twice[2];
-    EXPECT_EQ(said(
-                  good, [](Entry&) {}, true, twice),
-              "'episodes[7]' is '0000000000000012', which stands in it before; expected each "
-              "episode once");
+    EXPECT_EQ(
+        said(
+            good, [](Entry&) {}, true, twice),
+        "'episodes[7]' is '0000000000000012', which occurs earlier; expected each episode once");
     EXPECT_EQ(said(good, [](Entry& e) { e.against = "missed_alarm"; }, true, {}),
               "'predicates.p.episodes' has 0 elements, expected at least 9: one for each score of "
               "'predicates.p'");

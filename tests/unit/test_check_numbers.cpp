@@ -11,7 +11,6 @@
 #include "check/model/model.hpp"
 #include "check/numbers/decimal.hpp"
 #include "check/numbers/duration.hpp"
-#include "check/numbers/rounding.hpp"
 #include "checking.hpp"
 
 namespace etlc::check {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "check/numbers/range_arithmetic.hpp"
+#include "check/numbers/range.hpp"
 #include "checking.hpp"
 
 namespace etlc::check {

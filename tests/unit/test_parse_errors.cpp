@@ -266,7 +266,7 @@ TEST(Kinds, FormulasAndExpressionsAreToldApart) {
         {"let f = x == true;", "E0108 2:14 expected an expression, found the formula 'true'"},
         {"let f = 0 < x < 1;", "E0109 2:15 comparisons do not chain"},
         {"let f = x < calibrated(f1);",
-         "E0109 2:13 a calibrated threshold stands only in a predicate"},
+         "E0109 2:13 a calibrated threshold is allowed only in a predicate"},
     };
     for (const auto& [line, said] : cases) EXPECT_EQ(of_line(line), said + "\n") << line;
 }

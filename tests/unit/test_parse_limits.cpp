@@ -96,7 +96,8 @@ TEST(Limits, ChainsThatNestToTheLeft) {
 
 TEST(Limits, SpecsThatAreTooLarge) {
     const Parsed parsed("spec a;\n" + std::string(10U << 20U, ' '));
-    EXPECT_EQ(parsed.brief(), "E0111 0:0 a spec of 10485768 bytes; at most 1048576 are read\n");
+    EXPECT_EQ(parsed.brief(),
+              "E0111 0:0 the spec has 10485768 bytes; etlc reads at most 1048576\n");
     std::string largest = "spec a;";
     largest.resize(parse::kMaxSpecBytes, ' ');
     EXPECT_EQ(Parsed(largest).errors(), "");

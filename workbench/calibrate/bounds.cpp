@@ -6,8 +6,8 @@
 #include <limits>
 #include <numeric>
 
-#include "check/numbers/range_arithmetic.hpp"
-#include "check/numbers/rounding.hpp"
+#include "check/numbers/decimal.hpp"
+#include "check/numbers/range.hpp"
 #include "episodes/exact_distance.hpp"
 #include "etlmon/hosted/error_bounds.hpp"
 #include "etlmon/temporal/expression.hpp"

@@ -7,6 +7,7 @@
 #include "calibrate/doubts.hpp"
 #include "calibrate/folds.hpp"
 #include "check/guarantees/adaptation.hpp"
+#include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/conformal.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "calibrate/bounds.hpp"
-#include "check/numbers/rounding.hpp"
+#include "check/numbers/decimal.hpp"
 
 namespace etlc::calibrate {
 

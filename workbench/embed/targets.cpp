@@ -4,7 +4,7 @@
 #include <set>
 
 #include "check/encoders/encoded.hpp"
-#include "check/encoders/settings.hpp"
+#include "check/encoders/encoders.hpp"
 #include "data/arrays/array.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"

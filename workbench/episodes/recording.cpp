@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "check/encoders/marks.hpp"
+#include "check/encoders/encoders.hpp"
 #include "data/datasets/trace.hpp"
 #include "data/text/quote.hpp"
 #include "embedded/embedded.hpp"

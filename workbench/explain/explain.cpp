@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "check/formulas/looks.hpp"
 #include "etlmon/temporal/shift.hpp"
 #include "explain/support.hpp"
 

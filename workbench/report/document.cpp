@@ -27,18 +27,6 @@ Json number(float value) {
     return std::isfinite(value) ? Json(std::stod(fmt::format("{}", value))) : Json();
 }
 
-const char* symbol(check::Comparison comparison) {
-    switch (comparison) {
-        case check::Comparison::less_equal: return "<=";
-        case check::Comparison::less: return "<";
-        case check::Comparison::greater_equal: return ">=";
-        case check::Comparison::greater: return ">";
-        case check::Comparison::equal: return "==";
-        case check::Comparison::not_equal: break;
-    }
-    return "!=";
-}
-
 Index declared(const check::Model& model, Index target) {
     const Index source = model.targets[target].source;
     return source == check::kNone ? target : source;

@@ -1,4 +1,4 @@
-// What a call asks of check, besides the spec.
+// Options of check.
 #pragma once
 
 #include <string>
@@ -9,42 +9,41 @@
 
 namespace etlc::check {
 
-/// --set NAME=VALUE: another value for a constant.
+/// --set NAME=VALUE: replaces the value of a constant.
 struct Setting {
     std::string name;
-    std::string number;  ///< decimal text, with a leading '-' where it is negative
-    std::string unit;    ///< "us", "ms", "s", "min", "steps"; of a number ""
+    std::string number;  ///< decimal text, with a leading '-' if negative
+    std::string unit;    ///< "us", "ms", "s", "min", "steps"; empty for a number
 };
 
 struct Options {
-    /// Thresholds file; empty: SPEC.thresholds.json beside the spec where it exists.
+    /// Thresholds file; if empty, SPEC.thresholds.json beside the spec.
     std::string thresholds_path;
-    /// Thresholds that are in no file: then none is looked for.
+    /// Thresholds to use in place of a file.
     const thresholds::File* thresholds = nullptr;
-    /// `etlc calibrate` reads a spec before it has thresholds: epsilon is then NaN and no file is
-    /// looked for.
+    /// For `etlc calibrate`: no thresholds are read, and epsilon is NaN.
     bool allow_uncalibrated = false;
-    /// Or before it has those of its monitors: their shift is then NaN.
+    /// For `etlc calibrate`: the shifts of monitors are not read, and are NaN.
     bool allow_uncalibrated_monitors = false;
-    /// File of what is fitted; empty: SPEC.fitted.npz beside the spec where it exists.
+    /// Fitted file; if empty, SPEC.fitted.npz beside the spec.
     std::string fitted_path;
-    /// What is fitted, and in no file: then none is looked for.
+    /// Fitted values to use in place of a file.
     const fitted::File* fitted = nullptr;
-    /// File of embeddings; empty: SPEC.embedded.npz beside the spec.
+    /// File of embeddings; if empty, SPEC.embedded.npz beside the spec.
     std::string embedded_path;
-    /// `etlc fit` reads a spec before it has what it fits: that has its shape and no values.
+    /// For `etlc fit`: fitted elements have their shape but no values.
     bool allow_unfitted = false;
-    /// `--check` takes a spec before its files are there: a target file, a thresholds file or an
-    /// entry of it that is missing is a note, and what builds on it is not checked.
+    /// For `--check`: a missing target file, thresholds file or entry is a note, and what needs it
+    /// is not checked.
     bool allow_missing = false;
-    /// `--lets`: what lets say at each step is telemetry.
+    /// For `--lets`: the values of lets at each step are telemetry.
     bool lets = false;
-    /// `--retargetable`: the numbers of the spec may change while its monitors run.
+    /// For `--retargetable`: the numbers of the spec may change while its monitors run.
     bool retargetable = false;
     std::vector<Setting> settings;
 };
 
-/// Where the thresholds of a spec are looked for: SPEC.thresholds.json beside SPEC.etl.
+/// Returns SPEC.thresholds.json beside SPEC.etl.
 std::string default_thresholds_path(const std::string& spec_path);
 
 }  // namespace etlc::check

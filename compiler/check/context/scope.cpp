@@ -23,7 +23,7 @@ constexpr std::array<Words, kNameKinds> kWords{{
     {"declaration", "a declaration"},
 }};
 
-/// Names compared in all searches for near ones.
+/// Limit on the comparisons in all searches for similar names.
 constexpr std::size_t kMaxComparisons = 1'000'000;
 
 }  // namespace

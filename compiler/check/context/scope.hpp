@@ -1,7 +1,5 @@
-// The names of a spec: one namespace for constants, encoders, inputs, projections, targets,
-// predicates, lets and monitors. Takes: declarations, in file order. Gives: what a name means, and
-// what was never used. Keeps true: every declaration has an entity, also one that repeats a name; a
-// name means its first declaration.
+// The names of a spec, in one namespace for all kinds of declarations. Every declaration has an
+// entity, even if it repeats a name; a name means its first declaration.
 #pragma once
 
 #include <array>
@@ -16,8 +14,8 @@
 
 namespace etlc::check {
 
-/// `unreadable`: parse/ saw a declaration of the name but could not read it; it fits wherever it is
-/// used.
+/// `unreadable`: parse/ saw a declaration of the name but could not read it; the name is accepted
+/// everywhere.
 enum class NameKind : std::uint8_t {
     constant,
     encoder,
@@ -36,21 +34,20 @@ std::string_view word_with_article(NameKind kind);  ///< "an input"
 
 struct Entity {
     std::string name;
-    Span span;  ///< of the name where it is declared
+    Span span;  ///< of the declared name
     bool duplicate = false;
-    bool broken = false;  ///< had an error: uses are accepted in silence
+    bool broken = false;  ///< has an error; uses are accepted silently
     bool used = false;
 };
 
 struct Reference {
     NameKind kind = NameKind::unreadable;
-    Index index = 0;  ///< of the model's elements of that kind
+    Index index = 0;  ///< in the model's elements of that kind
 };
 
 class Scope {
 public:
-    /// Adds the next declaration of its kind. Returns the earlier declaration where the name is
-    /// taken.
+    /// Adds the next declaration of its kind. Returns the earlier declaration if the name is taken.
     const Entity* declare(NameKind kind, const ast::Name& name);
 
     const Reference* find(std::string_view name) const;
@@ -60,8 +57,8 @@ public:
     Entity& entity(const Reference& reference) { return entity(reference.kind, reference.index); }
     std::vector<Entity>& all(NameKind kind) { return entities_[static_cast<std::size_t>(kind)]; }
 
-    /// The name among those of `kinds` that `name` was probably meant to be; empty where none is
-    /// near, or where a spec full of unknown names would make the search long.
+    /// Returns the name of one of `kinds` that is most similar to `name`; empty if none is similar,
+    /// or if a spec full of unknown names would make the search long.
     std::string nearest(std::string_view name, const std::vector<NameKind>& kinds);
 
 private:

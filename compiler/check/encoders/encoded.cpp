@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
-#include "check/context/steps.hpp"
-#include "check/encoders/frames.hpp"
+#include "check/context/context.hpp"
+#include "check/encoders/encoders.hpp"
+#include "check/guarantees/provenance.hpp"
 #include "check/matrices/matrices.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
@@ -18,11 +20,51 @@ namespace {
 
 using diag::Code;
 
-Span span_of(const ast::Target::Source& source) {
-    return std::visit([](const auto& s) { return s.span; }, source);
+constexpr std::string_view kEmbedAgain = "embed again with 'etlc embed'";
+
+std::optional<embedded::File> read_file(Context& c, const Encoder& first) {
+    const std::string& given = c.options.embedded_path;
+    const std::string path = given.empty() ? embedded::default_path(c.file.path()) : given;
+    if (exists(path))
+        return read_made(c, path, embedded::read, first.span,
+                         fmt::format("'{}' makes embeddings", first.name));
+    c.report_data({Code::embedded_missing,
+                   fmt::format("'{}' makes embeddings, but there is no file {}", first.name, path),
+                   first.span})
+        .note("'etlc embed' makes it from the images in the spec; --embedded selects another file");
+    return std::nullopt;
 }
 
-/// Nothing where it had an error, which is reported.
+/// Returns the differences since the encoder was run. A missing model is no difference: it is not
+/// needed to build a monitor.
+std::vector<std::string> changes(Context& c, Encoder encoder, const embedded::Encoder& then) {
+    std::vector<std::string> found;
+    if (then.declaration != encoder.declaration)
+        found.push_back(changed("the declaration", then.declaration, encoder.declaration));
+    if (encoder.dimension != 0 && then.dimension != encoder.dimension)
+        found.push_back(changed("the dimension", std::to_string(then.dimension),
+                                std::to_string(encoder.dimension)));
+    if (then.kind != embedded::kCommand && !then.kind.starts_with(embedded::kOnnxRuntime))
+        found.emplace_back(
+            "an earlier etlc ran it with OpenCV, whose results may differ, or with an unknown "
+            "version of ONNX Runtime");
+    const std::string path = beside_spec(c, encoder.model);
+    if (!found.empty() || !exists(path)) return found;
+    c.dependencies.insert(path);
+    if (exists(settings_path(path))) c.dependencies.insert(settings_path(path));
+    std::string place;
+    const auto now = describe(encoder, path, place);
+    if (!now) {
+        c.sink.report(data::in_file(now.failure(), place));
+        return found;
+    }
+    if (now->model != then.model) found.push_back(fmt::format("{} has changed", encoder.model));
+    if (now->settings != then.settings)
+        found.push_back(changed("the settings", then.settings, now->settings));
+    return found;
+}
+
+/// Returns nothing after an error.
 std::optional<Encoded> encoded_of(Context& c, const ast::Target::Source& source,
                                   const std::optional<ast::Name>& encoder) {
     Encoded result;
@@ -30,10 +72,10 @@ std::optional<Encoded> encoded_of(Context& c, const ast::Target::Source& source,
     const auto* const images = std::get_if<ast::Images>(&source);
     if (!encoder) {
         c.report(Code::encoder_use, result.span,
-                 fmt::format("{} by which encoder? A target holds embeddings",
+                 fmt::format("{} need an encoder, since a target consists of embeddings",
                              images != nullptr ? "images" : "frames of a video"))
             .note(images != nullptr ? "for example: target T = images(\"bay/*.png\") by NAME;"
-                                    : "of a recording with embeddings, name the input: "
+                                    : "for a recording with embeddings, name the input: "
                                       "frames(\"FILE\", \"z\", [120])");
         return std::nullopt;
     }
@@ -56,22 +98,16 @@ std::optional<Encoded> encoded_of(Context& c, const ast::Target::Source& source,
     return result;
 }
 
-std::vector<std::string> paths_in(const embedded::Entry& entry) {
-    std::vector<std::string> paths;
-    for (const embedded::Source& source : entry.sources) paths.push_back(source.path);
-    return paths;
-}
-
-/// What is not as it was, a sentence each. Files that are gone, all of them, are not missed: where
-/// a monitor is built there need be no images.
+/// Returns the differences since the images were embedded. If all files are missing there is no
+/// difference: they are not needed to build a monitor.
 std::vector<std::string> changes(Context& c, const Encoded& encoded, const embedded::Entry& entry) {
     const auto now = files_of(encoded, c.file.path());
     if (!now) return {};
     std::vector<std::string> found;
-    const std::vector<std::string> then = paths_in(entry);
+    std::set<std::string> then;
+    for (const embedded::Source& source : entry.sources) then.insert(source.path);
     for (const std::string& path : *now)
-        if (std::find(then.begin(), then.end(), path) == then.end())
-            found.push_back(fmt::format("{} is new", path));
+        if (!then.contains(path)) found.push_back(fmt::format("{} is new", path));
     for (const embedded::Source& source : entry.sources) {
         if (std::find(now->begin(), now->end(), source.path) == now->end()) {
             found.push_back(fmt::format("{} is gone", source.path));
@@ -84,6 +120,15 @@ std::vector<std::string> changes(Context& c, const Encoded& encoded, const embed
             found.push_back(fmt::format("{} has changed", source.path));
     }
     return found;
+}
+
+/// Returns the index in Model::encoded, which has equal elements once.
+Index add(Model& model, const Encoded& encoded) {
+    const auto same = [&](const Encoded& other) { return other.text == encoded.text; };
+    const auto at = std::find_if(model.encoded.begin(), model.encoded.end(), same);
+    const auto index = static_cast<Index>(at - model.encoded.begin());
+    if (at == model.encoded.end()) model.encoded.push_back(encoded);
+    return index;
 }
 
 }  // namespace
@@ -103,19 +148,6 @@ diag::Result<std::vector<std::string>> files_of(const Encoded& encoded,
     return std::vector<std::string>{encoded.path};
 }
 
-namespace {
-
-/// Of Model::encoded, where equal ones stand once.
-Index add(Model& model, const Encoded& encoded) {
-    const auto same = [&](const Encoded& other) { return other.text == encoded.text; };
-    const auto at = std::find_if(model.encoded.begin(), model.encoded.end(), same);
-    const auto index = static_cast<Index>(at - model.encoded.begin());
-    if (at == model.encoded.end()) model.encoded.push_back(encoded);
-    return index;
-}
-
-}  // namespace
-
 std::optional<Matrix> read_encoded(Context& c, const ast::Target::Source& source,
                                    const std::optional<ast::Name>& encoder) {
     const auto encoded = encoded_of(c, source, encoder);
@@ -123,31 +155,25 @@ std::optional<Matrix> read_encoded(Context& c, const ast::Target::Source& source
     const std::string& path = c.embedded_file->path;
     const auto found = c.embedded_file->entries.find(encoded->text);
     if (found == c.embedded_file->entries.end()) {
-        diag::Diagnostic missing{Code::embedded_missing,
-                                 fmt::format("{} has nothing for {}", path, encoded->text),
-                                 encoded->span,
-                                 {},
-                                 0,
-                                 0,
-                                 {}};
-        missing.is_allowed = c.options.allow_missing;
-        c.lacks_data = c.lacks_data || missing.is_allowed;
-        c.sink.report(std::move(missing)).note("'etlc embed' makes it");
+        c.report_data({Code::embedded_missing,
+                       fmt::format("{} has no entry for {}", path, encoded->text), encoded->span})
+            .note("'etlc embed' makes it");
         return std::nullopt;
     }
     const embedded::Entry& entry = found->second;
-    if (const auto differences = changes(c, *encoded, entry); !differences.empty()) {
-        constexpr std::size_t kMostTold = 5;
-        auto& error = c.report(Code::embedded_stale, encoded->span,
-                               fmt::format("{} holds embeddings of other {} than there are now",
-                                           path, encoded->is_video ? "frames" : "images"));
-        for (std::size_t i = 0; i < std::min(differences.size(), kMostTold); ++i)
-            error.note(differences[i]);
-        if (differences.size() > kMostTold)
-            error.note(fmt::format("and {} more", differences.size() - kMostTold));
-        error.note("embed again with 'etlc embed'");
-        return std::nullopt;
+    std::vector<std::string> differences = changes(c, *encoded, entry);
+    constexpr std::size_t kMostShown = 5;
+    if (differences.size() > kMostShown) {
+        const std::string more = fmt::format("and {} more", differences.size() - kMostShown);
+        differences.resize(kMostShown);
+        differences.push_back(more);
     }
+    const bool is_current =
+        is_up_to_date(c, Code::embedded_stale, encoded->span,
+                      fmt::format("{} has embeddings of other {} than the present ones", path,
+                                  encoded->is_video ? "frames" : "images"),
+                      differences, kEmbedAgain);
+    if (!is_current) return std::nullopt;
     Matrix matrix;
     matrix.rows = entry.rows;
     matrix.columns = entry.columns;
@@ -157,6 +183,29 @@ std::optional<Matrix> read_encoded(Context& c, const ast::Target::Source& source
     matrix.hash = entry.hash;
     matrix.encoded = {{add(c.model, *encoded), 0, entry.rows}};
     return matrix;
+}
+
+void check_embeddings(Context& c) {
+    if (c.model.encoders.empty()) return;
+    c.embedded_file = read_file(c, c.model.encoders.front());
+    if (!c.embedded_file) return;
+    for (Encoder& encoder : c.model.encoders) {
+        const auto found = c.embedded_file->encoders.find(encoder.name);
+        if (found == c.embedded_file->encoders.end()) {
+            c.report_data(
+                 {Code::embedded_missing,
+                  fmt::format("{} has no embeddings by '{}'", c.embedded_file->path, encoder.name),
+                  encoder.span})
+                .note(std::string(kEmbedAgain));
+            continue;
+        }
+        encoder.fingerprint = embedded::fingerprint(found->second);
+        encoder.otherwise = embedded::fingerprints_otherwise(found->second);
+        is_up_to_date(c, Code::embedded_stale, encoder.span,
+                      fmt::format("'{}' is not the encoder that made {}", encoder.name,
+                                  c.embedded_file->path),
+                      changes(c, encoder, found->second), kEmbedAgain);
+    }
 }
 
 void collect_encoded(Context& c) {

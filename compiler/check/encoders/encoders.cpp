@@ -1,16 +1,75 @@
-// Declarations of encoders.
-#include <fmt/format.h>
+#include "check/encoders/encoders.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
 #include <set>
 
-#include "check/context/steps.hpp"
-#include "check/encoders/settings.hpp"
+#include "check/context/context.hpp"
+#include "check/numbers/decimal.hpp"
+#include "data/files/file.hpp"
+#include "data/files/hash.hpp"
+#include "data/text/quote.hpp"
+#include "thresholds/json.hpp"
 
 namespace etlc::check {
 
 namespace {
 
 using diag::Code;
+using diag::Failure;
+using thresholds::Json;
+
+constexpr std::uint64_t kMaxExtent = 1U << 14U;  ///< of an image, rows or columns
+constexpr std::uint64_t kMaxSettingsBytes = 1U << 20U;
+constexpr std::uint64_t kMaxSettingsValues = 1000;
+
+struct Key {
+    std::string_view key;
+    std::vector<float> Encoder::*values;
+    std::size_t count;
+    std::string_view expected;
+};
+
+constexpr Key kSettings[] = {
+    {"image", &Encoder::image, 2, "its rows and columns, whole numbers from 1 to 16384"},
+    {"mean", &Encoder::mean, 3, "a number each for red, green and blue"},
+    {"deviation", &Encoder::deviation, 3, "a positive number each for red, green and blue"}};
+
+bool fits(const Key& setting, const std::string& number, float& value) {
+    if (to_float(number, value) != Fit::fits) return false;
+    if (setting.key == "image") {
+        const auto extent = Decimal::parse(number).whole(kMaxExtent);
+        return extent && *extent > 0;
+    }
+    return setting.key == "mean" || Decimal::parse(number).is_positive();
+}
+
+std::string known_keys() {
+    std::vector<std::string> keys;
+    for (const Key& setting : kSettings) keys.push_back(data::in_quotes(setting.key));
+    return diag::alternatives(keys);
+}
+
+Failure wrong(const std::string& message) {
+    return {Code::encoder_form, message};
+}
+
+std::optional<Failure> take(Encoder& encoder, const std::string& key, const Json& value) {
+    const bool numbers = value.kind == Json::Kind::array &&
+                         std::all_of(value.items.begin(), value.items.end(), [](const Json& item) {
+                             return item.kind == Json::Kind::number;
+                         });
+    if (!numbers)
+        return wrong(fmt::format("{} is {}, expected an array of numbers", data::in_quotes(key),
+                                 describe(value)));
+    std::vector<std::string> texts;
+    for (const Json& item : value.items) texts.push_back(item.text);
+    const auto mistake = set_setting(encoder, key, texts);
+    return mistake ? std::optional(wrong(*mistake)) : std::nullopt;
+}
 
 bool set_settings(Context& c, const ast::Encoder& declaration, Encoder& encoder) {
     std::set<std::string> given;
@@ -22,13 +81,76 @@ bool set_settings(Context& c, const ast::Encoder& declaration, Encoder& encoder)
                 ? set_setting(encoder, setting.key.text, numbers)
                 : std::optional(fmt::format("{} is given twice", setting.key.text));
         if (!mistake) continue;
-        c.report(Code::encoder_form, setting.span, *mistake);
-        return false;
+        return c.refuse(Code::encoder_form, setting.span, *mistake);
     }
     return true;
 }
 
 }  // namespace
+
+std::optional<std::string> set_setting(Encoder& encoder, const std::string& key,
+                                       const std::vector<std::string>& numbers) {
+    const auto* const setting = std::find_if(std::begin(kSettings), std::end(kSettings),
+                                             [&](const Key& s) { return s.key == key; });
+    if (setting == std::end(kSettings))
+        return fmt::format("there is no setting {}; expected {}", data::in_quotes(key),
+                           known_keys());
+    std::vector<float> values;
+    bool good = numbers.size() == setting->count;
+    for (const std::string& number : numbers)
+        good = good && fits(*setting, number, values.emplace_back());
+    if (!good)
+        return fmt::format("{} [{}]; expected {}", key, fmt::join(numbers, ", "),
+                           setting->expected);
+    std::vector<float>& before = encoder.*setting->values;
+    if (!before.empty() && before != values)
+        return fmt::format("{} is [{}] in the spec and [{}] here; give it once", key,
+                           fmt::join(before, ", "), fmt::join(values, ", "));
+    before = std::move(values);
+    return std::nullopt;
+}
+
+std::string settings_text(const Encoder& encoder) {
+    const auto three = [](const std::vector<float>& values, float usual) {
+        return fmt::format("[{}]",
+                           fmt::join(values.empty() ? std::vector<float>(3, usual) : values, ", "));
+    };
+    const std::string image =
+        encoder.image.empty() ? "" : fmt::format("image [{}], ", fmt::join(encoder.image, ", "));
+    return fmt::format("{}mean {}, deviation {}", image, three(encoder.mean, 0),
+                       three(encoder.deviation, 1));
+}
+
+std::string settings_path(const std::string& model_path) {
+    return std::filesystem::path(model_path).replace_extension(".json").string();
+}
+
+std::optional<Failure> take_settings_file(Encoder& encoder, const std::string& model_path) {
+    const std::string path = settings_path(model_path);
+    std::error_code error;
+    if (path == model_path || !std::filesystem::exists(path, error)) return std::nullopt;
+    const auto text = data::read_file(path, kMaxSettingsBytes, Code::encoder_form);
+    if (!text) return text.failure();
+    const auto root =
+        thresholds::parse_json(*text, kMaxSettingsValues, Code::encoder_form, Code::encoder_form);
+    if (!root) return root.failure();
+    if (root->kind != Json::Kind::object)
+        return wrong(fmt::format("the file is {}, expected an object with {}", describe(*root),
+                                 known_keys()));
+    for (std::size_t i = 0; i < root->keys.size(); ++i)
+        if (auto failure = take(encoder, root->keys[i], root->items[i])) return failure;
+    return std::nullopt;
+}
+
+diag::Result<embedded::Encoder> describe(Encoder& encoder, const std::string& model_path,
+                                         std::string& place) {
+    place = model_path;
+    auto hash = data::hash_of_file(model_path, Code::encoder_refused);
+    if (!hash) return hash.failure();
+    place = settings_path(model_path);
+    if (auto failure = take_settings_file(encoder, model_path)) return *failure;
+    return embedded::Encoder{encoder.declaration, std::move(*hash), settings_text(encoder), "", 0};
+}
 
 void check_encoders(Context& c) {
     for_each_declaration<ast::Encoder>(c.spec, [&](const ast::Encoder& declaration, Index index) {
@@ -39,7 +161,7 @@ void check_encoders(Context& c) {
         bool good = set_settings(c, declaration, encoder);
         if (!declaration.model.key.empty()) {
             c.report(Code::encoder_form, declaration.model.key_span,
-                     "a model is a file of its own; expected load(\"FILE\") without a key");
+                     "a model is a separate file; expected load(\"FILE\") without a key");
             good = false;
         }
         if (!good) c.scope.entity(NameKind::encoder, index).broken = true;
@@ -47,6 +169,35 @@ void check_encoders(Context& c) {
             fmt::format("load(\"{}\"), {}", encoder.model, settings_text(encoder));
         c.model.encoders.push_back(std::move(encoder));
     });
+}
+
+std::optional<diag::Failure> other_encoder(const Model& model, const Input& input,
+                                           const std::string& array, const embedded::Marks& marks) {
+    if (input.encoder == kNone) return std::nullopt;
+    const Encoder& encoder = model.encoders[input.encoder];
+    const auto mark = marks.find(array);
+    const bool is_known = mark != marks.end() && !encoder.fingerprint.empty();
+    if (!is_known || mark->second == encoder.fingerprint) return std::nullopt;
+    const auto same_model = encoder.otherwise.find(mark->second);
+    const std::string run_by = same_model == encoder.otherwise.end()
+                                   ? ""
+                                   : fmt::format(", the same model run by {}", same_model->second);
+    return diag::Failure{
+        diag::Code::other_encoder,
+        fmt::format("'{}' is by the encoder {}{}; expected {}, which is '{}' of the spec",
+                    input.name, mark->second, run_by, encoder.fingerprint, encoder.name)};
+}
+
+bool is_unmarked(const Input& input, const std::string& array, const embedded::Marks& marks) {
+    return input.encoder != kNone && !marks.contains(array);
+}
+
+void explain_unmarked(diag::Diagnostic& warning) {
+    warning.note("embeddings by another encoder would be accepted too");
+    warning.note(
+        "`etlc embed` records the encoder in embedded.json, a member of the .npz file that "
+        "numpy.savez does not write: copy it as shown in docs/recordings.md under Fingerprints; "
+        "other kinds of recordings cannot record it");
 }
 
 }  // namespace etlc::check

@@ -1,13 +1,13 @@
-#include "check/encoders/frames.hpp"
+// Reads frames of a recording as rows: frames("ep.npz", "z", [120, 180]).
+#include "check/encoders/encoded.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
-#include "check/encoders/marks.hpp"
+#include "check/encoders/encoders.hpp"
 #include "check/matrices/matrices.hpp"
 #include "check/numbers/decimal.hpp"
 #include "data/arrays/array.hpp"
@@ -19,17 +19,17 @@ namespace {
 
 using diag::Code;
 
-/// Steps of a recording are counted from 0, in 32 bits.
+/// Steps of a recording are numbered from 0 in 32 bits.
 constexpr std::uint64_t kMaxFrame = kMaxBound;
-/// More frames than this are no choice of frames.
+/// Limit on the frames of one declaration.
 constexpr std::uint64_t kMaxFrames = 1U << 20U;
 
 std::optional<std::uint64_t> whole(Context& c, const ast::Number& number, std::uint64_t least) {
     const auto value = Decimal::parse(number.text).whole(kMaxFrame);
     if (value && *value >= least) return value;
-    c.report(Code::frames_form, number.span,
-             fmt::format("{}; expected a whole number of at least {}", shown(number), least));
-    return std::nullopt;
+    return c.no_value(
+        Code::frames_form, number.span,
+        fmt::format("{}; expected a whole number of at least {}", shown(number), least));
 }
 
 const Input* input_of(Context& c, const ast::Frames& written) {
@@ -39,12 +39,11 @@ const Input* input_of(Context& c, const ast::Frames& written) {
     const Input& input = c.model.inputs[index];
     if (input.is_embedding()) return &input;
     c.report(Code::frames_form, written.key_span,
-             fmt::format("'{}' is not an embedding, and the rows of a target are", written.key));
+             fmt::format("'{}' is not an embedding, but the rows of a target are", written.key));
     return nullptr;
 }
 
-/// The sample as float32, what the input's type makes of it aside; false, with a diagnostic, where
-/// it is missing.
+/// Converts a sample to float32, scaled if the input is i8; false, with an error, if it is missing.
 bool take(Context& c, const ast::Frames& written, const Input& input, std::uint64_t frame,
           const data::Sample& sample, std::vector<float>& row) {
     row.clear();
@@ -54,22 +53,17 @@ bool take(Context& c, const ast::Frames& written, const Input& input, std::uint6
     const bool finite =
         std::all_of(row.begin(), row.end(), [](float x) { return std::isfinite(x); });
     if (sample.present[0] && finite) return true;
-    c.report(Code::no_such_frame, written.span,
-             fmt::format("{}: '{}' is missing or not finite at step {}", written.path, written.key,
-                         frame));
-    return false;
+    return c.refuse(Code::no_such_frame, written.span,
+                    fmt::format("{}: '{}' is missing or not finite at step {}", written.path,
+                                written.key, frame));
 }
 
 void report(Context& c, const ast::Frames& written, const std::string& path,
             const diag::Failure& failure) {
     diag::Diagnostic diagnostic = data::in_trace(failure, path);
-    diagnostic.notes.clear();  // of --map, which is for the episodes of the command
+    diagnostic.notes.clear();  // they explain --map, which is for the episodes of a command
     diagnostic.span = written.span;
-    std::error_code unknown;
-    diagnostic.is_allowed = c.options.allow_missing &&
-                            !std::filesystem::exists(data::trace_file(path), unknown) && !unknown;
-    c.lacks_data = c.lacks_data || diagnostic.is_allowed;
-    c.sink.report(std::move(diagnostic));
+    c.report_data(std::move(diagnostic), !exists(data::trace_file(path)));
 }
 
 }  // namespace
@@ -84,16 +78,12 @@ std::optional<std::vector<std::uint64_t>> frames_of(Context& c, const ast::Frame
     if (!written.stride) return listed;
     const auto stride = whole(c, *written.stride, 1);
     if (!stride) return std::nullopt;
-    if (listed.size() != 2 || listed[0] > listed[1]) {
-        c.report(Code::frames_form, written.frames_span,
-                 "with a stride, expected the first and the last frame: [10, 50]");
-        return std::nullopt;
-    }
-    if ((listed[1] - listed[0]) / *stride >= kMaxFrames) {
-        c.report(Code::frames_form, written.frames_span,
-                 fmt::format("more than {} frames", kMaxFrames));
-        return std::nullopt;
-    }
+    if (listed.size() != 2 || listed[0] > listed[1])
+        return c.no_value(Code::frames_form, written.frames_span,
+                          "with a stride, expected the first and the last frame: [10, 50]");
+    if ((listed[1] - listed[0]) / *stride >= kMaxFrames)
+        return c.no_value(Code::frames_form, written.frames_span,
+                          fmt::format("more than {} frames", kMaxFrames));
     std::vector<std::uint64_t> frames;
     for (std::uint64_t frame = listed[0]; frame <= listed[1]; frame += *stride)
         frames.push_back(frame);
@@ -132,12 +122,10 @@ std::optional<Matrix> read_frames(Context& c, const ast::Frames& written) {
     for (std::uint64_t step = 0; step <= last; ++step) {
         const auto more = (*trace)->next(sample);
         if (!more) return report(c, written, path, more.failure()), std::nullopt;
-        if (!*more) {
-            c.report(Code::no_such_frame, written.frames_span,
-                     fmt::format("{} has {}; there is no step {} (from 0)", written.path,
-                                 diag::counted(step, "step"), last));
-            return std::nullopt;
-        }
+        if (!*more)
+            return c.no_value(Code::no_such_frame, written.frames_span,
+                              fmt::format("{} has {}; there is no step {} (from 0)", written.path,
+                                          diag::counted(step, "step"), last));
         const auto [first, end] = rows_of.equal_range(step);
         for (auto at = first; at != end; ++at) {
             if (!take(c, written, *input, step, sample, row)) return std::nullopt;

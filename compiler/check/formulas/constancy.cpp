@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "check/formulas/formulas.hpp"
-
 namespace etlc::check {
 
 namespace {
@@ -17,7 +15,7 @@ Constancy negation(Constancy a) {
     return a == varies ? varies : a == always ? never : always;
 }
 
-/// `deciding` decides alone, as `never` does under &&.
+/// Combines operands of && or ||, of which `deciding` decides alone, as `never` does for &&.
 Constancy combine(const Operands& operands, Constancy deciding) {
     const auto is = [](Constancy value) {
         return [value](Constancy operand) { return operand == value; };
@@ -27,28 +25,23 @@ Constancy combine(const Operands& operands, Constancy deciding) {
     return std::all_of(operands.begin(), operands.end(), is(other)) ? other : varies;
 }
 
-Constancy disjunction(const Operands& operands) {
-    return combine(operands, always);
-}
-
 Constancy equivalence(Constancy a, Constancy b) {
     if (a == varies || b == varies) return varies;
     return a == b ? always : never;
 }
 
-/// F and O: without an operand that holds they fail, and a window that holds the present is never
-/// empty.
+/// F and O fail without an operand that holds; a window that contains the present is never empty.
 Constancy some(Constancy operand, bool holds_present) {
     if (operand == never) return never;
     return operand == always && holds_present ? always : varies;
 }
 
-/// G and H, the duals.
+/// G and H are the duals.
 Constancy every(Constancy operand, bool holds_present) {
     return negation(some(negation(operand), holds_present));
 }
 
-/// U and S: the left operand counts for certain where the right one cannot stand in the present.
+/// U and S need the left operand if the right one cannot hold in the present.
 Constancy until(Constancy left, Constancy right, bool holds_present) {
     if (right == never || (left == never && !holds_present)) return never;
     return right == always && holds_present ? always : varies;
@@ -67,8 +60,8 @@ Constancy of(const Formula& formula, const Operands& operands) {
         case Kind::boolean_input: return varies;
         case Kind::negation: return negation(operands[0]);
         case Kind::conjunction: return combine(operands, never);
-        case Kind::disjunction: return disjunction(operands);
-        case Kind::implication: return disjunction({negation(operands[0]), operands[1]});
+        case Kind::disjunction: return combine(operands, always);
+        case Kind::implication: return combine({negation(operands[0]), operands[1]}, always);
         case Kind::equivalence: return equivalence(operands[0], operands[1]);
         case Kind::next:
         case Kind::previous:
@@ -82,13 +75,12 @@ Constancy of(const Formula& formula, const Operands& operands) {
         case Kind::until:
         case Kind::since: return until(operands[0], operands[1], present);
         case Kind::release: return release(operands[0], operands[1], present);
-        case Kind::weak_until:
-            return release(operands[1], disjunction({operands[0], operands[1]}), present);
+        case Kind::weak_until: return release(operands[1], combine(operands, always), present);
     }
     return varies;
 }
 
-/// Past operators at position 0 see themselves, or nothing.
+/// At position 0 past operators see only that position, or nothing.
 Constancy past_at_start(const Formula& formula, const Operands& operands) {
     if (formula.kind == Kind::held) return formula.high == 0 ? operands[0] : never;
     if (formula.low == 0) return operands.back();

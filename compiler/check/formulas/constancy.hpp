@@ -1,7 +1,5 @@
-// Which formulas have one verdict whatever the inputs are.
-// Takes: the formulas of the model; predicates count as able to change. Gives: for each formula its
-// constant, if it has one. Keeps true: what is called constant has robustness +inf or -inf at every
-// position that a prefix can have.
+// Finds formulas whose verdict does not depend on the inputs, where predicates may have any value.
+// A constant formula has robustness +inf or -inf at every position of every prefix.
 #pragma once
 
 #include <cstdint>

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/predicates/predicates.hpp"
 #include "check/time/time.hpp"
 
@@ -16,55 +15,11 @@ namespace {
 using diag::Code;
 using Kind = Formula::Kind;
 
-enum class Looks : std::uint8_t { nowhere, ahead, back };
-
-struct Operator {
-    ast::Formula::Kind written;
-    Kind kind;
-    std::string_view word;
-    Looks looks = Looks::nowhere;
-};
-
-constexpr std::array kOperators = std::to_array<Operator>({
-    {ast::Formula::Kind::constant_true, Kind::constant_true, "true"},
-    {ast::Formula::Kind::constant_false, Kind::constant_false, "false"},
-    {ast::Formula::Kind::negation, Kind::negation, "!"},
-    {ast::Formula::Kind::conjunction, Kind::conjunction, "&&"},
-    {ast::Formula::Kind::disjunction, Kind::disjunction, "||"},
-    {ast::Formula::Kind::implication, Kind::implication, "->"},
-    {ast::Formula::Kind::equivalence, Kind::equivalence, "<->"},
-    {ast::Formula::Kind::next, Kind::next, "X", Looks::ahead},
-    {ast::Formula::Kind::eventually, Kind::eventually, "F", Looks::ahead},
-    {ast::Formula::Kind::always, Kind::always, "G", Looks::ahead},
-    {ast::Formula::Kind::until, Kind::until, "U", Looks::ahead},
-    {ast::Formula::Kind::weak_until, Kind::weak_until, "W", Looks::ahead},
-    {ast::Formula::Kind::release, Kind::release, "R", Looks::ahead},
-    {ast::Formula::Kind::previous, Kind::previous, "Y", Looks::back},
-    {ast::Formula::Kind::once, Kind::once, "O", Looks::back},
-    {ast::Formula::Kind::historically, Kind::historically, "H", Looks::back},
-    {ast::Formula::Kind::since, Kind::since, "S", Looks::back},
-    {ast::Formula::Kind::rise, Kind::rise, "rise", Looks::back},
-    {ast::Formula::Kind::fall, Kind::fall, "fall", Looks::back},
-    {ast::Formula::Kind::held, Kind::held, "held", Looks::back},
-});
-
+/// Constants and operators have the same numbers in the syntax tree and in the model.
 Kind kind_of(ast::Formula::Kind written) {
-    const auto found = std::find_if(kOperators.begin(), kOperators.end(),
-                                    [&](const auto& row) { return row.written == written; });
-    assert(found != kOperators.end());
-    return found->kind;
-}
-
-/// Atoms are none.
-const Operator* operator_of(Kind kind) {
-    const auto found = std::find_if(kOperators.begin(), kOperators.end(),
-                                    [&](const auto& row) { return row.kind == kind; });
-    return found == kOperators.end() ? nullptr : &*found;
-}
-
-bool looks(Kind kind, Looks where) {
-    const Operator* const found = operator_of(kind);
-    return found != nullptr && found->looks == where;
+    static_assert(static_cast<int>(Kind::negation) ==
+                  static_cast<int>(ast::Formula::Kind::negation));
+    return static_cast<Kind>(written);
 }
 
 class FormulaCheck {
@@ -101,7 +56,7 @@ private:
         return static_cast<Index>(c_.model.formulas.size() - 1);
     }
 
-    /// An atom; `index` may be kNone.
+    /// Adds an atom; kNone for kNone.
     Index leaf(Kind kind, Index index, const ast::Formula& written) {
         if (index == kNone) return kNone;
         Formula formula;
@@ -112,8 +67,9 @@ private:
     }
 
     Index too_deep(Span span) {
-        c_.report(Code::formula_too_deep, span,
-                  fmt::format("a formula of more than {} levels, its lets written out", kMaxDepth));
+        c_.report(
+            Code::formula_too_deep, span,
+            fmt::format("a formula of more than {} levels with its lets written out", kMaxDepth));
         return kNone;
     }
 
@@ -136,25 +92,19 @@ private:
                  "a predicate, a let or a bool input");
         if (found == nullptr || found->kind == NameKind::unreadable) return kNone;
         const Entity& entity = c_.scope.entity(*found);
-        switch (found->kind) {
-            case NameKind::predicate:
-                return entity.broken ? kNone : leaf(Kind::predicate, found->index, written);
-            case NameKind::let: return entity.broken ? kNone : c_.model.lets[found->index].formula;
-            case NameKind::input: return entity.broken ? kNone : input(found->index, written);
-            case NameKind::constant:
-            case NameKind::encoder:
-            case NameKind::projection:
-            case NameKind::target:
-            case NameKind::monitor:
-            case NameKind::unreadable: break;
-        }
+        if (found->kind == NameKind::predicate)
+            return entity.broken ? kNone : leaf(Kind::predicate, found->index, written);
+        if (found->kind == NameKind::let)
+            return entity.broken ? kNone : c_.model.lets[found->index].formula;
+        if (found->kind == NameKind::input)
+            return entity.broken ? kNone : input(found->index, written);
         auto& error =
             c_.report(Code::wrong_kind, written.span,
                       fmt::format("'{}' is {}; expected a predicate, a let or a bool input",
                                   written.name, word_with_article(found->kind)));
         error.note(entity.span, fmt::format("'{}' is declared here", written.name));
         if (found->kind == NameKind::monitor)
-            error.note("a formula that is used more than once is given a name with let");
+            error.note("use let to name a formula that is used more than once");
         if (found->kind == NameKind::target)
             error.note(fmt::format(
                 "a predicate measures a distance to it: min l2(INPUT, {}) <= 0.5", written.name));
@@ -182,19 +132,6 @@ private:
 
 Index check_formula(Context& context, const ast::Formula& formula) {
     return FormulaCheck(context).build(formula);
-}
-
-std::string_view operator_word(Kind kind) {
-    const Operator* const found = operator_of(kind);
-    return found == nullptr ? "" : found->word;
-}
-
-bool looks_ahead(Kind kind) {
-    return looks(kind, Looks::ahead);
-}
-
-bool looks_back(Kind kind) {
-    return looks(kind, Looks::back);
 }
 
 }  // namespace etlc::check

@@ -1,17 +1,12 @@
-// Formulas: the tree of one formula to nodes of the model's DAG.
-// Takes: the tree, with every let that it names already built. Gives: the index of its node.
-// Keeps true: operands have smaller indices; a let is the node that it names; depth is at most
-// kMaxDepth.
+// Builds nodes of the model's DAG from the tree of a formula. Lets in it have been built, and are
+// the nodes that they name. Operands have smaller indices; depth is at most kMaxDepth.
 #pragma once
 
 #include "check/context/context.hpp"
-#include "check/formulas/looks.hpp"
 
 namespace etlc::check {
 
-/// kNone where the formula had an error, which is reported, or names something broken.
+/// Returns the index of the formula's node; kNone after an error, or if it names something broken.
 Index check_formula(Context& context, const ast::Formula& formula);
-
-std::string_view operator_word(Formula::Kind kind);  ///< "F", "U", ...
 
 }  // namespace etlc::check

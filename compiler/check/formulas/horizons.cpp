@@ -1,8 +1,7 @@
 #include "check/formulas/horizons.hpp"
 
 #include <algorithm>
-
-#include "check/formulas/formulas.hpp"
+#include <set>
 
 namespace etlc::check {
 
@@ -12,6 +11,41 @@ constexpr std::uint64_t kSaturated = std::uint64_t{1} << 60U;
 
 void take_first(Index& mine, Index operands) {
     if (mine == kNone) mine = operands;
+}
+
+/// Inputs that may leave a formula unknown, and how many steps back it reads.
+struct Reading {
+    std::set<Index> inputs;
+    std::uint64_t back = 0;
+};
+
+std::set<Index> inputs_of(const Model& model, const Formula& atom) {
+    if (atom.kind == Formula::Kind::boolean_input && !model.inputs[atom.index].missing)
+        return {atom.index};
+    if (atom.kind != Formula::Kind::predicate || model.predicates[atom.index].missing) return {};
+    const std::vector<Index>& inputs = model.predicates[atom.index].inputs;
+    return {inputs.begin(), inputs.end()};
+}
+
+std::uint64_t sum(std::uint64_t a, std::uint64_t b) {
+    return a == Gap::kForGood || b == Gap::kForGood ? Gap::kForGood : a + b;
+}
+
+std::vector<Reading> readings(const Model& model) {
+    std::vector<Reading> result(model.formulas.size());
+    for (Index f = 0; f < model.formulas.size(); ++f) {  // operands come first
+        const Formula& formula = model.formulas[f];
+        Reading& reading = result[f];
+        reading.inputs = inputs_of(model, formula);
+        for (const Index operand : formula.operands) {
+            reading.inputs.insert(result[operand].inputs.begin(), result[operand].inputs.end());
+            reading.back = std::max(reading.back, result[operand].back);
+        }
+        if (looks_back(formula.kind))
+            reading.back =
+                sum(reading.back, formula.high == kUnbounded ? Gap::kForGood : formula.high);
+    }
+    return result;
 }
 
 }  // namespace
@@ -36,6 +70,19 @@ std::vector<Reach> reaches(const Model& model) {
         }
         if (looks_ahead(formula.kind) && formula.high != kUnbounded)
             reach.horizon = std::min(kSaturated, reach.horizon + formula.high);
+    }
+    return result;
+}
+
+std::vector<Gap> gaps(const Model& model) {
+    const std::vector<Reading> all = readings(model);
+    std::vector<Gap> result;
+    for (const Monitor& monitor : model.monitors) {
+        const Reading& reading = all[monitor.formula];
+        // A prefix monitor stays at one position, whose sample is lost.
+        const std::uint64_t steps =
+            monitor.sliding ? sum(reading.back, monitor.horizon + std::uint64_t{1}) : Gap::kForGood;
+        result.push_back({{reading.inputs.begin(), reading.inputs.end()}, steps});
     }
     return result;
 }

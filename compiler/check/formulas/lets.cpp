@@ -1,9 +1,9 @@
-// Lets: named sub-formulas, built after those that they name.
+// Builds lets after those that they name.
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/formulas/formulas.hpp"
 #include "check/formulas/horizons.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 
 using diag::Code;
 
-/// A name in a let's formula that means another let, and where it stands.
+/// A use of a let in the formula of another.
 struct Use {
     Index let;
     Span span;
@@ -36,7 +36,7 @@ std::vector<Use> lets_in(const Context& c, const ast::Formula& formula) {
     return uses;
 }
 
-/// Depth-first over the lets without recursion: a chain of lets may be as long as the spec.
+/// Orders lets depth-first without recursion, since a chain of lets may be as long as the spec.
 class LetOrder {
 public:
     explicit LetOrder(Context& context) : c_(context) {
@@ -83,7 +83,7 @@ private:
         path_.push_back(let);
     }
 
-    /// The use closes a circle: from the let it names, along the path, and back.
+    /// Reports the cycle from the let that is used, along the path, and back.
     void report_cycle(const Use& use) {
         const auto begin = std::find(path_.begin(), path_.end(), use.let);
         if (std::all_of(begin, path_.end(), [&](Index let) { return entity(let).broken; })) return;
@@ -95,8 +95,8 @@ private:
         text += entity(use.let).name;
         auto& error =
             c_.report(Code::let_cycle, entity(use.let).span,
-                      fmt::format("'{}' is defined by itself: {}", entity(use.let).name, text));
-        error.note(use.span, "here the circle closes");
+                      fmt::format("'{}' refers to itself: {}", entity(use.let).name, text));
+        error.note(use.span, "the cycle closes here");
         for (auto at = begin; at != path_.end(); ++at) entity(*at).broken = true;
     }
 
@@ -123,20 +123,20 @@ void choose_telemetry(Context& c) {
         const Let& let = c.model.lets[i];
         c.scope.entity(NameKind::let, i).used = true;
         if (let.telemetry || let.formula == kNone) continue;
-        diag::Diagnostic found{Code::let_without_value,
-                               fmt::format("'{}' looks ahead, so at its own step it has no value: "
-                                           "--lets leaves it out",
-                                           let.name)};
+        diag::Diagnostic found{
+            Code::let_without_value,
+            fmt::format("'{}' looks ahead, so it has no value at its own step, and --lets omits it",
+                        let.name)};
         found.span = let.span;
         found.is_allowed = any;
         c.sink.report(std::move(found))
             .note(c.operator_spans[reach[let.formula].future], "it looks ahead here")
-            .note(fmt::format("'sliding monitor ... = {};' reports it as soon as it can be known, "
-                              "where the future is bounded",
+            .note(fmt::format("'sliding monitor ... = {};' reports it as soon as it is known, if "
+                              "its future is bounded",
                               let.name));
     }
     if (c.model.lets.empty())
-        c.report(Code::let_without_value, {}, "--lets changes nothing: the spec has no let");
+        c.report(Code::let_without_value, {}, "--lets has no effect: the spec has no lets");
 }
 
 void check_lets(Context& c) {

@@ -1,7 +1,8 @@
-// Monitors and truths: which operators each may hold, and how long a sliding verdict is delayed.
+// Checks monitors and truths: which operators each may have, and by how many steps a sliding
+// verdict is delayed.
 #include <fmt/format.h>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/formulas/formulas.hpp"
 #include "check/formulas/horizons.hpp"
 #include "check/guarantees/calibrated.hpp"
@@ -56,10 +57,10 @@ public:
 
 private:
     std::string_view word(Index formula) const {
-        return operator_word(c_.model.formulas[formula].kind);
+        return ast::operator_of(c_.model.formulas[formula].kind)->symbol;
     }
 
-    /// Where the operator stands in a let, where it is used as well.
+    /// If the operator is in a let, notes where the let is used.
     void note_use(diag::Diagnostic& error, Span user, Span shown, Index at,
                   std::string text) const {
         const Span place = c_.operator_spans[at];
@@ -67,7 +68,7 @@ private:
         if (!inside) error.note(shown, std::move(text));
     }
 
-    /// Calls `report` for each node below the monitor that `what` of its own reach names, once in
+    /// Calls `report` for each node below the monitor that `what` names as its own reach, once for
     /// all monitors.
     template <class Report>
     void report_all(const Monitor& monitor, Index Reach::*what, std::vector<bool>& visited,
@@ -85,15 +86,15 @@ private:
     }
 
     void report_unbounded(const Monitor& monitor, Span name, Index at) {
-        auto& error = c_.report(Code::unbounded_future, c_.operator_spans[at],
-                                fmt::format("{} looks ahead without bound, and a sliding verdict "
-                                            "waits for all that it looks at",
-                                            word(at)));
+        auto& error = c_.report(
+            Code::unbounded_future, c_.operator_spans[at],
+            fmt::format("{} looks ahead without bound, so a sliding verdict would wait forever",
+                        word(at)));
         note_use(error, monitor.span, name, at,
                  fmt::format("sliding monitor '{}' uses it", monitor.name));
         error.note(c_.model.formulas[at].kind == Formula::Kind::weak_until
                        ? "W has no bounded form; p W[0, b] q is written (p U[0, b] q) || G[0, b] p"
-                       : "give it an interval, such as [0, 20], or leave out 'sliding'");
+                       : "give it an interval, such as [0, 20], or remove 'sliding'");
     }
 
     void report_past(const Monitor& monitor, Span name, Index at) {
@@ -107,7 +108,7 @@ private:
                 word(at)));
         error.note(c_.operator_spans[future], fmt::format("{} looks ahead here", word(future)));
         note_use(error, monitor.span, name, at, fmt::format("monitor '{}' uses it", monitor.name));
-        error.note("a sliding monitor can, where the future is bounded");
+        error.note("a sliding monitor can, if the future is bounded");
     }
 
     Context& c_;
@@ -116,60 +117,59 @@ private:
     std::vector<bool> reported_past_;
 };
 
-/// The node of a predicate that `is` so, at or below `root`; kNone where there is none.
+/// Returns the node of a predicate for which `is` holds, at or below `root`; otherwise kNone.
 template <class Is>
 Index predicate_node(const Model& model, Index root, Is is) {
-    std::vector<bool> visited(model.formulas.size());
-    std::vector<Index> pending{root};
-    while (!pending.empty()) {
-        const Index at = pending.back();
-        pending.pop_back();
-        if (visited[at]) continue;
-        visited[at] = true;
+    for (const Index at : parts_of(model, root)) {
         const Formula& formula = model.formulas[at];
         if (formula.kind == Formula::Kind::predicate && is(formula.index)) return at;
-        pending.insert(pending.end(), formula.operands.begin(), formula.operands.end());
     }
     return kNone;
 }
 
-/// A shift is guaranteed for the thresholds that it was fitted with.
+/// Returns the node of a comparison that has neither a name nor a truth; otherwise kNone.
+Index node_without_truth(const Model& model, Index root) {
+    return predicate_node(model, root, [&](Index predicate) {
+        return model.predicates[predicate].name.empty() && !is_own_truth(model, predicate);
+    });
+}
+
+/// The guarantee of a shift holds for the thresholds that it was fitted with.
 void refuse_moving_thresholds(Context& c, const Monitor& monitor) {
     const Index at = predicate_node(c.model, monitor.formula, [&](Index predicate) {
         return c.model.predicates[predicate].threshold.adaptation.has_value();
     });
     if (at == kNone) return;
     c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
-             fmt::format("'{}' is calibrated as a whole, which takes thresholds that stay; that of "
+             fmt::format("'{}' is calibrated as a whole, which needs fixed thresholds; that of "
                          "'{}' is adaptive",
                          monitor.name, c.model.predicates[c.model.formulas[at].index].name))
         .note(c.model.formulas[at].span, "it is used here");
 }
 
-/// A predicate over an embedding has its truth by its name. Compared with itself, it always agrees.
+/// A predicate over an embedding gets its truth by its name; compared with itself it would always
+/// agree.
 void refuse_comparisons_without_truth(Context& c, const Monitor& monitor) {
-    const Index at = predicate_node(c.model, monitor.formula, [&](Index predicate) {
-        return c.model.predicates[predicate].name.empty() && !is_own_truth(c.model, predicate);
-    });
+    const Index at = node_without_truth(c.model, monitor.formula);
     if (at == kNone) return;
     const std::string comparison = c.model.predicates[c.model.formulas[at].index].shown();
     c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
              fmt::format("'{}' is calibrated as a whole, against the truths of its predicates; "
-                         "'{}' has no name by which a truth could be given",
+                         "'{}' has no name and therefore no truth",
                          monitor.name, comparison))
         .note(c.model.formulas[at].span, "it is used here")
-        .note(fmt::format("declare it, as in 'predicate near = {};', and say what is true: 'truth "
-                          "near = ...;', or an array truth.near in the episodes",
+        .note(fmt::format("declare it, as in 'predicate near = {};', and give it a truth: 'truth "
+                          "near = ...;' or an array truth.near in the episodes",
                           comparison));
 }
 
-/// The predicate that the truth is of; kNone where there is none, or another truth of it.
+/// Returns the predicate of a truth; kNone after an error or for a second truth.
 Index predicate_of(Context& c, const ast::Truth& declaration, std::map<Index, Span>& first) {
     const Reference* before = c.scope.find(declaration.predicate.text);
     const bool used = before != nullptr && c.scope.entity(*before).used;
     const Index predicate = resolve(c, declaration.predicate, NameKind::predicate);
     if (before != nullptr)
-        c.scope.entity(*before).used = used;  // a truth alone is no use of its predicate
+        c.scope.entity(*before).used = used;  // a truth does not count as a use of its predicate
     if (before == nullptr || before->kind != NameKind::predicate) return kNone;
     const auto [at, is_new] = first.try_emplace(before->index, declaration.predicate.span);
     if (is_new) return predicate;
@@ -179,7 +179,7 @@ Index predicate_of(Context& c, const ast::Truth& declaration, std::map<Index, Sp
     return kNone;
 }
 
-/// What is fitted is fitted to what is true.
+/// Fitted elements are fitted to truths, so truths cannot use them.
 void refuse_fitted(Context& c, const Truth& truth) {
     const Index at = predicate_node(c.model, truth.formula, [&](Index predicate) {
         bool found = false;
@@ -189,11 +189,11 @@ void refuse_fitted(Context& c, const Truth& truth) {
         return found;
     });
     if (at == kNone) return;
-    c.report(Code::truth_of_fitted, c.model.formulas[at].span,
-             fmt::format("the truth of '{}' uses '{}', which measures with what is fitted; truth "
-                         "comes first",
-                         c.model.predicates[truth.predicate].name,
-                         c.model.predicates[c.model.formulas[at].index].shown()));
+    c.report(
+        Code::truth_of_fitted, c.model.formulas[at].span,
+        fmt::format("the truth of '{}' uses '{}', which depends on fitted values; a truth cannot",
+                    c.model.predicates[truth.predicate].name,
+                    c.model.predicates[c.model.formulas[at].index].shown()));
 }
 
 }  // namespace
@@ -216,12 +216,36 @@ void check_truths(Context& c) {
         });
         if (calibrated == kNone) continue;
         c.report(Code::calibrated_in_truth, c.model.formulas[calibrated].span,
-                 fmt::format(
-                     "the truth of '{}' uses '{}', whose threshold is calibrated; truth is exact",
-                     c.model.predicates[truth.predicate].name,
-                     c.model.predicates[c.model.formulas[calibrated].index].name));
+                 fmt::format("the truth of '{}' uses '{}', whose threshold is calibrated; a truth "
+                             "has to be exact",
+                             c.model.predicates[truth.predicate].name,
+                             c.model.predicates[c.model.formulas[calibrated].index].name));
     }
     c.model.truths = std::move(truths);
+}
+
+/// Checks the frames that something is fitted to: `where` in fitted(...).
+void check_fitted_frames(Context& c) {
+    for (Index i = 0; i < c.model.fitted.size(); ++i) {
+        const ast::Formula& written = *c.fitted_where[i];
+        if (written.kind == ast::Formula::Kind::constant_true) continue;
+        const Index where = check_formula(c, written);
+        c.model.fitted[i].where = where;
+        if (where == kNone) continue;
+        const std::vector<Reach> all = reaches(c.model);
+        if (const Index future = all[where].future; future != kNone)
+            c.report(Code::future_in_truth, c.operator_spans[future],
+                     fmt::format("{} looks ahead; frames are selected by the present and the past",
+                                 ast::operator_of(c.model.formulas[future].kind)->symbol))
+                .note(written.span, "the frames are selected here");
+        if (const Index compared = node_without_truth(c.model, where); compared != kNone)
+            c.report(Code::frames_without_truth, c.model.formulas[compared].span,
+                     fmt::format("frames are selected by truths, but '{}' has none",
+                                 c.model.predicates[c.model.formulas[compared].index].shown()))
+                .note(
+                    "use a named predicate with a truth: 'truth NAME = ...;' or an array "
+                    "truth.NAME in the episodes");
+    }
 }
 
 namespace {
@@ -236,14 +260,14 @@ Restarts restarts(ast::Monitor::Kind kind) {
     return Restarts::when_final;
 }
 
-/// The positions that it reports about depend on its verdicts, and these on the shift.
+/// The positions of a restarting monitor depend on its verdicts, and these on the shift.
 bool moves_with_its_shift(Context& c, const Monitor& monitor) {
     if (monitor.restarts == Restarts::never) return false;
     c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
-             fmt::format("'{}' restarts at steps that its shift would change; only a monitor "
-                         "that reports about fixed positions is calibrated as a whole",
+             fmt::format("'{}' restarts at steps that its shift would change; only a monitor with "
+                         "fixed positions can be calibrated as a whole",
                          monitor.name))
-        .note("calibrate its predicates, or leave out 'restartable' or 'repeating'");
+        .note("calibrate its predicates, or remove 'restartable' or 'repeating'");
     return true;
 }
 

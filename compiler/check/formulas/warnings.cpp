@@ -1,13 +1,16 @@
-// What is legal and surely not meant: declarations without use, predicates without choice.
+// Warns of declarations and formulas that are legal but surely not intended.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <tuple>
 
-#include "check/context/steps.hpp"
-#include "check/formulas/formula_warnings.hpp"
+#include "check/context/context.hpp"
+#include "check/formulas/constancy.hpp"
+#include "check/formulas/horizons.hpp"
 #include "check/numbers/decimal.hpp"
-#include "check/predicates/predicates.hpp"
 #include "check/time/time.hpp"
 
 namespace etlc::check {
@@ -31,7 +34,7 @@ void warn_of_unused(Context& c) {
 void warn_of_constant_predicates(Context& c) {
     for (const Predicate& predicate : c.model.predicates) {
         if (predicate.text.empty() || std::isnan(predicate.threshold.value))
-            continue;  // broken, or not yet calibrated
+            continue;  // broken or not yet calibrated
         const auto answer = predicate.constant_answer();
         if (!answer) continue;
         const Range& delta = predicate.delta;
@@ -44,7 +47,7 @@ void warn_of_constant_predicates(Context& c) {
     }
 }
 
-/// cosine(z, t) >= 0.9: near, were it a similarity.
+/// cosine(z, t) >= 0.9 would mean near if cosine were a similarity.
 void warn_of_similarities(Context& c) {
     for (const Predicate& predicate : c.model.predicates) {
         if (predicate.text.empty() || !predicate.plain_distance() || !predicate.lower_bound())
@@ -61,6 +64,12 @@ void warn_of_similarities(Context& c) {
     }
 }
 
+void report_same(Context& c, std::string_view kind, const Entity& entity, const Entity& first) {
+    c.report(Code::same_definition, entity.span,
+             fmt::format("'{}' is the same {} as '{}'", entity.name, kind, first.name))
+        .note(first.span, fmt::format("'{}' is declared here", first.name));
+}
+
 void warn_of_same_predicates(Context& c) {
     std::map<std::string, const Entity*> first;
     for (Index i = 0; i < c.scope.all(NameKind::predicate).size(); ++i) {
@@ -73,23 +82,193 @@ void warn_of_same_predicates(Context& c) {
         if (predicate.missing) text += fmt::format(" missing {}", *predicate.missing);
         const auto [before, is_new] = first.try_emplace(text, &entity);
         if (is_new) continue;
-        c.report(
-             Code::same_definition, entity.span,
-             fmt::format("'{}' is the same predicate as '{}'", entity.name, before->second->name))
-            .note(before->second->span, fmt::format("'{}' is declared here", before->second->name));
+        report_same(c, "predicate", entity, *before->second);
     }
 }
+
+// ---- formulas, one warning for each operator or monitor
+// -------------------------------------------
+
+using Kind = Formula::Kind;
+
+/// Numbers the formulas; those of the same structure have the same number.
+std::vector<Index> structures(const Model& model) {
+    std::map<std::vector<Index>, Index> known;
+    std::vector<Index> result;
+    for (const Formula& formula : model.formulas) {
+        std::vector<Index> operands;
+        for (const Index operand : formula.operands) operands.push_back(result[operand]);
+        const bool commutes = formula.kind == Kind::conjunction ||
+                              formula.kind == Kind::disjunction ||
+                              formula.kind == Kind::equivalence;
+        if (commutes) std::sort(operands.begin(), operands.end());
+        std::vector<Index> key{static_cast<Index>(formula.kind), formula.index, formula.low,
+                               formula.high};
+        key.insert(key.end(), operands.begin(), operands.end());
+        result.push_back(
+            known.try_emplace(std::move(key), static_cast<Index>(known.size())).first->second);
+    }
+    return result;
+}
+
+bool is_unbounded(const Formula& formula, Kind kind) {
+    return formula.kind == kind && formula.high == kUnbounded;
+}
+
+class FormulaWarnings {
+public:
+    explicit FormulaWarnings(Context& context)
+        : c_(context),
+          model_(context.model),
+          structures_(structures(model_)),
+          constancies_(constancies(model_)),
+          reaches_(reaches(model_)) {}
+
+    void run() {
+        for (Index i = 0; i < model_.formulas.size(); ++i) {
+            warn_of_same_operands(i);
+            warn_of_eventual_implication(i);
+        }
+        const std::vector<bool> in_prefix = below_prefix_monitors();
+        for (Index i = 0; i < model_.formulas.size(); ++i)
+            if (in_prefix[i]) warn_of_last_step(i);
+        for (Index i = 0; i < model_.monitors.size(); ++i) {
+            const Monitor& monitor = model_.monitors[i];
+            const Entity& entity = c_.scope.entity(NameKind::monitor, i);
+            if (monitor.formula == kNone) continue;
+            if (!warn_of_constant(monitor, entity.span))
+                warn_of_first_position(monitor, entity.span);
+            warn_of_same_monitor(monitor, entity);
+        }
+    }
+
+private:
+    std::vector<bool> below_prefix_monitors() const {
+        std::vector<bool> found(model_.formulas.size());
+        for (const Monitor& monitor : model_.monitors)
+            if (monitor.formula != kNone && !monitor.sliding) found[monitor.formula] = true;
+        for (std::size_t i = found.size(); i-- > 0;)
+            if (found[i])
+                for (const Index operand : model_.formulas[i].operands) found[operand] = true;
+        return found;
+    }
+
+    /// Warns of an operand that occurs twice or with its negation: `p || p`, `p U p`, `p && !p`.
+    void warn_of_same_operands(Index at) {
+        const Formula& formula = model_.formulas[at];
+        if (formula.operands.size() < 2) return;
+        std::map<Index, Index> seen;
+        for (const Index operand : formula.operands) {
+            const auto [same, is_new] = seen.try_emplace(structures_[operand], operand);
+            if (is_new) continue;
+            c_.report(Code::same_operands, c_.operator_spans[at],
+                      fmt::format("{} has the operand '{}' twice",
+                                  ast::operator_of(formula.kind)->symbol, shown(model_, operand)));
+            return;
+        }
+        for (const Index operand : formula.operands) {
+            if (model_.formulas[operand].kind != Kind::negation) continue;
+            const Index inner = model_.formulas[operand].operands[0];
+            if (!seen.contains(structures_[inner])) continue;
+            c_.report(Code::same_operands, c_.operator_spans[at],
+                      fmt::format("{} has the operand '{}' and its negation",
+                                  ast::operator_of(formula.kind)->symbol, shown(model_, inner)));
+            return;
+        }
+    }
+
+    void warn_of_eventual_implication(Index at) {
+        const Formula& formula = model_.formulas[at];
+        if (formula.kind != Kind::eventually ||
+            model_.formulas[formula.operands[0]].kind != Kind::implication)
+            return;
+        const Formula& implication = model_.formulas[formula.operands[0]];
+        const std::string left = shown(model_, implication.operands[0]);
+        c_.report(
+              Code::eventual_implication, c_.operator_spans[at],
+              fmt::format("F of an implication holds as soon as its left side '{}' does not", left))
+            .note(
+                "G (a -> F b) means that every a is followed by a b, F (a && b) that both hold at "
+                "the same time");
+    }
+
+    void warn_of_last_step(Index at) {
+        const Formula& outer = model_.formulas[at];
+        if (outer.operands.size() != 1) return;
+        const Formula& inner = model_.formulas[outer.operands[0]];
+        const bool eventually_always =
+            is_unbounded(outer, Kind::eventually) && is_unbounded(inner, Kind::always);
+        const bool always_eventually =
+            is_unbounded(outer, Kind::always) && is_unbounded(inner, Kind::eventually);
+        if (!eventually_always && !always_eventually) return;
+        const std::string_view words = eventually_always ? "F G" : "G F";
+        auto& warning = c_.report(
+            Code::last_step_only, c_.operator_spans[at],
+            inner.low == 0
+                ? fmt::format(
+                      "on a growing prefix, {} only means that its operand holds at the last step",
+                      words)
+                : fmt::format("on a growing prefix, the inner operator of {} looks past the last "
+                              "step, where it is {}",
+                              words, eventually_always ? "always satisfied" : "never satisfied"));
+        warning.note(
+            "every operator ends with the prefix; a bound helps, as in G F[0, b] p or F G[0, b] p");
+    }
+
+    bool warn_of_constant(const Monitor& monitor, Span name) {
+        const Constancies& found = constancies_[monitor.formula];
+        const bool anywhere = monitor.sliding || monitor.restarts != Restarts::never;
+        const Constancy constancy = anywhere ? found.anywhere : found.at_start;
+        if (constancy == Constancy::varies) return false;
+        auto& warning = c_.report(
+            Code::constant_verdict, name,
+            fmt::format("'{}' is {} from the first step, whatever the inputs are", monitor.name,
+                        constancy == Constancy::always ? "satisfied" : "violated"));
+        if (!anywhere && found.anywhere == Constancy::varies)
+            warning.note(
+                "a prefix monitor reports about position 0, which has no past; did you mean a "
+                "sliding monitor?");
+        return true;
+    }
+
+    void warn_of_first_position(const Monitor& monitor, Span name) {
+        if (monitor.sliding || monitor.restarts != Restarts::never ||
+            reaches_[monitor.formula].future != kNone)
+            return;
+        c_.report(Code::first_position_only, name,
+                  fmt::format("'{}' looks only at position 0, so that its verdict never changes "
+                              "after the first step",
+                              monitor.name))
+            .note("did you mean a sliding monitor, or G in front of the formula?");
+    }
+
+    void warn_of_same_monitor(const Monitor& monitor, const Entity& entity) {
+        if (monitor.calibration) return;                       // each has its own shift
+        if (monitor.restarts == Restarts::on_request) return;  // each restarts at its own time
+        const auto [first, is_new] = monitors_.try_emplace(
+            {structures_[monitor.formula], monitor.sliding, monitor.restarts}, &entity);
+        if (is_new) return;
+        report_same(c_, "monitor", entity, *first->second);
+    }
+
+    Context& c_;
+    const Model& model_;
+    std::vector<Index> structures_;
+    std::vector<Constancies> constancies_;
+    std::vector<Reach> reaches_;
+    std::map<std::tuple<Index, bool, Restarts>, const Entity*> monitors_;
+};
 
 }  // namespace
 
 void warn(Context& c) {
-    // A name that was misspelt in its only use is no second cause.
+    // A name misspelt in its only use is reported already.
     if (!c.sink.has_errors()) warn_of_unused(c);
     if (!c.sink.has_errors()) warn_of_bare_bounds(c);
     warn_of_constant_predicates(c);
     warn_of_similarities(c);
     warn_of_same_predicates(c);
-    warn_about_formulas(c);
+    FormulaWarnings(c).run();
 }
 
 }  // namespace etlc::check

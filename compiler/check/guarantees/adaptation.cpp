@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "check/numbers/decimal.hpp"
-#include "check/numbers/rounding.hpp"
 
 namespace etlc::check {
 
@@ -15,14 +14,14 @@ namespace {
 
 using diag::Code;
 
-/// Steps of fewer than this many grid lengths would make the error rate that is tracked another
-/// than alpha by more than 1/64 of it.
+/// With fewer grid lengths in a step, the tracked error rate would differ from alpha by more than
+/// 1/64 of it.
 constexpr double kLeastSteps = 64;
 
-/// A grid below this would be made of numbers that some hardware flushes to zero.
+/// Some hardware flushes multiples of a smaller grid to zero.
 constexpr double kLeastGrid = 0x1p-126;
 
-/// The argument's number; null, with a diagnostic where it is no number, where there is none.
+/// Returns the argument's number; null if it is missing, or after an error if it is no number.
 const ast::Number* number_of(Context& c, const ast::Calibrated& written, std::string_view key,
                              std::vector<std::string_view>& missing) {
     for (const ast::Calibrated::Argument& argument : written.arguments) {
@@ -37,20 +36,21 @@ const ast::Number* number_of(Context& c, const ast::Calibrated& written, std::st
     return nullptr;
 }
 
-/// [lo, hi] and the grid: that of the float32 numbers in its greater half.
+/// Sets [lo, hi] and the grid, which is that of the float32 numbers in the greater half of the
+/// range.
 bool set_range(Adaptation& result) {
     const float low = round_down(result.lo);
     const float high = round_up(result.hi);
     const double grid = std::ldexp(1.0, std::ilogb(std::max(std::abs(low), std::abs(high))) - 23);
     if (grid < kLeastGrid) return false;
     result.grid = static_cast<float>(grid);
-    // Outward, as all ranges; 0 is added so that no end is -0.
+    // Rounded outward, like all ranges; adding 0 avoids -0.
     result.range = {static_cast<float>(std::floor(static_cast<double>(low) / grid) * grid + 0.0),
                     static_cast<float>(std::ceil(static_cast<double>(high) / grid) * grid + 0.0)};
     return true;
 }
 
-/// gamma, alpha and their products are what they are written as: nothing was rounded to a double.
+/// Whether gamma, alpha and their products are exact in double.
 bool exact(const std::string& gamma, const std::string& alpha) {
     const double g = to_double(gamma);
     const double a = to_double(alpha);
@@ -60,13 +60,13 @@ bool exact(const std::string& gamma, const std::string& alpha) {
            std::fma(g, rest, -(g * rest)) == 0;
 }
 
-/// A miss moves by at least gamma (1 - alpha), a hit by at most gamma alpha: rounded against the
-/// miss rate.
+/// Rounds a miss up from gamma (1 - alpha) and a hit down from gamma alpha, so that the miss rate
+/// is at most alpha.
 void set_steps(Adaptation& result, const std::string& alpha) {
     const double gamma = to_double(result.gamma);
     const double rate = to_double(alpha);
     const auto grid = static_cast<double>(result.grid);
-    const double margin = exact(result.gamma, alpha) ? 0 : 1e-14;  // a few roundings, and more
+    const double margin = exact(result.gamma, alpha) ? 0 : 1e-14;  // more than a few roundings
     result.widen = static_cast<float>(std::ceil(gamma * (1 - rate) / grid * (1 + margin)) * grid);
     result.tighten = static_cast<float>(std::floor(gamma * rate / grid * (1 - margin)) * grid);
 }
@@ -86,12 +86,11 @@ std::optional<Adaptation> check_adaptation(Context& c, const ast::Calibrated& wr
     if (gamma == nullptr || lo == nullptr || hi == nullptr) return std::nullopt;
     const std::size_t errors = c.sink.errors();
     for (const ast::Number* number : {gamma, lo, hi})
-        number32(c, *number);  // reports what is too large for float32
+        number32(c, *number);  // reports numbers too large for float32
     if (c.sink.errors() > errors) return std::nullopt;
     const auto refuse = [&](const ast::Number& at,
                             std::string message) -> std::optional<Adaptation> {
-        c.report(Code::calibration_argument, at.span, std::move(message));
-        return std::nullopt;
+        return c.no_value(Code::calibration_argument, at.span, std::move(message));
     };
     if (!Decimal::parse(gamma->text).is_positive())
         return refuse(*gamma, fmt::format("gamma = {}; expected a number above 0", gamma->text));
@@ -103,21 +102,22 @@ std::optional<Adaptation> check_adaptation(Context& c, const ast::Calibrated& wr
     result.lo = lo->text;
     result.hi = hi->text;
     if (!set_range(result))
-        return refuse(*hi, fmt::format("[{}, {}] is too small a range to move in by float32 steps",
+        return refuse(*hi, fmt::format("the range [{}, {}] is too small for steps in float32",
                                        lo->text, hi->text));
     const double length = to_double(hi->text) - to_double(lo->text);
     if (to_double(gamma->text) > length)
-        return refuse(*gamma,
-                      fmt::format("gamma = {} is longer than [{}, {}]: one miss would cross it",
-                                  gamma->text, lo->text, hi->text));
+        return refuse(
+            *gamma,
+            fmt::format("gamma = {} is longer than [{}, {}]: a single miss would cross the range",
+                        gamma->text, lo->text, hi->text));
     set_steps(result, alpha);
     const double least = kLeastSteps * static_cast<double>(result.grid);
     if (static_cast<double>(result.tighten) < least)
         return refuse(
             *gamma,
             fmt::format(
-                "gamma = {} is too small for float32 near {}: with alpha = {} it is at least "
-                "{:.2g}",
+                "gamma = {} is too small for float32 near {}: with alpha = {} it has to be at "
+                "least {:.2g}",
                 gamma->text,
                 std::abs(result.range.low) > std::abs(result.range.high) ? lo->text : hi->text,
                 alpha, (least + static_cast<double>(result.grid)) / to_double(alpha) * 1.05));
@@ -133,9 +133,8 @@ std::optional<float> start(const Adaptation& adaptation, float epsilon, bool upp
 
 std::string outside(const Predicate& predicate, float epsilon) {
     const Adaptation& adaptation = *predicate.threshold.adaptation;
-    return fmt::format(
-        "the calibrated threshold {:.9g} of '{}' is not in [{}, {}], in which it is to move",
-        epsilon, predicate.name, adaptation.lo, adaptation.hi);
+    return fmt::format("the calibrated threshold {:.9g} of '{}' is outside its range [{}, {}]",
+                       epsilon, predicate.name, adaptation.lo, adaptation.hi);
 }
 
 }  // namespace etlc::check

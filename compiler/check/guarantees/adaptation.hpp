@@ -1,7 +1,5 @@
-// calibrated(adaptive, alpha, gamma, lo, hi): a threshold that follows delayed labels.
-// Takes: the words of the spec. Gives: the steps by which it moves, and where it may start. Keeps
-// true: an update never rounds, so the bound on the miss rate (docs/calibration.md) holds of the
-// float32 numbers themselves.
+// calibrated(adaptive, alpha, gamma, lo, hi): a threshold that follows delayed labels. Updates
+// never round, so the bound on the miss rate (docs/calibration.md) holds for the float32 numbers.
 #pragma once
 
 #include <optional>
@@ -14,17 +12,15 @@ namespace etlc::check {
 inline constexpr std::string_view kAdaptiveForm =
     "calibrated(adaptive, alpha = 0.1, gamma = 0.01, lo = 0.1, hi = 0.6)";
 
-/// How the threshold moves; nothing where gamma, lo or hi had an error, which is reported. `alpha`
-/// is sound.
+/// Returns how the threshold moves; nothing after an error in gamma, lo or hi. `alpha` is valid.
 std::optional<Adaptation> check_adaptation(Context& context, const ast::Calibrated& written,
                                            const std::string& alpha);
 
-/// The multiple of the grid next to `epsilon` on the side of more detections; nothing where epsilon
-/// is not in the range.
+/// Returns the multiple of the grid next to `epsilon` on the side of more detections; nothing if
+/// epsilon is out of range.
 std::optional<float> start(const Adaptation& adaptation, float epsilon, bool upper_bound);
 
-/// "the calibrated threshold 0.7 of 'p' is not in [0.1, 0.6], in which it is to move": where
-/// `start` gives nothing.
+/// Returns the error message for an epsilon out of range.
 std::string outside(const Predicate& predicate, float epsilon);
 
 }  // namespace etlc::check

@@ -37,20 +37,17 @@ const Method* find_method(Context& c, const ast::Name& name) {
         if (method.name == name.text) return &method;
         names.emplace_back(method.name);
     }
-    auto& error = c.report(Code::unknown_method, name.span,
-                           fmt::format("'{}' is not a calibration method; expected {}", name.text,
-                                       diag::alternatives(names)));
-    if (const auto near = diag::nearest_name(name.text, names)) diag::did_you_mean(error, *near);
+    report_unknown_word(c, Code::unknown_method, name, "is not a calibration method", names);
     return nullptr;
 }
 
-/// Who writes 0.9 for the coverage gets thresholds that look good and miss nearly all.
+/// An alpha of 0.9, meant as coverage, gives thresholds that look good and miss nearly everything.
 void warn_of_large_alpha(Context& c, const ast::Number& alpha) {
     const Decimal value = Decimal::parse(alpha.text);
     if (!(Decimal::parse("0.5") < value)) return;
     const std::string text = shown(alpha);
     c.report(Code::large_alpha, alpha.span,
-             fmt::format("alpha = {} is the share that may be missed, more than half", text))
+             fmt::format("alpha = {} allows more than half to be missed", text))
         .note("it is an error rate, not a coverage: alpha = 0.1 misses at most a tenth");
 }
 
@@ -62,19 +59,15 @@ bool is_alpha(Context& c, const ast::Calibrated::Argument& argument) {
         warn_of_large_alpha(c, *number);
         return true;
     }
-    const auto [text, span] = number != nullptr
-                                  ? std::pair(shown(*number), number->span)
-                                  : std::pair(std::get<ast::Name>(argument.value).text,
-                                              std::get<ast::Name>(argument.value).span);
-    c.report(Code::calibration_argument, span,
-             fmt::format("alpha = {}; expected a number between 0 and 1, neither of them", text));
-    return false;
+    const std::string text =
+        number != nullptr ? shown(*number) : std::get<ast::Name>(argument.value).text;
+    return c.refuse(Code::calibration_argument, ast::span_of(argument.value),
+                    fmt::format("alpha = {}; expected a number above 0 and below 1", text));
 }
 
-/// The arguments are those of the method, each once.
-bool arguments_fit(Context& c, const ast::Calibrated& written, const Method& method) {
+/// Checks that the arguments are those of the method, each at most once.
+void check_arguments(Context& c, const ast::Calibrated& written, const Method& method) {
     std::set<std::string_view> given;
-    const std::size_t errors = c.sink.errors();
     for (const ast::Calibrated::Argument& argument : written.arguments) {
         const std::string& key = argument.key.text;
         const auto& known = method.arguments;
@@ -87,27 +80,25 @@ bool arguments_fit(Context& c, const ast::Calibrated& written, const Method& met
             c.report(Code::calibration_argument, argument.key.span,
                      fmt::format("{} is given twice", key));
     }
-    return c.sink.errors() == errors;
 }
 
-/// The text of alpha, empty for a method without; nothing where an argument had an error.
+/// Returns the text of alpha, empty for a method without; nothing after an error in an argument.
 std::optional<std::string> alpha_of(Context& c, const ast::Calibrated& written,
                                     const Method& method) {
     const std::size_t errors = c.sink.errors();
-    arguments_fit(c, written, method);
+    check_arguments(c, written, method);
     std::string alpha;
     for (const ast::Calibrated::Argument& argument : written.arguments)
         if (argument.key.text == "alpha" && !method.arguments.empty() && is_alpha(c, argument))
             alpha = std::get<ast::Number>(argument.value).text;
     if (c.sink.errors() > errors) return std::nullopt;
-    if (!method.arguments.empty() && alpha.empty()) {
-        c.report(Code::calibration_argument, written.span,
-                 fmt::format("{} needs its error rate; expected {}", method.name,
-                             method.origin == ThresholdOrigin::adaptive
-                                 ? std::string(kAdaptiveForm)
-                                 : fmt::format("calibrated({}, alpha = 0.1)", method.name)));
-        return std::nullopt;
-    }
+    if (!method.arguments.empty() && alpha.empty())
+        return c.no_value(
+            Code::calibration_argument, written.span,
+            fmt::format("{} needs its error rate; expected {}", method.name,
+                        method.origin == ThresholdOrigin::adaptive
+                            ? std::string(kAdaptiveForm)
+                            : fmt::format("calibrated({}, alpha = 0.1)", method.name)));
     return alpha;
 }
 
@@ -127,18 +118,22 @@ Threshold uncalibrated(const ast::Calibrated& written, const Method& method,
 constexpr std::string_view kMonitorForm =
     "calibrated(conformal, alpha = 0.1, against = missed_alarm)";
 
-/// The value of `against`, where it is one.
+/// Returns the value of `against`; nothing after an error.
 std::optional<Against> against_of(Context& c, const ast::Calibrated::Argument& argument) {
     const auto* name = std::get_if<ast::Name>(&argument.value);
     for (const Against against : {Against::missed_alarm, Against::missed_success})
         if (name != nullptr && name->text == word(against)) return against;
-    const Span span = name != nullptr ? name->span : std::get<ast::Number>(argument.value).span;
-    c.report(Code::calibration_argument, span,
-             "expected against = missed_alarm or against = missed_success");
-    return std::nullopt;
+    return c.no_value(Code::calibration_argument, ast::span_of(argument.value),
+                      "expected against = missed_alarm or against = missed_success");
 }
 
 }  // namespace
+
+std::string_view method_name(ThresholdOrigin origin) {
+    for (const Method& method : methods())
+        if (method.origin == origin) return method.name;
+    return "";
+}
 
 std::string_view word(Against against) {
     return against == Against::missed_alarm ? "missed_alarm" : "missed_success";
@@ -150,30 +145,23 @@ std::optional<MonitorCalibration> check_monitor_calibrated(Context& c,
     if (method == nullptr) return std::nullopt;
     if (method->origin != ThresholdOrigin::conformal) {
         c.report(Code::unknown_method, written.method.span,
-                 fmt::format("a monitor is calibrated by conformal; '{}' is for predicates",
+                 fmt::format("a monitor is calibrated with 'conformal'; '{}' is for predicates",
                              method->name))
             .note(fmt::format("expected {}", kMonitorForm));
         return std::nullopt;
     }
-    std::optional<Against> against;
-    ast::Calibrated rest = written;
-    std::erase_if(rest.arguments,
-                  [](const auto& argument) { return argument.key.text == "against"; });
+    const Method whole{method->name, method->origin, {"alpha", "against"}};
     const std::size_t errors = c.sink.errors();
-    for (const ast::Calibrated::Argument& argument : written.arguments) {
-        if (argument.key.text != "against") continue;
-        if (against)
-            c.report(Code::calibration_argument, argument.key.span, "against is given twice");
-        against = against_of(c, argument);
-    }
-    const auto alpha = alpha_of(c, rest, *method);
+    std::optional<Against> against;
+    for (const ast::Calibrated::Argument& argument : written.arguments)
+        if (argument.key.text == "against") against = against_of(c, argument);
+    const auto alpha = alpha_of(c, written, whole);
     if (!alpha || c.sink.errors() > errors) return std::nullopt;
-    if (!against) {
-        c.report(Code::calibration_argument, written.span,
-                 fmt::format("a monitor is calibrated against one kind of error; expected {}",
-                             kMonitorForm));
-        return std::nullopt;
-    }
+    if (!against)
+        return c.no_value(
+            Code::calibration_argument, written.span,
+            fmt::format("a monitor is calibrated against one kind of error; expected {}",
+                        kMonitorForm));
     MonitorCalibration result{uncalibrated(written, *method, *alpha), *against};
     result.threshold.text =
         fmt::format("calibrated(conformal, alpha = {}, against = {})", *alpha, word(*against));

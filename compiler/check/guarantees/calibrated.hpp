@@ -1,7 +1,5 @@
-// calibrated(METHOD, ...): thresholds that come from the thresholds file.
-// Takes: the words of the spec, later the file. Gives: epsilon.
-// Keeps true: an epsilon is only taken from an entry that was calibrated for the same method,
-// alpha, predicate, target values and truth.
+// calibrated(METHOD, ...): thresholds that come from the thresholds file. An epsilon is accepted
+// only if it was calibrated for the same method, alpha, predicate, target values and truth.
 #pragma once
 
 #include <map>
@@ -12,13 +10,16 @@
 
 namespace etlc::check {
 
-/// The threshold with its method and alpha, epsilon still NaN; nothing where the words had an
-/// error, which is reported.
+/// Returns the threshold with method and alpha, and epsilon NaN; nothing after an error.
 std::optional<Threshold> check_calibrated(Context& context, const ast::Calibrated& written);
 
-/// The same of a whole monitor, whose arguments are alpha and against.
+/// Checks the calibration of a whole monitor, whose arguments are alpha and against.
 std::optional<MonitorCalibration> check_monitor_calibrated(Context& context,
                                                            const ast::Calibrated& written);
+
+/// Returns the name of the method in specs and thresholds files, "conformal"; empty for literal
+/// thresholds.
+std::string_view method_name(ThresholdOrigin origin);
 
 std::string_view word(Against against);  ///< "missed_alarm"
 

@@ -5,14 +5,13 @@
 #include <limits>
 
 #include "check/numbers/decimal.hpp"
-#include "check/numbers/rounding.hpp"
 
 namespace etlc::check {
 
 namespace {
 
-/// floor(alpha * factor), digit by digit from the last: with alpha = 0.d1 d2 ... the carry out of
-/// d1 is what stands before the point.
+/// Returns floor(alpha * factor), multiplied digit by digit from the last: with alpha = 0.d1 d2 ...
+/// the carry out of d1 is the part before the point.
 std::uint64_t whole_part_of_product(const Decimal& alpha, std::uint64_t factor) {
     std::uint64_t carry = 0;
     for (std::size_t i = alpha.digits.size(); i-- > 0;)
@@ -53,7 +52,7 @@ float beyond(double score, bool upper_bound) {
 
 std::optional<float> halfway(float low, float high) {
     if (!(std::nextafter(low, high) < high)) return std::nullopt;
-    // Of a float32 between them the middle is nearer than of either.
+    // If a float32 lies between them, it is nearer to the middle than either.
     return static_cast<float>((static_cast<double>(low) + static_cast<double>(high)) / 2);
 }
 

@@ -17,14 +17,14 @@ namespace {
 using thresholds::Entry;
 using Found = std::optional<Contradiction>;
 
-/// One score a demonstration, all of them kept; the other methods pool frames and keep the score
-/// that was taken, f1 with the next one.
+/// Whether the method keeps all scores, one per demonstration; the others pool frames and keep the
+/// chosen score, f1 also the next.
 bool keeps_all(const Entry& entry) {
     return entry.method == "conformal" || entry.method == "adaptive";
 }
 
-/// As a number, and no longer than a line bears.
-std::string shown(const std::string& alpha) {
+/// Returns alpha in canonical form, shortened to fit a line.
+std::string short_text(const std::string& alpha) {
     constexpr std::size_t kLongest = 40;
     const std::string text = Decimal::parse(alpha).text();
     return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
@@ -40,8 +40,8 @@ Found counts(const Entry& entry, const std::string& place) {
         return Contradiction{fmt::format(
             "'{}.scores' has {}, expected {}", place, diag::counted(entry.scores.size(), "element"),
             keeps_all(entry)       ? fmt::format("n of them, which is {}", kept)
-            : entry.method == "f1" ? "1 or 2, the score that was taken and the next"
-                                   : "1, the score that was taken")};
+            : entry.method == "f1" ? "1 or 2: the chosen score and the next"
+                                   : "1: the chosen score")};
     for (std::size_t i = 1; i < entry.scores.size(); ++i)
         if (entry.scores[i] < entry.scores[i - 1])
             return Contradiction{
@@ -51,16 +51,16 @@ Found counts(const Entry& entry, const std::string& place) {
     const std::uint64_t k = rank(entry.alpha, entry.n);
     if (k > entry.n)
         return Contradiction{
-            fmt::format("'{}.n' is {}, expected at least {}, which alpha = {} takes", place,
-                        entry.n, scores_needed(entry.alpha), shown(entry.alpha))};
+            fmt::format("'{}.n' is {}, expected at least {}, which alpha = {} needs", place,
+                        entry.n, scores_needed(entry.alpha), short_text(entry.alpha))};
     if (k != entry.k)
         return Contradiction{
             fmt::format("'{}.k' is {}, expected {}: the rank of alpha = {} among {}", place,
-                        entry.k, k, shown(entry.alpha), diag::counted(entry.n, "score"))};
+                        entry.k, k, short_text(entry.alpha), diag::counted(entry.n, "score"))};
     return std::nullopt;
 }
 
-/// The place of the first that stands before it too.
+/// Returns the first index whose hash occurs earlier.
 std::optional<std::size_t> first_again(const std::vector<std::uint64_t>& hashes) {
     std::vector<std::uint32_t> order(hashes.size());
     std::iota(order.begin(), order.end(), std::uint32_t{0});
@@ -85,11 +85,11 @@ Found episodes_of(const Entry& entry, const std::string& place,
     const std::optional<std::size_t> again = first_again(episodes);
     if (!again) return std::nullopt;
     return Contradiction{
-        fmt::format("'{}[{}]' is '{}', which stands in it before; expected each episode once", list,
+        fmt::format("'{}[{}]' is '{}', which occurs earlier; expected each episode once", list,
                     *again, data::hash_text(episodes[*again]))};
 }
 
-/// What an F1-optimal threshold follows from, in words, and what it then is.
+/// Returns the derivation of an F1-optimal threshold in words, and its value.
 std::pair<std::string, float> f1_threshold(const Entry& entry, const std::string& place) {
     const auto score = static_cast<float>(entry.scores[0]);
     if (entry.scores.size() == 1)

@@ -24,13 +24,13 @@ struct Polarity {
     bool negative = false;
 };
 
-/// p <-> q, and an edge of p, hold !p beside p.
+/// p <-> q and edges of p contain both p and !p.
 bool has_both_polarities(Kind kind) {
     return kind == Kind::equivalence || kind == Kind::rise || kind == Kind::fall;
 }
 
-/// Operands with the polarity that they have in the negation normal form; both where an operand has
-/// both.
+/// Returns the operands with their polarity in the negation normal form; an operand with both
+/// occurs twice.
 std::vector<Literal> operands_of(const Model& model, Literal literal) {
     const Formula& formula = model.formulas[literal.formula];
     std::vector<Literal> result;
@@ -65,36 +65,26 @@ std::map<Index, Polarity> predicates_in(const Model& model, Literal root) {
     return found;
 }
 
-/// The operands of the conjunction that the formula is, each once, or the formula.
-class Conjuncts {
-public:
-    explicit Conjuncts(const Model& model) : model_(model), seen_(model.formulas.size()) {}
-
-    std::vector<Literal> of(Literal literal) && {
-        collect(literal);
-        return std::move(conjuncts_);
-    }
-
-private:
-    void collect(Literal literal) {
-        bool& seen =
-            literal.negated ? seen_[literal.formula].negative : seen_[literal.formula].positive;
+/// Splits a formula into its conjuncts, each once.
+std::vector<Literal> conjuncts_of(const Model& model, Literal root) {
+    std::vector<Polarity> visited(model.formulas.size());
+    std::vector<Literal> conjuncts;
+    const auto collect = [&](const auto& self, Literal at) -> void {
+        bool& seen = at.negated ? visited[at.formula].negative : visited[at.formula].positive;
         if (seen) return;
         seen = true;
-        const Kind kind = model_.formulas[literal.formula].kind;
+        const Kind kind = model.formulas[at.formula].kind;
         const bool splits =
-            kind == Kind::negation || (kind == Kind::conjunction && !literal.negated) ||
-            ((kind == Kind::disjunction || kind == Kind::implication) && literal.negated);
-        if (!splits) return conjuncts_.push_back(literal);
-        for (const Literal operand : operands_of(model_, literal)) collect(operand);
-    }
+            kind == Kind::negation || (kind == Kind::conjunction && !at.negated) ||
+            ((kind == Kind::disjunction || kind == Kind::implication) && at.negated);
+        if (!splits) return conjuncts.push_back(at);
+        for (const Literal operand : operands_of(model, at)) self(self, operand);
+    };
+    collect(collect, root);
+    return conjuncts;
+}
 
-    const Model& model_;
-    std::vector<Polarity> seen_;
-    std::vector<Literal> conjuncts_;
-};
-
-/// Exact sum of decimals in (0, 1): their digits after the point, added from the right.
+/// Adds decimals in (0, 1) exactly: digits after the point, from the right.
 std::string sum(const std::vector<std::string>& alphas) {
     std::vector<std::string> digits;
     std::size_t length = 0;
@@ -118,18 +108,19 @@ std::string sum(const std::vector<std::string>& alphas) {
 std::string_view uncovered(const Model& model, Index predicate) {
     switch (model.predicates[predicate].threshold.origin) {
         case ThresholdOrigin::f1: return "is calibrated for F1";
-        case ThresholdOrigin::class_conditional: return "covers frames, not episodes";
+        case ThresholdOrigin::class_conditional: return "is calibrated for frames, not episodes";
         case ThresholdOrigin::adaptive:
-            return "has an adaptive threshold, which bounds a rate of misses, not episodes";
+            return "has an adaptive threshold, which bounds the rate of missed frames, not of "
+                   "episodes";
         case ThresholdOrigin::conformal: return "";
         case ThresholdOrigin::literal: break;
     }
-    return is_own_truth(model, predicate) ? "" : "has a literal threshold and is not its own truth";
+    return is_own_truth(model, predicate) ? "" : "has a threshold that was not calibrated";
 }
 
-/// At its threshold, where robustness is 0 and so satisfied, `<` and `>` say no, and `<=` and `>=`
-/// yes: negated, no.
-bool says_no_at_zero(const Predicate& predicate, const Polarity& polarity) {
+/// Whether the literal is false at its threshold, where robustness is 0 and thus satisfied: true
+/// for `<` and `>`, and for negated `<=` and `>=`.
+bool fails_at_zero(const Predicate& predicate, const Polarity& polarity) {
     return predicate.strict() ? polarity.positive : polarity.negative;
 }
 
@@ -145,12 +136,12 @@ Claim claim(const Model& model, Literal part, Values values) {
         if (!why.empty() && result.why.empty())
             result.why = fmt::format("'{}' {}", model.predicates[predicate].shown(), why);
         if (model.predicates[predicate].threshold.origin != ThresholdOrigin::conformal) {
-            no_at_zero |= says_no_at_zero(model.predicates[predicate], polarity);
+            no_at_zero |= fails_at_zero(model.predicates[predicate], polarity);
             continue;
         }
-        // Where there is no sample it may miss its truth, and with it an alarm.
+        // Without a sample it may miss its truth, and with it an alarm.
         if (polarity.negative && model.predicates[predicate].missing == false)
-            result.why = fmt::format("'{}' counts as false where its sample is missing",
+            result.why = fmt::format("'{}' is false when its sample is missing",
                                      model.predicates[predicate].shown());
         alphas.push_back(model.predicates[predicate].threshold.alpha);
         if (polarity.positive) positive = model.predicates[predicate].shown();
@@ -162,8 +153,8 @@ Claim claim(const Model& model, Literal part, Values values) {
     result.bound = sum(alphas);
     if (all.positive && all.negative) {
         result.why = positive == negative
-                         ? fmt::format("'{}' stands in it both plain and negated", positive)
-                         : fmt::format("'{}' stands in it plain, '{}' negated", positive, negative);
+                         ? fmt::format("'{}' occurs both plain and negated", positive)
+                         : fmt::format("'{}' occurs plain and '{}' negated", positive, negative);
     } else if (alphas.empty()) {
         result.kind = Claim::Kind::exact;
     } else if (Decimal::parse(result.bound) >= Decimal::parse("1")) {
@@ -182,7 +173,7 @@ bool reads_embedding(const Model& model, const Predicate& predicate) {
                        [&](Index input) { return model.inputs[input].is_embedding(); });
 }
 
-/// P(Binomial(n, x) >= k), which is P(Beta(k, n + 1 - k) <= x).
+/// Returns P(Binomial(n, x) >= k) = P(Beta(k, n + 1 - k) <= x).
 double binomial_tail(std::uint64_t n, std::uint64_t k, double x) {
     const auto count = static_cast<double>(n);
     double tail = 0;
@@ -216,7 +207,7 @@ std::vector<Claim> claims(const Model& model, const Monitor& monitor, Values val
     }
     std::vector<Claim> result{claim(model, {monitor.formula, false}, values)};
     if (result.front().kind != Claim::Kind::nothing) return result;
-    const std::vector<Literal> conjuncts = Conjuncts(model).of({monitor.formula, false});
+    const std::vector<Literal> conjuncts = conjuncts_of(model, {monitor.formula, false});
     if (conjuncts.size() < 2) return result;
     for (const Literal conjunct : conjuncts) {
         Claim part = claim(model, conjunct, values);
@@ -228,12 +219,11 @@ std::vector<Claim> claims(const Model& model, const Monitor& monitor, Values val
 }
 
 std::string text(const Claim& claim) {
-    const std::string_view aside = claim.zero_aside ? ", robustness 0 aside" : "";
+    const std::string_view aside = claim.zero_aside ? ", except at robustness 0" : "";
     switch (claim.kind) {
         case Claim::Kind::exact:
-            return fmt::format(
-                "exact{}: nothing in it is calibrated, and its predicates are their own truth",
-                aside);
+            return fmt::format("exact{}: no predicate is calibrated, and each is its own truth",
+                               aside);
         case Claim::Kind::missed_success:
             return fmt::format("P(some verdict of a new episode misses a success) <= {}",
                                claim.bound);
@@ -242,7 +232,7 @@ std::string text(const Claim& claim) {
                                claim.bound, aside);
         case Claim::Kind::nothing: break;
     }
-    return "nothing: " + claim.why;
+    return "no guarantee: " + claim.why;
 }
 
 std::string origin(const Threshold& threshold) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "check/guarantees/guarantees.hpp"
@@ -14,8 +15,7 @@ namespace {
 
 using Hashes = std::map<std::string, std::string>;
 
-/// Samples that are taken as they are need no hash: what is left of the declaration is in the
-/// episode.
+/// Samples used unchanged need no hash: the rest of the declaration is part of the episode.
 void add_input(const Input& input, Hashes& hashes) {
     const bool narrowed = input.type == InputType::f16 || input.type == InputType::i8;
     if (!narrowed && !input.has_range && input.hold == 0) return;
@@ -23,13 +23,13 @@ void add_input(const Input& input, Hashes& hashes) {
                                             {input.scale, input.range.low, input.range.high});
 }
 
-/// What makes the input of images.
+/// Adds the encoder of the input, if it has one.
 void add_encoder(const Model& model, Index input, Hashes& hashes) {
     if (const Index encoder = model.inputs[input].encoder; encoder != kNone)
         hashes[model.encoders[encoder].name] = model.encoders[encoder].fingerprint;
 }
 
-/// Those that the point goes through.
+/// Adds the projections on the way to the point.
 void add_projections(const Model& model, Index point, Hashes& hashes) {
     for (Index at = point; model.points[at].is_projected(); at = model.points[at].inner) {
         const Projection& projection = model.projections[model.points[at].projection];
@@ -52,36 +52,32 @@ void add_predicate(const Model& model, Index predicate, Hashes& hashes) {
     }
 }
 
-std::vector<bool> reachable(const Model& model, Index root) {
-    std::vector<bool> seen(root + 1, false);
-    seen[root] = true;
-    for (Index i = root + 1; i-- > 0;) {
-        if (!seen[i]) continue;
-        for (const Index operand : model.formulas[i].operands) seen[operand] = true;
-    }
-    return seen;
-}
-
-/// Indices of what stands at the atoms of this kind.
-std::set<Index> atoms_in(const Model& model, const std::vector<bool>& seen, Formula::Kind kind) {
+/// Returns the indices in all atoms of one kind in a formula.
+std::set<Index> atoms_in(const Model& model, Index formula, Formula::Kind kind) {
     std::set<Index> found;
-    for (Index i = 0; i < seen.size(); ++i)
-        if (seen[i] && model.formulas[i].kind == kind) found.insert(model.formulas[i].index);
+    for (const Index i : parts_of(model, formula))
+        if (model.formulas[i].kind == kind) found.insert(model.formulas[i].index);
     return found;
 }
 
-std::set<Index> predicates_in(const Model& model, const std::vector<bool>& seen) {
-    return atoms_in(model, seen, Formula::Kind::predicate);
-}
-
-void add_flags(const Model& model, const std::vector<bool>& seen, Hashes& hashes) {
-    for (const Index input : atoms_in(model, seen, Formula::Kind::boolean_input))
+void add_flags(const Model& model, Index formula, Hashes& hashes) {
+    for (const Index input : atoms_in(model, formula, Formula::Kind::boolean_input))
         add_input(model.inputs[input], hashes);
 }
 
-/// The formula, then the definitions of the names in it: "held && far where held = gripper > 0.5".
-std::string text_with_definitions(const Model& model, Index formula,
-                                  const std::vector<bool>& seen) {
+/// Returns the lets whose names occur in the text of a formula.
+std::vector<const Let*> lets_in(const Model& model, Index formula) {
+    std::vector<const Let*> found;
+    if (lets_are_written_out(model, formula)) return found;
+    const std::vector<Index> parts = parts_of(model, formula);
+    for (const Let& let : model.lets)
+        if (std::binary_search(parts.rbegin(), parts.rend(), let.formula)) found.push_back(&let);
+    return found;
+}
+
+/// Returns the formula, then the definitions of its names: "held && far where held = gripper >
+/// 0.5".
+std::string text_with_definitions(const Model& model, Index formula) {
     std::string text = print(model, formula);
     std::string_view separator = " where ";
     const auto epsilon = [](const Threshold& threshold) {
@@ -94,24 +90,22 @@ std::string text_with_definitions(const Model& model, Index formula,
         text += name + " = " + definition;
         separator = ", ";
     };
-    for (const Index index : predicates_in(model, seen)) {
+    for (const Index index : predicates_of(model, formula)) {
         const Predicate& predicate = model.predicates[index];
         if (!predicate.name.empty())
             define(predicate.name, predicate.text + epsilon(predicate.threshold));
     }
-    if (lets_are_written_out(model, formula)) return text;
-    for (const Let& let : model.lets) {
-        const bool named = let.formula < seen.size() && seen[let.formula] && let.formula != formula;
-        if (named) define(let.name, print(model, let.formula));
-    }
+    for (const Let* const let : lets_in(model, formula))
+        if (let->formula != formula) define(let->name, print(model, let->formula));
     return text;
 }
 
-/// The phrases in front of a truth that arrays stood in for; nothing in a formula reads so.
+/// Prefixes of a truth that arrays replaced; no formula contains them.
 constexpr std::string_view kInPlaceOf = "array in place of ";
 constexpr std::string_view kBeside = "array or ";
 
-/// What says when the predicate holds: a truth, its own comparison, or nothing in the spec.
+/// Returns what defines the predicate's labels: a truth, its own comparison, or nothing in the
+/// spec.
 std::string meaning(const Model& model, Index predicate, const Provenance& of) {
     if (!is_own_truth(model, predicate)) return of.truth;
     return of.predicate + model.predicates[predicate].threshold.text;
@@ -135,17 +129,6 @@ std::string stated(std::string labels) {
     return labels;
 }
 
-std::string_view method_name(ThresholdOrigin origin) {
-    switch (origin) {
-        case ThresholdOrigin::f1: return "f1";
-        case ThresholdOrigin::conformal: return "conformal";
-        case ThresholdOrigin::class_conditional: return "class_conditional";
-        case ThresholdOrigin::adaptive: return "adaptive";
-        case ThresholdOrigin::literal: break;
-    }
-    return "";
-}
-
 Provenance provenance(const Model& model, Index predicate) {
     Provenance result;
     result.predicate = model.predicates[predicate].text;
@@ -153,26 +136,24 @@ Provenance provenance(const Model& model, Index predicate) {
     add_predicate(model, predicate, result.targets);
     for (const Truth& truth : model.truths) {
         if (truth.predicate != predicate || truth.formula == kNone) continue;
-        const std::vector<bool> seen = reachable(model, truth.formula);
-        result.truth = text_with_definitions(model, truth.formula, seen);
-        for (const Index index : predicates_in(model, seen))
+        result.truth = text_with_definitions(model, truth.formula);
+        for (const Index index : predicates_of(model, truth.formula))
             add_predicate(model, index, result.truth_targets);
-        add_flags(model, seen, result.truth_targets);
+        add_flags(model, truth.formula, result.truth_targets);
     }
     return result;
 }
 
 std::vector<Index> predicates_of(const Model& model, Index formula) {
-    const std::set<Index> found = predicates_in(model, reachable(model, formula));
+    const std::set<Index> found = atoms_in(model, formula, Formula::Kind::predicate);
     return {found.begin(), found.end()};
 }
 
 Provenance provenance(const Model& model, const Monitor& monitor, const Labelling& labelling) {
     Provenance result;
     result.reads = reads(model, monitor);
-    const std::vector<bool> seen = reachable(model, monitor.formula);
-    result.predicate = text_with_definitions(model, monitor.formula, seen);
-    add_flags(model, seen, result.targets);
+    result.predicate = text_with_definitions(model, monitor.formula);
+    add_flags(model, monitor.formula, result.targets);
     for (const Index predicate : predicates_of(model, monitor.formula)) {
         Provenance of = provenance(model, predicate);
         result.targets.merge(of.targets);
@@ -198,14 +179,11 @@ FittedProvenance provenance(const Model& model, const Fitted& fitted, const Labe
         return result;
     }
     Hashes measured;
-    const std::vector<bool> seen = reachable(model, fitted.where);
     result.truth = print(model, fitted.where);
-    for (const Let& let : model.lets)
-        if (!lets_are_written_out(model, fitted.where) && let.formula < seen.size() &&
-            seen[let.formula])
-            result.truth += fmt::format("; {} = {}", let.name, print(model, let.formula));
-    add_flags(model, seen, measured);
-    for (const Index predicate : predicates_in(model, seen)) {
+    for (const Let* const let : lets_in(model, fitted.where))
+        result.truth += fmt::format("; {} = {}", let->name, print(model, let->formula));
+    add_flags(model, fitted.where, measured);
+    for (const Index predicate : predicates_of(model, fitted.where)) {
         Provenance of = provenance(model, predicate);
         measured.merge(is_own_truth(model, predicate) ? of.targets : of.truth_targets);
         if (!model.predicates[predicate].name.empty())

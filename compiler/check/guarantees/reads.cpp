@@ -1,7 +1,10 @@
-#include "check/guarantees/reads.hpp"
+// Describes everything that a guarantee depends on as text.
+#include "check/guarantees/provenance.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <set>
 #include <vector>
 
@@ -14,90 +17,47 @@ namespace etlc::check {
 
 namespace {
 
-/// Stands before hashes of what is too long to be shown.
+/// Marks hashes of what is too long to print.
 constexpr char kHashed = '#';
 
-/// What an atom of a formula says: what its comparison does, or what is true.
+/// Whether the atoms of a formula are comparisons or truths.
 enum class Atoms : std::uint8_t { compared, truths };
 
 std::string_view word(InputType type) {
-    switch (type) {
-        case InputType::scalar: return "scalar";
-        case InputType::boolean: return "bool";
-        case InputType::f32: return "f32";
-        case InputType::f16: return "f16";
-        case InputType::i8: return "i8";
-    }
-    return "";
-}
-
-std::string_view word(Metric metric) {
-    switch (metric) {
-#define DISTANCE(id, Type, prepared, zero_is_unknown) \
-    case Metric::id:                                  \
-        return #id;
-#define DISTANCE_BY_WEIGHTS(...)
-#include "etlmon/distance/distances.def"
-#undef DISTANCE
-    }
-    return "";
-}
-
-std::string_view word(Aggregation aggregation) {
-    switch (aggregation) {
-        case Aggregation::min: return "min";
-        case Aggregation::max: return "max";
-        case Aggregation::mean: return "mean";
-        case Aggregation::kth: return "kth";
-    }
-    return "";
-}
-
-std::string_view word(Comparison comparison) {
-    switch (comparison) {
-        case Comparison::less_equal: return "<=";
-        case Comparison::less: return "<";
-        case Comparison::greater_equal: return ">=";
-        case Comparison::greater: return ">";
-        case Comparison::equal: return "==";
-        case Comparison::not_equal: return "!=";
-    }
-    return "";
+    constexpr std::array<std::string_view, 5> kWords{"scalar", "bool", "f32", "f16", "i8"};
+    return kWords[static_cast<std::size_t>(type)];
 }
 
 std::string_view word(Restarts restarts) {
-    switch (restarts) {
-        case Restarts::never: return "";
-        case Restarts::on_request: return "restartable ";
-        case Restarts::when_final: return "repeating ";
-    }
-    return "";
+    constexpr std::array<std::string_view, 3> kWords{"", "restartable ", "repeating "};
+    return kWords[static_cast<std::size_t>(restarts)];
 }
 
 class Reading {
 public:
     explicit Reading(const Model& model) : model_(model) {
-        // Constants and durations count as the numbers that they have become; which part of the
-        // lists counts, the things in them say.
+        // Constants and durations count as the numbers that replaced them; list elements are added
+        // where they are used.
         const auto& [name, retargetable, constants, file, step_seconds, rounded, rounding, encoders,
                      encoded, inputs, projections, points, targets, fitted, distances, predicates,
                      formulas, lets, truths, monitors, dependencies, reservations] = model;
-        // Episodes at another rate have other frames.
+        // Episodes at another rate have different frames.
         if (step_seconds > 0) add("rate", fmt::format("{:.9g} s a step", step_seconds));
     }
 
     void add_calibrated(Index index) {
-        // How its left side is measured; the threshold is what is looked for, and where its sample
-        // is missing there is no score. Ranges follow from the expression.
+        // Only the left side counts: the threshold is the result, and missing samples have no
+        // score. Ranges follow from the expression.
         const auto& [name, text, expression, comparison, threshold, delta, robustness, missing,
                      inputs, span] = model_.predicates[index];
         add_expression(expression);
-        add("predicate " + name, fmt::format("{} {}", print(model_, expression), word(comparison)));
+        add("predicate " + name,
+            fmt::format("{} {}", print(model_, expression), symbol(comparison)));
         add_truth(index);
     }
 
     void add_monitor(const Monitor& monitor) {
-        // The method, alpha and `against` stand in the entry, the shift is what is looked for.
+        // The entry has method, alpha and `against`; the shift is the result.
         const auto& [name, formula, sliding, restarts, horizon, calibration, span] = monitor;
         add("monitor " + name,
             fmt::format("{}{}", word(restarts),
@@ -107,7 +67,7 @@ public:
     }
 
     void add_fitted(const Fitted& fitted) {
-        // What it gives is looked for.
+        // The values are the result.
         const auto& [name, declaration, method, rows, columns, away, point, where, slot, index,
                      filled, span] = fitted;
         add("fitted",
@@ -137,7 +97,7 @@ private:
     }
 
     std::string add_encoder(Index index) {
-        // The fingerprint is of the model, of what is done to images, and of what runs it.
+        // The fingerprint covers the model, the preprocessing and the runtime.
         const auto& [name, model, image, mean, deviation, declaration, dimension, fingerprint,
                      otherwise, span] = model_.encoders[index];
         add("encoder " + name, fingerprint.empty() ? declaration : kHashed + fingerprint);
@@ -145,14 +105,14 @@ private:
     }
 
     void add_projection(Index index) {
-        // The hash is of matrix and offset, wherever they come from.
+        // The hash covers matrix and offset, from any source.
         const auto& [name, rows, dimension, matrix, offset, origin, path, hash, fitted, span] =
             model_.projections[index];
         add("projection " + name, fmt::format("{} x {}, {}{}", rows, dimension, kHashed, hash));
     }
 
     std::string text_of(Index point) {
-        // The text is of the names of the others, and what these are is added.
+        // The text has the names of inputs and projections, which are added.
         const auto& [kind, inputs, dimension, projection, inner, text] = model_.points[point];
         for (const Index input : inputs) add_input(input);
         if (projection != kNone) add_projection(projection);
@@ -160,10 +120,10 @@ private:
         return text;
     }
 
-    /// Its name.
+    /// Returns its name.
     std::string add_target(Index index) {
-        // The hash is of the rows, wherever they come from. Those in another space follow from the
-        // declared ones and the maps of the point.
+        // The hash covers the rows, from any source. Projected rows follow from the declared ones
+        // and the maps of the point.
         const auto& [name, rows, dimension, values, origin, path, hash, encoded, space, source,
                      fitted, span] = model_.targets[index];
         if (source != kNone) return add_target(source);
@@ -174,11 +134,12 @@ private:
     }
 
     void add_distance(Index index) {
-        // The text stands for it in expressions, and says the same in words.
+        // Expressions contain the text, which describes the distance in words.
         const auto& [point, target, metric, aggregation, kth, weights, weights_diagonal,
                      weights_fitted, weights_path, text, span] = model_.distances[index];
         std::string all = fmt::format("{} {} {} from {} to {}", word(aggregation), kth,
-                                      word(metric), text_of(point), add_target(target));
+                                      kMetrics[static_cast<std::size_t>(metric)].word,
+                                      text_of(point), add_target(target));
         if (metric == Metric::mahalanobis)
             all += fmt::format(", {}{}{}", weights_diagonal ? "diagonal " : "", kHashed,
                                weights_hash(model_.distances[index]));
@@ -186,7 +147,7 @@ private:
     }
 
     void add_expression(const Expr& expression) {
-        // Its numbers are those of its text, which print() writes.
+        // print() writes the numbers from the text.
         const auto& [kind, text, number, number32, index, arguments, span] = expression;
         if (kind == Expr::Kind::scalar) add_input(index);
         if (kind == Expr::Kind::distance) add_distance(index);
@@ -194,26 +155,26 @@ private:
     }
 
     static std::string text_of(const Threshold& threshold) {
-        // What a calibrated one came from, its own entry says. Adaptive ones stand in no formula
-        // whose truth or shift is asked for.
+        // The entry of a calibrated threshold describes its origin. Adaptive thresholds are not
+        // used in such formulas.
         const auto& [origin, text, alpha, value64, value, n, k, adaptation, span] = threshold;
         if (origin == ThresholdOrigin::literal) return Decimal::parse(text).text();
         return fmt::format("{} from {}", value, text);
     }
 
-    /// What it says of a sample.
+    /// Adds the comparison of a predicate.
     std::string add_predicate(Index index) {
-        // The ranges follow from the rest, the inputs are those of the expression.
+        // The ranges follow from the rest, the inputs from the expression.
         const auto& [name, text, expression, comparison, threshold, delta, robustness, missing,
                      inputs, span] = model_.predicates[index];
         add_expression(expression);
-        std::string all = fmt::format("{} {} {}", print(model_, expression), word(comparison),
+        std::string all = fmt::format("{} {} {}", print(model_, expression), symbol(comparison),
                                       text_of(threshold));
         if (missing) all += fmt::format(" missing {}", *missing);
         return add("predicate " + model_.predicates[index].shown(), std::move(all));
     }
 
-    /// What says when it holds: that is so of truths, not of what a truth compares.
+    /// Adds the source of a predicate's labels.
     std::string add_truth(Index of) {
         const std::string key = "truth " + model_.predicates[of].shown();
         for (const Truth& truth : model_.truths) {
@@ -230,17 +191,12 @@ private:
         return atoms == Atoms::compared ? add_predicate(predicate) : add_truth(predicate);
     }
 
-    /// Of all that the formula consists of, lets written out, each part once; what its atoms read
-    /// is added.
+    /// Hashes a formula with its lets written out, each part once, and adds what its atoms read.
     std::string hash_of(Index root, Atoms atoms) {
-        std::vector<bool> seen(root + 1, false);
-        seen[root] = true;
-        for (Index i = root + 1; i-- > 0;)
-            if (seen[i])
-                for (const Index operand : model_.formulas[i].operands) seen[operand] = true;
-        std::vector<std::string> hashes(root + 1);
-        for (Index i = 0; i <= root; ++i) {
-            if (!seen[i]) continue;
+        std::vector<Index> parts = parts_of(model_, root);
+        std::reverse(parts.begin(), parts.end());  // operands first
+        std::map<Index, std::string> hashes;
+        for (const Index i : parts) {
             const auto& [kind, index, operands, low, high, span] = model_.formulas[i];
             std::string text = fmt::format("{} [{}, {}]", static_cast<int>(kind), low, high);
             if (kind == Formula::Kind::predicate) text += ' ' + add_atom(index, atoms);
@@ -257,29 +213,32 @@ private:
     }
 
     const Model& model_;
-    /// Of a key one; should two things ever have a name in common, none hides the other.
+    /// Texts by key, one each; if two things ever have the same key, both are kept.
     std::map<std::string, std::set<std::string>> texts_;
 };
-
-template <class Add>
-Reads read(const Model& model, const Add& add) {
-    Reading reading(model);
-    add(reading);
-    return std::move(reading).take();
-}
 
 }  // namespace
 
 Reads reads(const Model& model, Index predicate) {
-    return read(model, [&](Reading& reading) { reading.add_calibrated(predicate); });
+    Reading reading(model);
+    reading.add_calibrated(predicate);
+    return std::move(reading).take();
 }
 
 Reads reads(const Model& model, const Monitor& monitor) {
-    return read(model, [&](Reading& reading) { reading.add_monitor(monitor); });
+    Reading reading(model);
+    reading.add_monitor(monitor);
+    return std::move(reading).take();
 }
 
 Reads reads(const Model& model, const Fitted& fitted) {
-    return read(model, [&](Reading& reading) { reading.add_fitted(fitted); });
+    Reading reading(model);
+    reading.add_fitted(fitted);
+    return std::move(reading).take();
+}
+
+std::string changed(std::string_view what, std::string_view then, std::string_view now) {
+    return fmt::format("{} was: {}; it is: {}", what, then, now);
 }
 
 std::vector<std::string> differences(const Reads& then, const Reads& now) {
@@ -295,8 +254,7 @@ std::vector<std::string> differences(const Reads& then, const Reads& now) {
         const std::string after = text(now, key);
         if (before == after) continue;
         const bool hashed = before[0] == kHashed && after[0] == kHashed;
-        found.push_back(hashed ? fmt::format("{} changed", key)
-                               : fmt::format("{} was: {}; it is: {}", key, before, after));
+        found.push_back(hashed ? fmt::format("{} changed", key) : changed(key, before, after));
     }
     return found;
 }

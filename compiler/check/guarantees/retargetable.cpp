@@ -1,10 +1,12 @@
-#include "check/guarantees/retargetable.hpp"
-
+// --retargetable: makes a model whose numbers may change while its monitors run. What cannot change
+// between steps is refused; predicates may have any robustness, so bounds depend on no number; all
+// predicates get names that contain no numbers.
 #include <fmt/format.h>
 
 #include <set>
 
-#include "check/numbers/range_arithmetic.hpp"
+#include "check/context/context.hpp"
+#include "check/numbers/range.hpp"
 
 namespace etlc::check {
 
@@ -12,7 +14,7 @@ namespace {
 
 void refuse(Context& c, Span span, const std::string& what, const std::string& why) {
     c.report(diag::Code::not_retargetable, span,
-             fmt::format("{}, and --retargetable takes no such spec: {}", what, why));
+             fmt::format("{}, which --retargetable does not support: {}", what, why));
 }
 
 void refuse_what_cannot_change(Context& c) {
@@ -20,16 +22,16 @@ void refuse_what_cannot_change(Context& c) {
         if (predicate.threshold.adaptation)
             refuse(c, predicate.threshold.span,
                    fmt::format("'{}' has an adaptive threshold", predicate.name),
-                   "what it has learnt is of the distance to the targets that there were");
+                   "what it has learnt is about the distance to the original targets");
     for (const Monitor& monitor : c.model.monitors)
         if (monitor.calibration)
             refuse(c, monitor.calibration->threshold.span,
                    fmt::format("'{}' is calibrated as a whole", monitor.name),
-                   "its shift is of episodes that one set of parameters judged from their "
-                   "beginning");
+                   "its shift is valid only for episodes with one set of parameters from beginning "
+                   "to end");
 }
 
-/// All that stand as fields, or parts of function names, beside predicates.
+/// Returns the names of fields, and of parts of function names, beside predicates.
 std::set<std::string> names_of(const Model& model) {
     std::set<std::string> names;
     for (const Input& input : model.inputs) names.insert(input.name);

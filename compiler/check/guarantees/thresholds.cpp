@@ -1,13 +1,12 @@
-// The thresholds file: an epsilon for every calibrated predicate, where the file was made for this
-// spec.
+// Reads the thresholds file, if it was made for this spec.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
+#include "check/context/context.hpp"
 #include "check/context/options.hpp"
-#include "check/context/steps.hpp"
 #include "check/guarantees/adaptation.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/consistency.hpp"
@@ -33,14 +32,14 @@ std::vector<Index> calibrated_predicates(Context& c) {
     return found;
 }
 
-/// What calibration has not made yet: until then the threshold is NaN.
+/// Reports a missing calibration, which leaves the threshold NaN.
 diag::Diagnostic& report_missing(Context& c, Code code, Span span, std::string message) {
-    diag::Diagnostic found{code, std::move(message), span, {}, 0, 0, {}};
+    diag::Diagnostic found{code, std::move(message), span};
     found.is_allowed = c.options.allow_missing;
     return c.sink.report(std::move(found));
 }
 
-/// Those given, or the file's; nothing, with a diagnostic, where there is none or it is damaged.
+/// Returns the given thresholds or those in the file; nothing after an error.
 std::optional<thresholds::File> read_thresholds(Context& c, const std::string& name,
                                                 const Threshold& first) {
     if (c.options.thresholds != nullptr) return *c.options.thresholds;
@@ -51,33 +50,25 @@ std::optional<thresholds::File> read_thresholds(Context& c, const std::string& n
     if (is_default && !std::filesystem::exists(path, error)) {
         report_missing(
             c, Code::thresholds_missing, first.span,
-            fmt::format("'{}' has a calibrated threshold, and there is no thresholds file {}", name,
+            fmt::format("'{}' has a calibrated threshold, but there is no thresholds file {}", name,
                         path))
             .note(
-                "'etlc calibrate' makes one from labelled demonstrations; --thresholds names "
+                "'etlc calibrate' makes one from labelled demonstrations; --thresholds selects "
                 "another");
         return std::nullopt;
     }
-    auto file = thresholds::read(path);
-    if (!file) {
-        diag::Diagnostic found = data::in_file(file.failure(), path);
-        found.is_allowed = c.options.allow_missing && !std::filesystem::exists(path, error);
-        c.sink.report(std::move(found))
-            .note(first.span, fmt::format("the threshold of '{}' is calibrated", name));
-        return std::nullopt;
-    }
-    c.dependencies.insert(path);
-    return std::move(*file);
+    return read_made(c, path, thresholds::read, first.span,
+                     fmt::format("the threshold of '{}' is calibrated", name));
 }
 
 bool same_number(const std::string& a, const std::string& b) {
     return a.empty() || b.empty() ? a == b : Decimal::parse(a) == Decimal::parse(b);
 }
 
-/// What differs between the spec and what the entry was calibrated for, a sentence each.
+/// Lists the differences between the spec and what an entry was calibrated for.
 class Differences {
 public:
-    /// `what`: predicate or formula.
+    /// `what` is "predicate" or "formula".
     Differences(const Model& model, const std::string& name, const Threshold& threshold,
                 std::string_view what, Provenance now, const thresholds::Entry& entry)
         : model_(model),
@@ -106,8 +97,7 @@ public:
 
 private:
     void add(std::string_view what, std::string_view then, std::string_view now) {
-        found_.push_back(
-            fmt::format("the {} was: {}; it is: {}", what, trimmed(then), trimmed(now)));
+        found_.push_back(changed(fmt::format("the {}", what), trimmed(then), trimmed(now)));
     }
 
     static std::string_view trimmed(std::string_view text) {
@@ -115,7 +105,7 @@ private:
         return text;
     }
 
-    /// Another truth, or one in place of an array, or an array in place of one.
+    /// Adds a change of the truth, or between a truth and an array.
     void add_labels() {
         const std::string then = stated(entry_.truth);
         if (then == entry_.truth && !now_.truth.empty()) return add("truth", then, now_.truth);
@@ -127,59 +117,54 @@ private:
                                      labels(now_.truth)));
     }
 
-    /// Whatever nobody has words for.
+    /// Adds differences that have no words of their own.
     void add_read() {
         if (!entry_.reads.empty())
             found_ = differences(entry_.reads, now_.reads);
         else if (what_ == "formula")
             found_.emplace_back(
-                "it does not say all that it was calibrated for, as files of earlier versions do "
-                "not");
+                "the entry is of an earlier version, which does not record everything that it "
+                "depends on");
     }
 
     void add_changed(const std::map<std::string, std::string>& hashes) {
         for (const auto& [name, hash] : hashes) {
             const auto then = entry_.targets.find(name);
-            // A target that the entry does not know belongs to a predicate that has changed, which
-            // has been said.
+            // An unknown target belongs to a changed predicate, which has been reported.
             if (then == entry_.targets.end() && found_.empty())
                 found_.push_back(is_input(name)
                                      ? fmt::format("the declaration of '{}' changed", name)
-                                     : fmt::format("it does not say for which {} of '{}'",
+                                     : fmt::format("it does not record the {} of '{}'",
                                                    what_is_hashed(name), name));
             if (then != entry_.targets.end() && then->second != hash)
                 found_.push_back(fmt::format("the {} of '{}' changed", what_is_hashed(name), name));
         }
     }
 
-    /// What the entry was calibrated with, and is no more.
+    /// Adds what the entry was calibrated with but the spec no longer uses.
     void add_gone() {
-        if (!found_.empty()) return;  // which has said so
+        if (!found_.empty()) return;  // already explained
         for (const auto& [name, hash] : entry_.targets)
             if (!now_.targets.contains(name) && !now_.truth_targets.contains(name))
                 found_.push_back(
                     is_input(name)
                         ? fmt::format("the declaration of '{}' changed", name)
-                        : fmt::format("it was calibrated with '{}', which does not come into it",
+                        : fmt::format("it was calibrated with '{}', which is no longer used",
                                       name));
     }
 
-    bool is_input(const std::string& name) const {
-        return std::any_of(model_.inputs.begin(), model_.inputs.end(),
-                           [&](const Input& input) { return input.name == name; });
+    template <class Thing>
+    static bool has(const std::vector<Thing>& things, const std::string& name) {
+        return std::any_of(things.begin(), things.end(),
+                           [&](const Thing& thing) { return thing.name == name; });
     }
 
+    bool is_input(const std::string& name) const { return has(model_.inputs, name); }
+
     std::string_view what_is_hashed(const std::string& name) const {
-        if (std::any_of(model_.encoders.begin(), model_.encoders.end(),
-                        [&](const Encoder& declared) { return declared.name == name; }))
-            return "model or settings";
-        const bool target =
-            std::any_of(model_.targets.begin(), model_.targets.end(),
-                        [&](const Target& declared) { return declared.name == name; });
-        const bool projection =
-            std::any_of(model_.projections.begin(), model_.projections.end(),
-                        [&](const Projection& declared) { return declared.name == name; });
-        return target || projection ? "values" : is_input(name) ? "declaration" : "weights";
+        if (has(model_.encoders, name)) return "model or settings";
+        if (has(model_.targets, name) || has(model_.projections, name)) return "values";
+        return is_input(name) ? "declaration" : "weights";
     }
 
     const Model& model_;
@@ -193,8 +178,8 @@ private:
 
 constexpr std::string_view kAgain = "calibrate again with 'etlc calibrate'";
 
-/// The entry of that name; null, with a diagnostic, where there is none or it was calibrated for
-/// something else, which `differences` finds.
+/// Returns the entry of that name; null after an error, if it is missing or `differences` finds
+/// some.
 template <class Compare>
 const thresholds::Entry* find_entry(Context& c, const std::string& name, const Threshold& threshold,
                                     const std::string& path,
@@ -207,37 +192,33 @@ const thresholds::Entry* find_entry(Context& c, const std::string& name, const T
             .note(std::string(kAgain));
         return nullptr;
     }
-    const std::vector<std::string> all = differences(found->second);
-    if (all.empty()) return &found->second;
-    auto& error = c.report(
-        Code::threshold_stale, threshold.span,
-        fmt::format("the threshold of '{}' in {} was calibrated for something else", name, path));
-    for (const std::string& difference : all) error.note(difference);
-    error.note(std::string(kAgain));
-    return nullptr;
+    const bool is_current = is_up_to_date(
+        c, Code::threshold_stale, threshold.span,
+        fmt::format("the threshold of '{}' in {} was calibrated for something else", name, path),
+        differences(found->second), kAgain);
+    return is_current ? &found->second : nullptr;
 }
 
-/// Says beside the guarantees that they are about other labels than the spec says.
+/// Records, beside the guarantees, that labels differed from the truths in the spec.
 void reserve(Context& c, const std::string& labels, const std::string& name) {
     if (labels != "array" && labels != stated(labels))
         c.model.reservations.push_back(
-            fmt::format("'{}' was calibrated on labels that arrays of the episodes gave in place "
-                        "of what the spec says is true",
+            fmt::format("'{}' was calibrated on labels from arrays in the episodes, not from its "
+                        "truth in the spec",
                         name));
 }
 
-/// Takes epsilon, n and k; nothing, with a diagnostic, where the entry contradicts itself.
+/// Sets epsilon, n and k; reports an inconsistent entry.
 void take(Context& c, const thresholds::Entry& entry, const std::string& place,
           Threshold& threshold, bool upper_bound, const std::string& path,
           const std::vector<std::uint64_t>& episodes) {
     if (const auto found = contradiction(entry, place, upper_bound, episodes)) {
         auto& error =
             c.sink.report(data::in_file({Code::contradictory_thresholds, found->message}, path));
-        error.note(threshold.span, "it is for this");
+        error.note(threshold.span, "it is needed here");
         if (found->by_hand)
             error.note(
-                "a threshold that is chosen by hand is written into the spec, as in 'l2(z, goal) "
-                "<= 0.35'");
+                "write a threshold chosen by hand into the spec, as in 'l2(z, goal) <= 0.35'");
         error.note(std::string(kAgain));
         return;
     }
@@ -265,9 +246,7 @@ void take_threshold(Context& c, Index index, const thresholds::File& file) {
     const auto begin = start(*threshold.adaptation, threshold.value, predicate.upper_bound());
     if (!begin) {
         c.report(Code::start_out_of_range, threshold.span, outside(predicate, threshold.value))
-            .note(
-                "give it lo and hi with room on both sides of the threshold; a new calibration is "
-                "not needed");
+            .note("choose lo and hi on both sides of the threshold; no new calibration is needed");
         return;
     }
     threshold.value = *begin;
@@ -293,14 +272,15 @@ void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
         c.sink
             .report(data::in_file(
                 {Code::not_disjoint,
-                 fmt::format("'{}' has '{}', which is one of 'episodes', or most of one: those "
-                             "that thresholds of predicates were calibrated on",
-                             place + ".episodes", data::hash_text(*shared))},
+                 fmt::format(
+                     "'{}' has '{}', which is one of 'episodes' or shares most of its content with "
+                     "one; the thresholds of predicates were calibrated on those",
+                     place + ".episodes", data::hash_text(*shared))},
                 file.path))
-            .note(shift.span, "it is for this")
+            .note(shift.span, "it is needed here")
             .note(
-                "calibrate monitors on other episodes: fitted on the same ones, the thresholds are "
-                "better there than they will be");
+                "calibrate monitors on other episodes: thresholds look too good on those that they "
+                "were calibrated on");
         return;
     }
     reserve(c, entry->truth, monitor.name);
@@ -340,7 +320,7 @@ void check_thresholds(Context& c) {
         c.model.reservations.push_back(thresholds::text(allowance));
     const std::size_t errors = c.sink.errors();
     for (const Index index : predicates) take_threshold(c, index, *file);
-    if (c.sink.errors() > errors) return;  // a monitor's shift is for the thresholds in it
+    if (c.sink.errors() > errors) return;  // shifts depend on the thresholds of predicates
     for (Monitor* monitor : monitors) take_shift(c, *monitor, *file);
 }
 

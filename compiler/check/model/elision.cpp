@@ -6,17 +6,17 @@
 #include <string_view>
 #include <utility>
 
+#include "source/utf8.hpp"
+
 namespace etlc::check {
 
 namespace {
 
 constexpr std::string_view kLeftOut = "...";
 
-/// The first and the last characters of a long word; no code point is cut in two.
+/// Shortens a long word in the middle, between code points.
 std::string middle_left_out(const std::string& word, std::size_t most) {
-    const auto inside = [&](std::size_t i) {
-        return (static_cast<unsigned char>(word[i]) & 0xC0U) == 0x80U;
-    };
+    const auto inside = [&](std::size_t i) { return source::is_continuation(word[i]); };
     const std::size_t kept = most - kLeftOut.size();
     std::size_t head = (kept + 1) / 2;
     std::size_t tail = word.size() - kept / 2;
@@ -29,14 +29,14 @@ class Writer {
 public:
     explicit Writer(const PhraseOf& phrase_of) : phrase_of_(phrase_of) {}
 
-    /// Nothing where it would be longer.
+    /// Returns nothing if the text would be longer.
     std::optional<std::string> whole(Phrase::Operand operand, std::size_t most) const {
         std::string text;
         if (!append(operand, most, text)) return std::nullopt;
         return text;
     }
 
-    /// At most `most` characters, or "..." where there is no room for more.
+    /// Returns at most `most` characters, or "..." if there is too little room.
     std::string elided(Phrase::Operand operand, std::size_t most) const {
         if (auto text = whole(operand, most)) return *std::move(text);
         const Phrase phrase = phrase_of_(operand.formula);
@@ -59,7 +59,7 @@ public:
     }
 
 private:
-    /// False as soon as the text is too long. Each level has at least one character of its own.
+    /// Returns false as soon as the text is too long. Each level adds at least one character.
     bool append(Phrase::Operand operand, std::size_t most, std::string& text,
                 std::size_t depth = 0) const {
         if (depth > most) return false;
@@ -76,7 +76,7 @@ private:
         return text.size() <= most;
     }
 
-    /// The operands, those in the middle left out where there are more than two.
+    /// Joins the operands, leaving out those in the middle if there are more than two.
     std::string chain(const Phrase& phrase, std::size_t most) const {
         const std::vector<Phrase::Operand>& operands = phrase.operands;
         const std::string& separator = phrase.separator;
@@ -88,7 +88,7 @@ private:
         std::size_t next = 1;
         std::size_t last = operands.size() - 1;
         for (bool ahead = true; next < last && room >= separator.size();
-             ahead = !ahead) {  // whole ones between
+             ahead = !ahead) {  // complete operands between
             const auto more = whole(operands[ahead ? next : last - 1], room - separator.size());
             if (!more) break;
             room -= more->size() + separator.size();
@@ -99,7 +99,7 @@ private:
         return head + separator + tail;
     }
 
-    /// Half of the room for each; what one leaves of it is the other's.
+    /// Gives each half of the room, and the other what one leaves.
     std::pair<std::string, std::string> two(Phrase::Operand left, Phrase::Operand right,
                                             std::size_t room) const {
         if (const auto first = whole(left, room / 2))

@@ -13,8 +13,8 @@ std::uint64_t hash_of(const std::string& lines) {
     return lines.empty() ? 0 : data::xxh64(lines);
 }
 
-/// A line an encoder, a projection and a line a target set, as declared, and a line a distance with
-/// weights: its name, and the hash of the numbers.
+/// Returns the name and hash of each encoder, projection, declared target set and distance with
+/// weights, one per line.
 std::string data_lines(const Model& model) {
     std::string lines;
     for (const Encoder& encoder : model.encoders)
@@ -29,9 +29,8 @@ std::string data_lines(const Model& model) {
     return lines;
 }
 
-/// A line a named predicate, and a line a monitor that is calibrated as a whole: its name, and the
-/// shortest decimal number that reads back to the float32. Thresholds without a name stand in the
-/// spec.
+/// Returns the name of each named predicate and calibrated monitor, with the shortest decimal that
+/// reads back to its float32 threshold, one per line. Unnamed thresholds are part of the spec.
 std::string threshold_lines(const Model& model) {
     std::string lines;
     for (const Predicate& predicate : model.predicates)
@@ -43,7 +42,7 @@ std::string threshold_lines(const Model& model) {
     return lines;
 }
 
-/// The bytes of the file, and a line for each constant that was set from outside.
+/// Returns the bytes of the file, and a line for each constant set by --set.
 std::string spec_text(const Model& model) {
     std::string text(model.file.text());
     for (const Constant& constant : model.constants)

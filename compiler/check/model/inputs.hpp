@@ -1,6 +1,4 @@
-// What the monitor sees and what it is compared with: inputs, points made of them, target sets.
-// Takes its form from check/predicates/ and check/points/. Keeps true: every index is in range, of
-// the vectors of check::Model.
+// Inputs, points and target sets of the model. Every index is in range.
 #pragma once
 
 #include <cstdint>
@@ -23,26 +21,26 @@ inline constexpr Index kNone = std::numeric_limits<Index>::max();
 
 enum class InputType : std::uint8_t { scalar, boolean, f32, f16, i8 };
 
-/// What makes an embedding of an image: a model, and what is done to the image before.
+/// A model that makes embeddings from images, and its preprocessing.
 struct Encoder {
     std::string name;
-    std::string model;             ///< the file, as the spec names it
-    std::vector<float> image;      ///< rows and columns that images are resized to; or empty
-    std::vector<float> mean;       ///< of red, green, blue; or empty
-    std::vector<float> deviation;  ///< the same
+    std::string model;             ///< the file as named in the spec
+    std::vector<float> image;      ///< rows and columns for resized images; or empty
+    std::vector<float> mean;       ///< red, green, blue; or empty
+    std::vector<float> deviation;  ///< red, green, blue; or empty
     std::string declaration;       ///< canonical text
-    std::uint32_t dimension = 0;   ///< of the inputs by it; 0: there is none
-    std::string fingerprint;       ///< embedded::fingerprint; empty: `etlc embed` has not been run
-    /// Fingerprints of the same model run by something else, and by what.
+    std::uint32_t dimension = 0;   ///< of its inputs; 0 if there are none
+    std::string fingerprint;       ///< embedded::fingerprint; empty before `etlc embed`
+    /// Fingerprints of the same model in other runtimes, with the names of these.
     std::map<std::string, std::string> otherwise;
     Span span;
 };
 
-/// Images, or frames of a video, that a target is made of.
+/// Images, or frames of a video, in a target.
 struct Encoded {
     std::string text;  ///< canonical, "images(\"bay/*.png\") by dino"
     Index encoder = 0;
-    std::string path;  ///< of a file, a folder or a pattern, as the spec names it
+    std::string path;  ///< a file, folder or pattern as named in the spec
     bool is_video = false;
     std::vector<std::uint64_t> frames;  ///< of a video, in the order of the rows
     Span span;
@@ -52,13 +50,13 @@ struct Input {
     std::string name;
     InputType type = InputType::scalar;
     std::uint32_t dimension = 1;  ///< of embeddings
-    float scale = 1.0F;           ///< i8: value = scale x integer
-    Range range;                  ///< scalars; a sample outside counts as missing
+    float scale = 1.0F;           ///< value = scale x integer, for i8
+    Range range;                  ///< of scalars; samples outside count as missing
     bool has_range = false;
-    /// At most so many missing samples in a row are replaced by the last present one.
+    /// Number of successive missing samples that the last present one replaces.
     std::uint32_t hold = 0;
-    std::optional<bool> missing;  ///< bool: what it counts as where it is missing
-    Index encoder = kNone;        ///< of Model::encoders: what makes it of images
+    std::optional<bool> missing;  ///< value of missing samples of a bool
+    Index encoder = kNone;        ///< makes it from images; in Model::encoders
     Span span;
 
     bool is_embedding() const { return type != InputType::scalar && type != InputType::boolean; }
@@ -68,33 +66,33 @@ struct Input {
 struct Projection {
     std::string name;
     std::uint32_t rows = 0;       ///< R, the dimension of P(z)
-    std::uint32_t dimension = 0;  ///< D, that of z
-    std::vector<float> matrix;    ///< A: R x D, row-major, all finite; empty: not fitted yet
-    std::vector<float> offset;    ///< m: D, all finite; empty: none
+    std::uint32_t dimension = 0;  ///< D, the dimension of z
+    std::vector<float> matrix;    ///< A: R x D, row-major, all finite; empty before fitting
+    std::vector<float> offset;    ///< m: D, all finite; or empty
     std::string origin;           ///< "pca.npz:A", "literal" or "fitted", as in Target
-    std::string path;      ///< of the file that the matrix was read from; empty for a literal
-    std::string hash;      ///< content hash of shape and values
-    Index fitted = kNone;  ///< of Model::fitted
+    std::string path;             ///< of the matrix file; empty for a literal
+    std::string hash;             ///< content hash of shape and values
+    Index fitted = kNone;         ///< in Model::fitted
     Span span;
 };
 
-/// What is measured: one embedding, a vector of scalars [px, py], or P(POINT).
+/// A point to measure from: an embedding, a vector of scalars [px, py], or P(POINT).
 struct Point {
     enum class Kind : std::uint8_t { embedding, scalars, projected };
     Kind kind = Kind::embedding;
-    std::vector<Index> inputs;  ///< the embedding, or the scalars; of P(POINT) those of POINT
+    std::vector<Index> inputs;  ///< the embedding or the scalars; for P(POINT) those of POINT
     std::uint32_t dimension = 0;
     Index projection = kNone;  ///< P
-    Index inner = kNone;       ///< POINT, which stands before it in Model::points
+    Index inner = kNone;       ///< POINT, which precedes it in Model::points
     std::string text;          ///< canonical text: "Q(z)", "[px, py]"
 
     bool is_vector() const { return kind == Kind::scalars; }
     bool is_projected() const { return kind == Kind::projected; }
 };
 
-/// Rows of a target that are made of images, or of frames of a video, one after the other.
+/// Rows of a target that were made from images or from frames of a video.
 struct EncodedRows {
-    Index encoded = 0;  ///< of Model::encoded
+    Index encoded = 0;  ///< in Model::encoded
     std::uint32_t first = 0;
     std::uint32_t count = 0;
 };
@@ -104,17 +102,17 @@ struct Target {
     std::string name;
     std::uint32_t rows = 0;
     std::uint32_t dimension = 0;
-    std::vector<float> values;  ///< empty: not fitted yet
-    /// "targets/goal_a.npy", "file.npz:key" or "literal", as written in the spec.
+    std::vector<float> values;  ///< empty before fitting
+    /// "targets/goal_a.npy", "file.npz:key" or "literal".
     std::string origin;
-    std::string path;                  ///< of a file it was read from; empty for a literal
-    std::string hash;                  ///< content hash of shape and values, data::content_hash
-    std::vector<EncodedRows> encoded;  ///< the rows that are of images
-    /// The point in whose space the rows are, of Model::points; kNone: in that of the inputs.
+    std::string path;                  ///< of the file; empty for a literal
+    std::string hash;                  ///< data::content_hash of shape and values
+    std::vector<EncodedRows> encoded;  ///< rows made from images
+    /// The point whose space contains the rows, in Model::points; kNone: the space of the inputs.
     Index space = kNone;
-    /// The declared target whose rows these are, projected into `space`; kNone: declared itself.
+    /// The declared target whose rows were projected into `space`; kNone for declared targets.
     Index source = kNone;
-    Index fitted = kNone;  ///< of Model::fitted
+    Index fitted = kNone;  ///< in Model::fitted
     Span span;
 };
 

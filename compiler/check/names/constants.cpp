@@ -1,12 +1,10 @@
-// Constants: what each is worth, from the spec or from outside, put in place of its name.
-// Takes: the tree, and settings. Gives: a tree whose numbers are numbers, each with the name that
-// stood for it. Keeps true: a declaration whose constant is unknown or does not fit is taken as
-// unreadable, so that one error makes no others.
+// Replaces constants by their values, from the spec or from --set. A declaration with an unknown or
+// unsuitable constant counts as unreadable, so that one error causes no others.
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/numbers/duration.hpp"
 #include "data/files/file.hpp"
 #include "data/text/quote.hpp"
@@ -30,7 +28,7 @@ std::string text_of(const Setting& setting) {
     return fmt::format("--set {}={}{}", setting.name, setting.number, setting.unit);
 }
 
-/// Puts the settings into the declarations of constants.
+/// Sets constants from --set.
 void take_settings(Context& c, const std::vector<ast::Constant*>& constants) {
     for (const Setting& setting : c.options.settings) {
         const auto named = [&](const ast::Constant* k) { return k->name.text == setting.name; };
@@ -49,7 +47,7 @@ void take_settings(Context& c, const std::vector<ast::Constant*>& constants) {
             c.report(Code::constant_form, constant.span,
                      fmt::format("{}: '{}' is {}, {}; expected {}", text_of(setting), setting.name,
                                  kind_of(constant), text_of(constant),
-                                 constant.unit.empty() ? "no unit" : "a unit behind the number"));
+                                 constant.unit.empty() ? "no unit" : "a unit after the number"));
             continue;
         }
         constant.value.text = setting.number;
@@ -58,13 +56,13 @@ void take_settings(Context& c, const std::vector<ast::Constant*>& constants) {
     }
 }
 
-/// Replaces the constants of one declaration.
+/// Replaces the constants in one declaration.
 class Replacement {
 public:
     Replacement(Context& context, const std::vector<ast::Constant*>& constants)
         : c_(context), constants_(constants) {}
 
-    /// False where one is unknown or does not fit, which is reported.
+    /// Returns false after an error.
     bool in(ast::Declaration& declaration) {
         good_ = true;
         std::visit([this](auto& d) { this->replace(d); }, declaration);
@@ -111,7 +109,7 @@ private:
         if (constant != nullptr && has_no_unit(*constant, number.span)) set(number, *constant);
     }
 
-    /// A time: its unit is that of the constant, or stands behind it.
+    /// Replaces a time; the constant has a unit, or one follows it.
     void replace(ast::Number& number, std::string& unit) {
         const ast::Constant* constant = value_of(number);
         if (constant == nullptr) return;
@@ -137,31 +135,40 @@ private:
         std::visit([this](auto& v) { this->replace(v); }, value);
     }
 
+    template <class... Parts>
+    void each(Parts&... parts) {
+        (replace(parts), ...);
+    }
+
     void replace(ast::Name& /*name*/) {}
     void replace(ast::Load& /*load*/) {}
     void replace(ast::Constant& /*constant*/) {}
+    void replace(ast::Images& /*images*/) {}
+    void replace(ast::Point& /*point*/) {}
     void replace(ast::MatrixLiteral& matrix) { replace(matrix.rows); }
     void replace(ast::VectorLiteral& vector) { replace(vector.values); }
-
-    void replace(ast::Point& /*point*/) {}
-
-    void replace(ast::Frames& frames) {
-        replace(frames.frames);
-        replace(frames.stride);
-    }
-
-    void replace(ast::Fitted& fitted) {
-        for (ast::Fitted::Argument& argument : fitted.arguments) replace(argument.value);
-    }
-
-    void replace(ast::Distance& distance) {
-        if (distance.aggregation) replace(distance.aggregation->n);
-        replace(distance.weights);
-    }
+    void replace(ast::Frames& frames) { each(frames.frames, frames.stride); }
+    void replace(ast::Fitted& fitted) { replace(fitted.arguments); }
+    void replace(ast::Fitted::Argument& argument) { replace(argument.value); }
+    void replace(ast::Aggregation& aggregation) { replace(aggregation.n); }
+    void replace(ast::Distance& distance) { each(distance.aggregation, distance.weights); }
+    void replace(ast::Bound& bound) { replace(bound.number, bound.unit); }
+    void replace(ast::Interval& interval) { each(interval.low, interval.high); }
+    void replace(ast::Formula& f) { each(f.operands, f.interval, f.left, f.right); }
+    void replace(ast::Encoder::Setting& setting) { replace(setting.values); }
+    void replace(ast::Encoder& encoder) { replace(encoder.settings); }
+    void replace(ast::Type& type) { each(type.dimension, type.scale); }
+    void replace(ast::Range& range) { each(range.low, range.high); }
+    void replace(ast::Input& input) { each(input.type, input.range, input.hold); }
+    void replace(ast::Projection& projection) { each(projection.matrix, projection.offset); }
+    void replace(ast::Target& target) { replace(target.sources); }
+    void replace(ast::Predicate& p) { each(p.expression, p.threshold); }
+    void replace(ast::Truth& truth) { replace(truth.formula); }
+    void replace(ast::Let& let) { replace(let.formula); }
+    void replace(ast::Monitor& monitor) { each(monitor.formula, monitor.calibrated); }
 
     void replace(ast::Expr& expression) {
-        replace(expression.distance);
-        replace(expression.arguments);
+        each(expression.distance, expression.arguments);
         const Reference* meant =
             expression.kind == ast::Expr::Kind::name ? c_.scope.find(expression.text) : nullptr;
         if (meant == nullptr || meant->kind != NameKind::constant) return;
@@ -170,18 +177,6 @@ private:
         expression.kind = ast::Expr::Kind::number;
         expression.text = number.text;
         expression.constant = number.constant;
-    }
-
-    void replace(ast::Bound& bound) { replace(bound.number, bound.unit); }
-
-    void replace(ast::Formula& formula) {
-        replace(formula.operands);
-        if (formula.interval) {
-            replace(formula.interval->low);
-            replace(formula.interval->high);
-        }
-        replace(formula.left);
-        replace(formula.right);
     }
 
     void replace(ast::Calibrated& calibrated) {
@@ -194,49 +189,16 @@ private:
         }
     }
 
-    void replace(ast::Images& /*images*/) {}
-
-    void replace(ast::Encoder& encoder) {
-        for (ast::Encoder::Setting& setting : encoder.settings) replace(setting.values);
-    }
-
     void replace(ast::Rate& rate) {
         if (!rate.is_period) return replace(rate.number);
         replace(rate.number, rate.unit);
         const bool in_steps = rate.unit == ast::kStepsUnit;
         if ((!rate.unit.empty() && !in_steps) || !good_) return;
         good_ = false;
-        c_.report(
-            Code::constant_form, rate.number.span,
-            fmt::format("'{0}' is a number{2}, {1}, and a period has a unit of time; expected "
-                        "one, as in 'period {0} ms'",
-                        rate.number.constant, rate.number.text, in_steps ? " of steps" : ""));
-    }
-
-    void replace(ast::Input& input) {
-        replace(input.type.dimension);
-        replace(input.type.scale);
-        if (input.range) {
-            replace(input.range->low);
-            replace(input.range->high);
-        }
-        replace(input.hold);
-    }
-
-    void replace(ast::Projection& projection) {
-        replace(projection.matrix);
-        replace(projection.offset);
-    }
-    void replace(ast::Target& target) { replace(target.sources); }
-    void replace(ast::Predicate& predicate) {
-        replace(predicate.expression);
-        replace(predicate.threshold);
-    }
-    void replace(ast::Truth& truth) { replace(truth.formula); }
-    void replace(ast::Let& let) { replace(let.formula); }
-    void replace(ast::Monitor& monitor) {
-        replace(monitor.formula);
-        replace(monitor.calibrated);
+        c_.report(Code::constant_form, rate.number.span,
+                  fmt::format("'{0}' is a number{2}, {1}, and a period has a unit of time; "
+                              "expected one, as in 'period {0} ms'",
+                              rate.number.constant, rate.number.text, in_steps ? " of steps" : ""));
     }
 
     Context& c_;
@@ -271,11 +233,11 @@ void set_constants(Context& c, ast::Spec& spec) {
         c.incomplete = true;
         return true;
     };
-    // Behind this, `constants` points to nothing.
+    // `constants` is invalid from here on.
     spec.declarations.erase(
         std::remove_if(spec.declarations.begin(), spec.declarations.end(), is_broken),
         spec.declarations.end());
-    c.scope = {};  // declare_names makes it of the declarations that are left
+    c.scope = {};  // declare_names builds it from the remaining declarations
 }
 
 }  // namespace etlc::check

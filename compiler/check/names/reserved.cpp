@@ -3,61 +3,34 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <vector>
 
 namespace etlc::check {
 
 namespace {
 
 constexpr std::array kKeywords = std::to_array<std::string_view>({
-    "alignas",       "alignof",     "and",
-    "and_eq",        "asm",         "auto",
-    "bitand",        "bitor",       "bool",
-    "break",         "case",        "catch",
-    "char",          "char16_t",    "char32_t",
-    "char8_t",       "class",       "co_await",
-    "co_return",     "co_yield",    "compl",
-    "concept",       "const",       "const_cast",
-    "consteval",     "constexpr",   "constinit",
-    "continue",      "decltype",    "default",
-    "delete",        "do",          "double",
-    "dynamic_cast",  "else",        "enum",
-    "explicit",      "export",      "extern",
-    "false",         "float",       "for",
-    "friend",        "goto",        "if",
-    "inline",        "int",         "long",
-    "mutable",       "namespace",   "new",
-    "noexcept",      "not",         "not_eq",
-    "nullptr",       "operator",    "or",
-    "or_eq",         "private",     "protected",
-    "public",        "register",    "reinterpret_cast",
-    "requires",      "return",      "short",
-    "signed",        "sizeof",      "static",
-    "static_assert", "static_cast", "struct",
-    "switch",        "template",    "this",
-    "thread_local",  "throw",       "true",
-    "try",           "typedef",     "typeid",
-    "typename",      "typeof",      "union",
-    "unsigned",      "using",       "virtual",
-    "void",          "volatile",    "wchar_t",
-    "while",         "xor",         "xor_eq",
+    // clang-format off
+    "alignas", "alignof", "and", "and_eq", "asm", "auto", "bitand", "bitor", "bool", "break",
+    "case", "catch", "char", "char16_t", "char32_t", "char8_t", "class", "co_await", "co_return",
+    "co_yield", "compl", "concept", "const", "const_cast", "consteval", "constexpr", "constinit",
+    "continue", "decltype", "default", "delete", "do", "double", "dynamic_cast", "else", "enum",
+    "explicit", "export", "extern", "false", "float", "for", "friend", "goto", "if", "inline",
+    "int", "long", "mutable", "namespace", "new", "noexcept", "not", "not_eq", "nullptr",
+    "operator", "or", "or_eq", "private", "protected", "public", "register", "reinterpret_cast",
+    "requires", "return", "short", "signed", "sizeof", "static", "static_assert", "static_cast",
+    "struct", "switch", "template", "this", "thread_local", "throw", "true", "try", "typedef",
+    "typeid", "typename", "typeof", "union", "unsigned", "using", "virtual", "void", "volatile",
+    "wchar_t", "while", "xor", "xor_eq",
+    // clang-format on
 });
 
-/// What fields of the generated structs are made of.
-constexpr std::array kGenerated = std::to_array<std::string_view>({
-    "etlmon",
-    "int16_t",
-    "int32_t",
-    "int64_t",
-    "int8_t",
-    "size_t",
-    "std",
-    "uint16_t",
-    "uint32_t",
-    "uint64_t",
-    "uint8_t",
-});
+/// Names used in the fields of generated structs.
+constexpr std::array kGenerated =
+    std::to_array<std::string_view>({"etlmon", "int16_t", "int32_t", "int64_t", "int8_t", "size_t",
+                                     "std", "uint16_t", "uint32_t", "uint64_t", "uint8_t"});
 
-/// Macros of compilers and of the C and POSIX headers that are not in capitals.
+/// Macros of compilers and of C and POSIX headers that are not in capitals.
 constexpr std::array kMacros = std::to_array<std::string_view>({
     // clang-format off
     "AF_DECnet", "B0", "B1000000", "B110", "B115200", "B1152000", "B1200", "B134", "B150",
@@ -78,78 +51,59 @@ constexpr std::array kMacros = std::to_array<std::string_view>({
 });
 
 struct Elsewhere {
-    std::string_view name;
     std::string_view header;
+    std::vector<std::string_view> names;
 };
 
-/// Macros of platforms that stand for something else than a name, without those in capitals and
-/// those that take arguments.
-constexpr std::array kElsewhere = std::to_array<Elsewhere>({
-    {"Above", "<X11/X.h>"},
-    {"Always", "<X11/X.h>"},
-    {"Below", "<X11/X.h>"},
-    {"Bool", "<X11/Xlib.h>"},
-    {"Complex", "<X11/X.h>"},
-    {"Convex", "<X11/X.h>"},
-    {"False", "<X11/Xlib.h>"},
-    {"Nonconvex", "<X11/X.h>"},
-    {"None", "<X11/X.h>"},
-    {"Opposite", "<X11/X.h>"},
-    {"Status", "<X11/Xlib.h>"},
-    {"Success", "<X11/X.h>"},
-    {"True", "<X11/Xlib.h>"},
-    {"Unsorted", "<X11/X.h>"},
-    {"cdecl", "<windows.h>"},
-    {"ctlFirst", "<windows.h>"},
-    {"ctlLast", "<windows.h>"},
-    {"emit", "Qt"},
-    {"exception_code", "<windows.h>"},
-    {"exception_info", "<windows.h>"},
-    {"far", "<windows.h>"},
-    {"foreach", "Qt"},
-    {"forever", "Qt"},
-    {"h_addr", "<windows.h>"},
-    {"h_errno", "<windows.h>"},
-    {"hyper", "<windows.h>"},
-    {"interface", "<windows.h>"},
-    {"near", "<windows.h>"},
-    {"pascal", "<windows.h>"},
-    {"s_addr", "<windows.h>"},
-    {"s_host", "<windows.h>"},
-    {"s_imp", "<windows.h>"},
-    {"s_impno", "<windows.h>"},
-    {"s_lh", "<windows.h>"},
-    {"s_net", "<windows.h>"},
-    {"signals", "Qt"},
-    {"slots", "Qt"},
-    {"small", "<windows.h>"},
-});
+/// Macros of platforms that are not defined as names, without those in capitals and those with
+/// arguments.
+const std::vector<Elsewhere>& elsewhere() {
+    static const std::vector<Elsewhere> all{
+        {"<X11/X.h>",
+         {"Above", "Always", "Below", "Complex", "Convex", "Nonconvex", "None", "Opposite",
+          "Success", "Unsorted"}},
+        {"<X11/Xlib.h>", {"Bool", "False", "Status", "True"}},
+        {"<windows.h>",
+         {"cdecl", "ctlFirst", "ctlLast", "exception_code", "exception_info", "far", "h_addr",
+          "h_errno", "hyper", "interface", "near", "pascal", "s_addr", "s_host", "s_imp", "s_impno",
+          "s_lh", "s_net", "small"}},
+        {"Qt", {"emit", "foreach", "forever", "signals", "slots"}},
+    };
+    return all;
+}
 
-/// The controls of dialogs in <windows.h>: rad1, grp2, ...
+/// Controls of dialogs in <windows.h>: rad1, grp2, ...
 constexpr std::array kControls = std::to_array<std::string_view>(
     {"chx", "cmb", "ctl", "edt", "frm", "grp", "ico", "lst", "psh", "rad", "rct", "scr", "stc"});
 
-constexpr bool by_name(const Elsewhere& a, const Elsewhere& b) {
-    return a.name < b.name;
-}
-
-/// Functions and types at global scope in the C library and POSIX: no namespace may bear their
-/// names. Derived from the headers by tests/spec/library_names_test.sh.
+/// Functions and types at global scope in the C library and POSIX, which no namespace may be named
+/// after. tests/spec/library_names_test.sh derives them from the headers.
 constexpr std::array kLibrary = std::to_array<std::string_view>({
 #include "check/names/library_names.inc"
 });
 
-// Searched by halves.
+// Required by binary search.
 static_assert(std::is_sorted(kKeywords.begin(), kKeywords.end()));
 static_assert(std::is_sorted(kGenerated.begin(), kGenerated.end()));
 static_assert(std::is_sorted(kMacros.begin(), kMacros.end()));
 static_assert(std::is_sorted(kLibrary.begin(), kLibrary.end()));
-static_assert(std::is_sorted(kElsewhere.begin(), kElsewhere.end(), by_name));
 static_assert(std::is_sorted(kControls.begin(), kControls.end()));
 
 template <std::size_t N>
 bool contains(const std::array<std::string_view, N>& table, std::string_view name) {
     return std::binary_search(table.begin(), table.end(), name);
+}
+
+/// Mathematical functions also exist for the types _Float32 to _Float128: acosf32, acosf64x.
+bool in_library(std::string_view name) {
+    for (const std::string_view suffix : {"f32", "f32x", "f64", "f64x", "f128"}) {
+        if (!name.ends_with(suffix)) continue;
+        const std::string base(name.substr(0, name.size() - suffix.size()));
+        if (contains(kLibrary, base) && contains(kLibrary, base + "f") &&
+            contains(kLibrary, base + "l"))
+            return true;
+    }
+    return contains(kLibrary, name);
 }
 
 bool is_upper(char c) {
@@ -160,14 +114,13 @@ bool is_lower(char c) {
     return std::islower(static_cast<unsigned char>(c)) != 0;
 }
 
-/// NULL, FLT_MAX, SPI1, but not G1: a firmware's headers have thousands of them, which no list
-/// knows.
+/// NULL, FLT_MAX, SPI1, but not G1. Firmware headers have too many of them for a list.
 bool in_capitals(std::string_view name) {
     return std::count_if(name.begin(), name.end(), is_upper) > 1 &&
            std::none_of(name.begin(), name.end(), is_lower);
 }
 
-/// PRId32 of <inttypes.h>, M_PIf of <math.h>: not in capitals alone.
+/// PRId32 in <inttypes.h>, M_PIf in <math.h>: not only capitals.
 bool macro_family(std::string_view name) {
     return name.starts_with("PRI") || name.starts_with("SCN") || name.starts_with("M_");
 }
@@ -195,20 +148,19 @@ std::optional<std::string_view> why_forbidden(std::string_view name, bool is_nam
     if (contains(kKeywords, name)) return "is a C++ keyword";
     if (contains(kGenerated, name)) return "is a name that the generated code needs";
     if (name.starts_with('_') || name.ends_with('_') || name.find("__") != std::string_view::npos)
-        return "has an underscore that does not stand between letters or digits; C++ and the "
-               "generated code keep those";
-    if (in_capitals(name)) return "is in capitals alone, as macros of C are";
+        return "has an underscore that is not between letters or digits; C++ and the generated "
+               "code reserve those";
+    if (in_capitals(name)) return "is all capitals, like macros of C";
     if (contains(kMacros, name) || macro_family(name))
         return "is a macro of common C headers or compilers";
-    if (is_namespace && contains(kLibrary, name))
-        return "is a name of the C library, so that no namespace can bear it";
+    if (is_namespace && in_library(name))
+        return "is a name of the C library, so no namespace can have it";
     return std::nullopt;
 }
 
 std::optional<std::string_view> macro_elsewhere(std::string_view name) {
-    const auto* const found =
-        std::lower_bound(kElsewhere.begin(), kElsewhere.end(), Elsewhere{name, {}}, by_name);
-    if (found != kElsewhere.end() && found->name == name) return found->header;
+    for (const auto& [header, names] : elsewhere())
+        if (std::find(names.begin(), names.end(), name) != names.end()) return header;
     const std::string_view digits = name.substr(std::min<std::size_t>(name.size(), 3));
     const bool numbered = !digits.empty() && digits.find_first_not_of("0123456789") == name.npos;
     if (numbered && contains(kControls, name.substr(0, 3))) return "<windows.h>";

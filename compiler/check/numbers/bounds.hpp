@@ -1,4 +1,4 @@
-// Bounds of intervals, in steps.
+// Limits of interval bounds, in steps.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,6 @@
 namespace etlc::check {
 
 inline constexpr std::uint32_t kUnbounded = std::numeric_limits<std::uint32_t>::max();
-inline constexpr std::uint32_t kMaxBound = (1U << 31U) - 2U;  ///< of interval bounds, in steps
+inline constexpr std::uint32_t kMaxBound = (1U << 31U) - 2U;  ///< in steps
 
 }  // namespace etlc::check

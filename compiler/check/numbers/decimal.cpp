@@ -5,8 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-
-#include "check/numbers/rounding.hpp"
+#include <tuple>
 
 namespace etlc::check {
 
@@ -23,8 +22,7 @@ std::int64_t parse_exponent(std::string_view text) {
     return negative ? -value : value;
 }
 
-/// Digits that a decimal keeps in front of or behind its point before it is written with an
-/// exponent.
+/// Limits on the digits before and after the point; longer numbers have an exponent.
 constexpr std::int64_t kPlainDigits = 21;
 constexpr std::int64_t kPlainZeros = 6;
 
@@ -40,7 +38,7 @@ Fit nearest(std::string_view text, T& value) {
         return Fit::overflow;
     }
     if (result.ec != std::errc() || value == 0) {
-        value = 0;  // also for -0, which no robustness tells from 0
+        value = 0;  // also for -0, which has the same robustness
         return exact.is_zero() ? Fit::fits : Fit::underflow;
     }
     return Fit::fits;
@@ -70,7 +68,7 @@ Decimal Decimal::parse(std::string_view text) {
 }
 
 Decimal Decimal::of(double value) {
-    std::array<char, 1200> buffer;  // 767 significant digits are the most that a double has
+    std::array<char, 1200> buffer;  // a double has at most 767 significant digits
     const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
                                    std::chars_format::scientific, 800);
     return parse({buffer.data(), static_cast<std::size_t>(end.ptr - buffer.data())});
@@ -78,14 +76,11 @@ Decimal Decimal::of(double value) {
 
 std::optional<std::uint64_t> Decimal::whole(std::uint64_t limit) const {
     if (negative || !is_whole() || exponent > 20) return std::nullopt;
+    std::string text = "0" + digits;
+    text.resize(static_cast<std::size_t>(exponent) + 1, '0');
     std::uint64_t value = 0;
-    for (std::int64_t i = 0; i < exponent; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        const auto digit = static_cast<std::uint64_t>(at < digits.size() ? digits[at] - '0' : 0);
-        if (value > (std::numeric_limits<std::uint64_t>::max() - digit) / 10) return std::nullopt;
-        value = value * 10 + digit;
-    }
-    return value <= limit ? std::optional(value) : std::nullopt;
+    const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+    return result.ec == std::errc() && value <= limit ? std::optional(value) : std::nullopt;
 }
 
 std::string Decimal::text() const {
@@ -105,13 +100,10 @@ std::string Decimal::text() const {
 }
 
 std::strong_ordering Decimal::operator<=>(const Decimal& other) const {
-    const int sign = is_zero() ? 0 : negative ? -1 : 1;
-    const int other_sign = other.is_zero() ? 0 : other.negative ? -1 : 1;
-    if (sign != other_sign || sign == 0) return sign <=> other_sign;
-    auto magnitude = exponent <=> other.exponent;
-    if (magnitude == 0) magnitude = digits.compare(other.digits) <=> 0;
-    if (magnitude == 0 || !negative) return magnitude;
-    return magnitude < 0 ? std::strong_ordering::greater : std::strong_ordering::less;
+    const auto sign = [](const Decimal& x) { return x.is_zero() ? 0 : x.negative ? -1 : 1; };
+    if (sign(*this) != sign(other)) return sign(*this) <=> sign(other);
+    const auto magnitude = [](const Decimal& x) { return std::tie(x.exponent, x.digits); };
+    return negative ? magnitude(other) <=> magnitude(*this) : magnitude(*this) <=> magnitude(other);
 }
 
 Fit to_float(std::string_view text, float& value) {

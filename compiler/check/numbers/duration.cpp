@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <utility>
 
@@ -21,51 +20,33 @@ struct Fraction {
     std::int64_t exponent = 0;
 };
 
-/// Mantissa, below 10^18, and power of ten.
-struct Scaled {
-    std::uint64_t mantissa = 0;
-    std::int64_t exponent = 0;
-};
-
-Scaled scaled(const Decimal& value) {
-    if (value.is_zero()) return {};
-    return {std::strtoull(value.digits.c_str(), nullptr, 10),
-            value.exponent - static_cast<std::int64_t>(value.digits.size())};
+/// Reduces the fraction to lowest terms, apart from the power of ten.
+Fraction reduced(const Fraction& x) {
+    Wide common = x.numerator;
+    for (Wide rest = x.denominator; rest != 0;) common = std::exchange(rest, common % rest);
+    return {x.numerator / common, x.denominator / common, x.exponent};
 }
 
-std::int64_t power_of_unit(std::string_view unit) {
-    return unit == "us" ? -6 : unit == "ms" ? -3 : 0;
+/// Returns the quantity in s or Hz; its numerator is at most 60 x 10^18.
+Fraction fraction_of(const Quantity& q) {
+    const std::uint64_t mantissa = std::strtoull(q.value.digits.c_str(), nullptr, 10);
+    const int power = q.unit == "us" ? -6 : q.unit == "ms" ? -3 : 0;
+    return {Wide{mantissa} * (q.unit == "min" ? 60 : 1), 1,
+            q.value.exponent - static_cast<std::int64_t>(q.value.digits.size()) + power};
 }
 
-/// `time` / `step`, or time x rate. Minutes over minutes cancel first, so that the products stay
-/// below 2^128: the numerator is at most 60 x 10^36, and the denominator at most 60 x 10^18.
+/// Returns `time` / `step`, or time x rate; products stay below 2^128.
 Fraction quotient(const Quantity& time, const Quantity& step) {
-    const Scaled t = scaled(time.value);
-    const Scaled s = scaled(step.value);
-    const bool cancel = time.unit == "min" && step.unit == "min";
-    Fraction result{t.mantissa, 1, t.exponent + power_of_unit(time.unit)};
-    if (time.unit == "min" && !cancel) result.numerator *= 60;
-    if (step.unit == "Hz") {
-        result.numerator *= s.mantissa;
-        result.exponent += s.exponent;
-        return result;
-    }
-    result.denominator = s.mantissa;
-    if (step.unit == "min" && !cancel) result.denominator *= 60;
-    result.exponent -= s.exponent + power_of_unit(step.unit);
-    return result;
-}
-
-Wide gcd(Wide a, Wide b) {
-    while (b != 0) a = std::exchange(b, a % b);
-    return a;
+    const Fraction t = fraction_of(time);
+    const Fraction s = fraction_of(step);
+    if (step.unit == "Hz") return {t.numerator * s.numerator, 1, t.exponent + s.exponent};
+    return reduced({t.numerator, s.numerator, t.exponent - s.exponent});
 }
 
 std::string digits_of(Wide value) {
     std::string text;
-    do text += static_cast<char>('0' + static_cast<int>(value % 10));
+    do text.insert(text.begin(), static_cast<char>('0' + static_cast<int>(value % 10)));
     while ((value /= 10) != 0);
-    std::reverse(text.begin(), text.end());
     return text;
 }
 
@@ -75,28 +56,22 @@ bool multiply(Wide& value, Wide factor) {
     return true;
 }
 
-/// The fraction as a decimal, where one of moderate length is equal to it.
+/// Returns an equal decimal of moderate length, if there is one.
 std::string decimal_text(Fraction x) {
-    const Wide common = gcd(x.numerator, x.denominator);
-    x.numerator /= common;
-    x.denominator /= common;
-    for (; x.denominator % 10 == 0; x.denominator /= 10) --x.exponent;
-    for (const auto& [prime, cofactor] : {std::pair<Wide, Wide>{2, 5}, {5, 2}})
-        for (; x.denominator % prime == 0; x.denominator /= prime, --x.exponent)
+    for (const auto& [divisor, cofactor] : {std::pair<Wide, Wide>{10, 1}, {2, 5}, {5, 2}})
+        for (; x.denominator % divisor == 0; x.denominator /= divisor, --x.exponent)
             if (!multiply(x.numerator, cofactor)) return {};
     if (x.denominator != 1) return {};
     return Decimal::parse(digits_of(x.numerator) + "e" + std::to_string(x.exponent)).text();
 }
 
-/// The fraction as "100/3", where its terms are of moderate length.
+/// Returns "100/3" if the terms have moderate length.
 std::string fraction_text(Fraction x) {
     if (std::abs(x.exponent) > 38) return {};
-    for (; x.exponent > 0; --x.exponent)
-        if (!multiply(x.numerator, 10)) return {};
-    for (; x.exponent < 0; ++x.exponent)
-        if (!multiply(x.denominator, 10)) return {};
-    const Wide common = gcd(x.numerator, x.denominator);
-    return digits_of(x.numerator / common) + "/" + digits_of(x.denominator / common);
+    for (; x.exponent != 0; x.exponent += x.exponent < 0 ? 1 : -1)
+        if (!multiply(x.exponent < 0 ? x.denominator : x.numerator, 10)) return {};
+    x = reduced(x);
+    return digits_of(x.numerator) + "/" + digits_of(x.denominator);
 }
 
 }  // namespace
@@ -112,7 +87,7 @@ StepCount count_steps(const Quantity& duration, const Quantity& step) {
         if (x.numerator % 10 == 0)
             x.numerator /= 10;
         else if (!multiply(x.denominator, 10))
-            return {};  // a denominator that does not fit exceeds the numerator
+            return {};  // the denominator would exceed the numerator
     }
     const Wide floor = x.numerator / x.denominator;
     if (floor > kMaxBound) return {.too_many = true};
@@ -130,7 +105,8 @@ std::string with_unit(std::string_view number, std::string_view unit) {
 std::string duration_text(std::uint64_t steps, const Quantity& step, std::string_view unit) {
     // steps x step / unit = steps / (one unit / step)
     const Fraction per_unit = quotient({Decimal::parse("1"), unit}, step);
-    const Fraction x{per_unit.denominator * steps, per_unit.numerator, -per_unit.exponent};
+    const Fraction x =
+        reduced({per_unit.denominator * steps, per_unit.numerator, -per_unit.exponent});
     std::string text = decimal_text(x);
     if (text.empty()) text = fraction_text(x);
     if (text.empty())

@@ -1,7 +1,5 @@
-// Exact decimal fractions of time.
-// Takes: a duration and a rate or period, each a decimal of at most kMaxTimeDigits significant
-// digits with a unit. Gives: how many steps the duration is, or between which two numbers of steps
-// it lies. Keeps true: integer arithmetic of 128 bits that cannot overflow for such numbers.
+// Exact arithmetic on times, in integers of 128 bits that cannot overflow for decimals of at most
+// kMaxTimeDigits significant digits.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +12,7 @@ namespace etlc::check {
 
 inline constexpr std::size_t kMaxTimeDigits = 18;
 
-/// A positive or zero time, or a rate: `value` in `unit` (us, ms, s, min, Hz).
+/// A time of at least zero, or a rate: `value` in `unit` (us, ms, s, min, Hz).
 struct Quantity {
     Decimal value;
     std::string_view unit;
@@ -23,19 +21,19 @@ struct Quantity {
 struct StepCount {
     std::uint64_t floor = 0;  ///< of the exact quotient
     bool whole = false;
-    bool upper_half = false;  ///< the quotient is floor + 1/2 or more
-    bool too_many = false;    ///< more than kMaxBound; `floor` is then unset
+    bool upper_half = false;  ///< the fractional part is 1/2 or more
+    bool too_many = false;    ///< more than kMaxBound; `floor` is not set
 };
 
 StepCount count_steps(const Quantity& duration, const Quantity& step);
 
-/// "0.5 s"; the number alone where there is no unit.
+/// Returns "0.5 s", or only the number if there is no unit.
 std::string with_unit(std::string_view number, std::string_view unit);
 
-/// `steps` steps as a duration in `unit`: "0.15 s", or "100/3 ms" where no decimal is equal to it.
+/// Returns `steps` steps as a duration in `unit`: "0.15 s", or "100/3 ms" if no decimal is equal.
 std::string duration_text(std::uint64_t steps, const Quantity& step, std::string_view unit);
 
-/// The length of a step in seconds, rounded to double.
+/// Returns the length of a step in seconds, rounded to double.
 double seconds(const Quantity& step);
 
 }  // namespace etlc::check

@@ -6,7 +6,9 @@
 #include <array>
 #include <set>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
+#include "check/guarantees/provenance.hpp"
+#include "check/matrices/matrices.hpp"
 #include "check/numbers/decimal.hpp"
 #include "check/points/points.hpp"
 
@@ -17,13 +19,13 @@ namespace {
 using diag::Code;
 using Slot = Fitted::Slot;
 
-/// What a method gives, and the numbers that it takes besides `of` and `where`.
+/// The result of a method, and its arguments besides `of` and `where`.
 struct Method {
     std::string_view word;
     FittedMethod method;
     Slot slot;
-    std::string_view count;  ///< k, rows of a target, or r, of a projection; empty: it has none
-    bool away = false;       ///< may be told how far from a change of `where` frames are taken
+    std::string_view count;  ///< k for rows of a target, r for those of a projection; or empty
+    bool away = false;       ///< accepts `away`
 };
 
 constexpr std::array kMethods = std::to_array<Method>({
@@ -54,14 +56,12 @@ const Method* find_method(Context& c, const ast::Name& name, Slot slot) {
         if (method.word == name.text && method.slot == slot) return &method;
         if (method.slot == slot) words.emplace_back(method.word);
     }
-    auto& error = c.report(Code::unknown_fitting, name.span,
-                           fmt::format("'{}' does not fit {}; expected {}", name.text, word(slot),
-                                       diag::alternatives(words)));
-    if (const auto near = diag::nearest_name(name.text, words)) diag::did_you_mean(error, *near);
+    report_unknown_word(c, Code::unknown_fitting, name, fmt::format("does not fit {}", word(slot)),
+                        words);
     return nullptr;
 }
 
-/// How the method is written.
+/// Returns the form of the method.
 std::string form(const Method& method) {
     return fmt::format("fitted({}{}, of = POINT, where = FORMULA)", method.word,
                        method.count.empty() ? "" : fmt::format(", {} = 8", method.count));
@@ -72,7 +72,7 @@ public:
     FittedCheck(Context& context, const ast::Fitted& written, const Method& method)
         : c_(context), written_(written), method_(method) {}
 
-    /// Without its name and slot; nothing where an argument had an error.
+    /// Returns the element without name and slot; nothing after an error.
     std::optional<Fitted> run() {
         const std::size_t errors = c_.sink.errors();
         for (const ast::Fitted::Argument& argument : written_.arguments) take(argument);
@@ -166,39 +166,94 @@ private:
     std::set<std::string> given_;
 };
 
-Index add(Context& c, Fitted fitted, const ast::Formula* where) {
-    c.model.fitted.push_back(std::move(fitted));
-    c.fitted_where.push_back(where);
-    return static_cast<Index>(c.model.fitted.size() - 1);
+// ---- the file of fitted values
+// -------------------------------------------------------------------
+
+constexpr std::string_view kFitAgain = "fit again with 'etlc fit'";
+
+std::optional<fitted::File> read_file(Context& c, const Fitted& first) {
+    if (c.options.fitted != nullptr) return *c.options.fitted;
+    const std::string path =
+        c.options.fitted_path.empty() ? fitted::default_path(c.file.path()) : c.options.fitted_path;
+    if (exists(path))
+        return read_made(c, path, fitted::read, first.span,
+                         fmt::format("'{}' is fitted", first.name));
+    c.report_data({Code::fitted_missing,
+                   fmt::format("'{}' is fitted, but there is no file {}", first.name, path),
+                   first.span})
+        .note("'etlc fit' makes one from labelled demonstrations; --fitted selects another");
+    return std::nullopt;
+}
+
+bool is_current(Context& c, const Fitted& fitted, const std::vector<std::string>& differences) {
+    return is_up_to_date(
+        c, Code::fitted_stale, fitted.span,
+        fmt::format("'{}' in {} was fitted for something else", fitted.name, c.fitted_file->path),
+        differences, kFitAgain);
 }
 
 }  // namespace
 
-Index check_fitted(Context& c, const ast::Fitted& written, Slot slot, const std::string& name,
+Index check_fitted(Context& c, const ast::Fitted& written, Slot slot, std::string name,
                    Index index) {
     const Method* const method = find_method(c, written.method, slot);
     if (method == nullptr) return kNone;
     FittedCheck check(c, written, *method);
     auto fitted = check.run();
     if (!fitted) return kNone;
-    fitted->name = name;
+    std::vector<Fitted>& all = c.model.fitted;
+    const auto same = std::find_if(all.begin(), all.end(), [&](const Fitted& other) {
+        return other.slot == Slot::metric && other.declaration == fitted->declaration;
+    });
+    if (slot == Slot::metric && same != all.end()) return static_cast<Index>(same - all.begin());
+    fitted->name = slot == Slot::metric ? fitted->declaration : std::move(name);
     fitted->index = index;
-    return add(c, std::move(*fitted), check.where());
+    all.push_back(std::move(*fitted));
+    c.fitted_where.push_back(check.where());
+    return static_cast<Index>(all.size() - 1);
 }
 
-Index check_fitted_metric(Context& c, const ast::Fitted& written) {
-    const Method* const method = find_method(c, written.method, Slot::metric);
-    if (method == nullptr) return kNone;
-    FittedCheck check(c, written, *method);
-    auto fitted = check.run();
-    if (!fitted) return kNone;
-    const auto same =
-        std::find_if(c.model.fitted.begin(), c.model.fitted.end(), [&](const Fitted& other) {
-            return other.slot == Slot::metric && other.declaration == fitted->declaration;
-        });
-    if (same != c.model.fitted.end()) return static_cast<Index>(same - c.model.fitted.begin());
-    fitted->name = fitted->declaration;
-    return add(c, std::move(*fitted), check.where());
+const fitted::Entry* fitted_entry(Context& c, Index index) {
+    if (c.options.allow_unfitted) return nullptr;
+    Fitted& fitted = c.model.fitted[index];
+    if (!c.fitted_is_read) c.fitted_file = read_file(c, fitted);
+    c.fitted_is_read = true;
+    if (!c.fitted_file) return nullptr;
+    const auto found = c.fitted_file->entries.find(fitted.name);
+    if (found == c.fitted_file->entries.end()) {
+        c.report_data({Code::fitted_missing,
+                       fmt::format("{} has no entry for '{}'", c.fitted_file->path, fitted.name),
+                       fitted.span})
+            .note(std::string(kFitAgain));
+        return nullptr;
+    }
+    const fitted::Entry& entry = found->second;
+    std::vector<std::string> differences;
+    if (entry.declaration != fitted.declaration)
+        differences.push_back(changed("the declaration", entry.declaration, fitted.declaration));
+    else if (entry.rows != fitted.rows || entry.columns != fitted.columns)
+        differences.push_back(changed("its shape",
+                                      fmt::format("{} x {}", entry.rows, entry.columns),
+                                      fmt::format("{} x {}", fitted.rows, fitted.columns)));
+    fitted.filled = is_current(c, fitted, differences);
+    return fitted.filled ? &entry : nullptr;
+}
+
+void check_fitted_entries(Context& c) {
+    if (!c.fitted_file || c.sink.has_errors()) return;
+    for (const Fitted& fitted : c.model.fitted) {
+        const fitted::Entry& entry = c.fitted_file->entries.at(fitted.name);
+        const FittedProvenance now = provenance(c.model, fitted);
+        std::vector<std::string> differences;
+        if (entry.of != now.of) differences.push_back(changed("the point", entry.of, now.of));
+        if (stated(entry.truth) != now.truth)
+            differences.push_back(changed("the truth", entry.truth, now.truth));
+        if (differences.empty() && !entry.reads.empty())
+            differences = check::differences(entry.reads, now.reads);
+        is_current(c, fitted, differences);
+    }
+    for (const thresholds::Allowance& allowance : c.fitted_file->allowances)
+        c.model.reservations.push_back(thresholds::text(allowance));
 }
 
 }  // namespace etlc::check

@@ -1,6 +1,6 @@
-// fitted(METHOD, of = POINT, where = FORMULA, ...): what `etlc fit` computes from episodes.
-// Takes: the words. Gives: a row of model.fitted, with its shape. Keeps true: a row depends on
-// projections that stand before it alone.
+// fitted(METHOD, of = POINT, where = FORMULA, ...): elements that `etlc fit` computes from
+// episodes, and their values in its file. An element depends only on projections declared before
+// it.
 #pragma once
 
 #include <string>
@@ -10,12 +10,14 @@
 
 namespace etlc::check {
 
-/// The index in model.fitted of what fills the declaration `name`, the model's target or projection
-/// `index`; kNone where it had an error, which is reported.
+/// Returns the index in model.fitted; kNone after an error. It fills the declaration `name`, the
+/// model's target or projection `index`. Metrics, mahalanobis(fitted(...)), have neither, and equal
+/// ones are shared.
 Index check_fitted(Context& context, const ast::Fitted& written, Fitted::Slot slot,
-                   const std::string& name, Index index);
+                   std::string name = {}, Index index = kNone);
 
-/// The same of a metric, mahalanobis(fitted(...)): equal ones stand once.
-Index check_fitted_metric(Context& context, const ast::Fitted& written);
+/// Returns the entry with the shape that the spec asks for, and marks the element as filled; null
+/// if there is none, which is an error unless --check allows it. The first call reads the file.
+const fitted::Entry* fitted_entry(Context& context, Index fitted);
 
 }  // namespace etlc::check

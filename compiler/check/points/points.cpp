@@ -12,7 +12,7 @@ namespace {
 
 using diag::Code;
 
-/// One input of the point; kNone with a diagnostic where it does not fit.
+/// Returns one input of the point; kNone after an error.
 Index element(Context& c, const ast::Point& written, const ast::Name& name) {
     const Index index = resolve(c, name, NameKind::input);
     if (index == kNone) return kNone;
@@ -27,7 +27,7 @@ Index element(Context& c, const ast::Point& written, const ast::Name& name) {
                                        written.is_vector ? "the scalars of a vector"
                                                          : "an embedding, or a vector of scalars"));
     if (input.is_embedding())
-        error.note(fmt::format("an embedding stands without brackets: {}", name.text));
+        error.note(fmt::format("write an embedding without brackets: {}", name.text));
     if (input.type == InputType::scalar)
         error.note(fmt::format("for a point of one dimension write [{}]", name.text));
     return kNone;
@@ -60,9 +60,9 @@ Index projected(Context& c, const ast::Name& name, Index inner, Span span) {
     if (index == kNone || inner == kNone) return kNone;
     if (index >= c.model.projections.size()) {
         c.report(Code::projection_order, name.span,
-                 fmt::format("'{}' is declared further down; a projection is fitted through those "
-                             "above it alone",
-                             name.text))
+                 fmt::format(
+                     "'{}' is declared later; a projection can be fitted only through earlier ones",
+                     name.text))
             .note(c.scope.entity(NameKind::projection, index).span,
                   fmt::format("'{}' is declared here", name.text));
         return kNone;
@@ -88,7 +88,7 @@ Index projected(Context& c, const ast::Name& name, Index inner, Span span) {
 }
 
 /// "the vector", "'z'", "Q(z)"
-std::string shown(const Context& c, const Point& point) {
+std::string words_of(const Context& c, const Point& point) {
     if (point.is_projected()) return point.text;
     return point.is_vector() ? "the vector"
                              : fmt::format("'{}'", c.model.inputs[point.inputs[0]].name);
@@ -97,8 +97,8 @@ std::string shown(const Context& c, const Point& point) {
 void report_wrong_space(Context& c, const Target& target, const Point& point, Span span) {
     const std::string& space = c.model.points[target.space].text;
     c.report(Code::wrong_space, span,
-             fmt::format("target '{}' is in the space of {}, which {} does not go through",
-                         target.name, space, shown(c, point)))
+             fmt::format("target '{}' is in the space of {}, but {} is not projected through it",
+                         target.name, space, words_of(c, point)))
         .note(target.span, fmt::format("'{}' is declared here", target.name))
         .note(fmt::format("measure from {}, or from a projection of it", space));
 }
@@ -107,15 +107,15 @@ void report_dimensions(Context& c, const Target& target, const Point& point, con
                        Span span) {
     auto& error =
         c.report(Code::dimension_mismatch, span,
-                 fmt::format("{} has dimension {}, target '{}' has dimension {}", shown(c, point),
-                             point.dimension, target.name, target.dimension));
+                 fmt::format("{} has dimension {}, target '{}' has dimension {}",
+                             words_of(c, point), point.dimension, target.name, target.dimension));
     if (point.kind == Point::Kind::embedding)
         error.note(c.model.inputs[point.inputs[0]].span,
-                   fmt::format("{} is declared here", shown(c, point)));
+                   fmt::format("{} is declared here", words_of(c, point)));
     error.note(target.span, fmt::format("'{}' has {} of {}", target.name,
                                         diag::counted(target.rows, "row"), target.dimension));
     if (whole.is_projected() && !point.is_projected())
-        error.note(fmt::format("rows that are projected already say so: target {} = ... of {};",
+        error.note(fmt::format("if the rows are projected already, write: target {} = ... of {};",
                                target.name, whole.text));
 }
 
@@ -155,11 +155,10 @@ Index target_in_space(Context& c, Index index, Index point, Span span) {
     c.model.targets.push_back(std::move(projected));
     if (const auto row = project_target(c.model, at->second)) {
         at->second = kNone;
-        c.report(
-            Code::projected_not_finite, span,
-            fmt::format("row {} (from 0) of target '{}' is beyond float32 once it is projected "
-                        "into the space of {}",
-                        *row, c.model.targets[index].name, c.model.points[point].text));
+        c.report(Code::projected_not_finite, span,
+                 fmt::format("row {} (from 0) of target '{}' exceeds float32 when projected into "
+                             "the space of {}",
+                             *row, c.model.targets[index].name, c.model.points[point].text));
     }
     return at->second;
 }

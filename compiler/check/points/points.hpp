@@ -1,8 +1,6 @@
-// Points of distances, and target sets in their spaces.
-// Takes: a point as written, and a target. Gives: the point in the model, and the target with its
-// rows where the point is. Keeps true: equal points stand once; a point stands behind the one that
-// it is projected from; rows are taken for what the declaration of their target says they are, and
-// never for what their dimension would allow.
+// Points of distances, and target sets in their spaces. Equal points are shared, and a point
+// follows the one that it is projected from. The declaration of a target determines the space of
+// its rows, never their dimension.
 #pragma once
 
 #include "ast/ast.hpp"
@@ -10,11 +8,12 @@
 
 namespace etlc::check {
 
-/// The index in model.points; kNone where it had an error, which is reported.
+/// Returns the index in model.points; kNone after an error.
 Index check_point(Context& context, const ast::Point& point);
 
-/// The target itself where its rows are in the space of the point, else its rows projected into it;
-/// kNone, with a diagnostic, where no projection of the point leads there, or dimensions differ.
+/// Returns the target if its rows are in the space of the point, otherwise a target with the
+/// projected rows; kNone, with an error, if no projection of the point leads there or the
+/// dimensions differ.
 Index target_in_space(Context& context, Index target, Index point, Span span);
 
 }  // namespace etlc::check

@@ -9,7 +9,7 @@ namespace etlc::check {
 
 namespace {
 
-/// The projections between two points, from the innermost; `from` lies on the way of `to`.
+/// Returns the projections between two points, innermost first; `from` is on the way to `to`.
 std::vector<Index> maps_between(const Model& model, Index from, Index to) {
     std::vector<Index> maps;
     for (Index at = to; at != from; at = model.points[at].inner)
@@ -18,7 +18,7 @@ std::vector<Index> maps_between(const Model& model, Index from, Index to) {
     return maps;
 }
 
-/// The point without its projections.
+/// Returns the point without its projections.
 Index innermost(const Model& model, Index point) {
     while (model.points[point].is_projected()) point = model.points[point].inner;
     return point;

@@ -1,10 +1,9 @@
-// The projections: matrices that are loaded, spelled out or fitted.
+// Checks projections: matrices that are loaded, literal or fitted.
 #include <fmt/format.h>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/matrices/matrices.hpp"
 #include "check/points/fitted.hpp"
-#include "check/points/fitted_file.hpp"
 #include "check/points/project.hpp"
 
 namespace etlc::check {
@@ -13,29 +12,16 @@ namespace {
 
 using diag::Code;
 
-template <class... Alternatives>
-std::optional<Matrix> matrix_of(Context& c, const std::variant<Alternatives...>& numbers) {
-    if (const auto* load = std::get_if<ast::Load>(&numbers)) return read_matrix(c, *load);
-    if (const auto* literal = std::get_if<ast::MatrixLiteral>(&numbers))
-        return read_matrix(c, *literal);
-    return read_matrix(c, std::get<ast::VectorLiteral>(numbers));
-}
-
-Span span_of(const ast::Projection::Numbers& numbers) {
-    return std::visit([](const auto& n) { return n.span; }, numbers);
-}
-
-/// False, with a diagnostic, where the offset is no point that the projection takes.
+/// Sets the offset; false, with an error, if it does not fit the matrix.
 bool set_offset(Context& c, const ast::Projection::Numbers& written, Projection& projection) {
-    auto offset = matrix_of(c, written);
+    auto offset = read_matrix(c, written);
     if (!offset) return false;
-    if (offset->rows != 1 || offset->columns != projection.dimension) {
-        c.report(Code::projection_form, span_of(written),
-                 fmt::format("the offset has shape ({}, {}); expected one row of {}, as the matrix "
-                             "has columns",
-                             offset->rows, offset->columns, projection.dimension));
-        return false;
-    }
+    if (offset->rows != 1 || offset->columns != projection.dimension)
+        return c.refuse(
+            Code::projection_form, span_of(written),
+            fmt::format("the offset has shape ({}, {}); expected one row of {}, one for each "
+                        "column of the matrix",
+                        offset->rows, offset->columns, projection.dimension));
     projection.offset = std::move(offset->values);
     return true;
 }
@@ -43,8 +29,8 @@ bool set_offset(Context& c, const ast::Projection::Numbers& written, Projection&
 bool set_numbers(Context& c, const ast::Projection& declaration, Projection& projection) {
     if (const auto* vector = std::get_if<ast::VectorLiteral>(&declaration.matrix)) {
         c.report(Code::projection_form, vector->span,
-                 "a projection is a matrix, a row for each number that it gives; this is a vector")
-            .note("for a projection to one number put it in another pair of brackets");
+                 "a projection is a matrix, one row per result: expected a matrix, found a vector")
+            .note("for a projection to a single number add another pair of brackets");
         return false;
     }
     auto matrix = std::holds_alternative<ast::Load>(declaration.matrix)
@@ -73,7 +59,6 @@ bool set_fitted(Context& c, const ast::Fitted& written, Projection& projection) 
         projection.matrix = entry->matrix;
         projection.offset = entry->offset;
         projection.hash = entry->hash;
-        c.model.fitted[projection.fitted].filled = true;
     }
     return true;
 }

@@ -1,4 +1,5 @@
-#include "check/predicates/expressions.hpp"
+// Checks EXPR: scalars, numbers, aggregated distances and arithmetic.
+#include "check/predicates/predicates.hpp"
 
 #include <fmt/format.h>
 
@@ -6,33 +7,15 @@
 #include <set>
 
 #include "check/numbers/decimal.hpp"
-#include "check/numbers/range_arithmetic.hpp"
+#include "check/numbers/range.hpp"
 #include "etlmon/distance/distances.hpp"
 
 namespace etlc::check {
 
 namespace {
 
+using ast::ExprKind;
 using diag::Code;
-using ExprKind = Expr::Kind;
-
-ExprKind kind_of(ast::Expr::Kind kind) {
-    switch (kind) {
-        case ast::Expr::Kind::number: return ExprKind::number;
-        case ast::Expr::Kind::name: return ExprKind::scalar;
-        case ast::Expr::Kind::distance: return ExprKind::distance;
-        case ast::Expr::Kind::negate: return ExprKind::negate;
-        case ast::Expr::Kind::add: return ExprKind::add;
-        case ast::Expr::Kind::subtract: return ExprKind::subtract;
-        case ast::Expr::Kind::multiply: return ExprKind::multiply;
-        case ast::Expr::Kind::divide: return ExprKind::divide;
-        case ast::Expr::Kind::abs: return ExprKind::abs;
-        case ast::Expr::Kind::sqrt: return ExprKind::sqrt;
-        case ast::Expr::Kind::min: return ExprKind::min;
-        case ast::Expr::Kind::max: return ExprKind::max;
-    }
-    return ExprKind::number;
-}
 
 bool set_number(Context& c, Expr& result, const ast::Expr& written) {
     const std::size_t errors = c.sink.errors();
@@ -55,15 +38,14 @@ bool set_scalar(Context& c, Expr& result, const ast::Expr& written) {
                                        input.is_embedding() ? "an embedding" : "a bool"));
     if (input.is_embedding())
         error.note(
-            fmt::format("a distance makes a number of it: min l2({}, TARGET)", written.text));
-    if (!input.is_embedding())
-        error.note("a bool stands in formulas as it is; two are compared by '<->'");
+            fmt::format("a distance turns it into a number: min l2({}, TARGET)", written.text));
+    if (!input.is_embedding()) error.note("a bool is a formula by itself; compare two with '<->'");
     return false;
 }
 
 std::optional<Expr> build(Context& c, const ast::Expr& written) {
     Expr result;
-    result.kind = kind_of(written.kind);
+    result.kind = written.kind;
     result.span = written.span;
     bool good = true;
     if (result.kind == ExprKind::number) good = set_number(c, result, written);
@@ -92,7 +74,7 @@ std::optional<Expr> check_expression(Context& context, const ast::Expr& expressi
 
 namespace {
 
-/// What an aggregated distance can be: cosine [0, 2], angular [0, pi], the others [0, inf].
+/// Returns the range of a distance: [0, 2] for cosine, [0, pi] for angular, [0, inf] for others.
 Range range_of(Metric metric) {
     switch (metric) {
 #define DISTANCE(id, Type, prepared, zero_is_unknown) \

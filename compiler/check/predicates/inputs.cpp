@@ -1,11 +1,10 @@
-// What the monitor sees: types, ranges, hold.
+// Checks inputs: types, ranges, hold.
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/numbers/decimal.hpp"
-#include "check/numbers/rounding.hpp"
 #include "check/time/time.hpp"
 
 namespace etlc::check {
@@ -14,12 +13,12 @@ namespace {
 
 using diag::Code;
 
-/// Of an embedding: a float32 vector of this length is 4 MiB.
+/// An embedding of this dimension has 4 MiB in float32.
 constexpr std::uint32_t kMaxDimension = 1U << 20U;
-/// Steps for which a sample may stand in for later ones.
+/// Limit on the steps for which a sample may replace later ones.
 constexpr std::uint32_t kMaxHold = kMaxBound;
 
-/// Checks one declaration, whose names share everything but the name.
+/// Checks one declaration, whose names differ in nothing else.
 class InputCheck {
 public:
     InputCheck(Context& context, const ast::Input& declaration)
@@ -89,7 +88,7 @@ private:
         if (c_.sink.errors() > errors) broken_ = true;
         if (std::isfinite(value * 128.0F)) return value;
         report(Code::scale_form, number.span,
-               fmt::format("128 times the scale {} is beyond float32", shown(number)));
+               fmt::format("128 times the scale {} exceeds float32", shown(number)));
         return 1.0F;
     }
 
@@ -110,7 +109,7 @@ private:
                                Decimal::parse(range.low.text) > Decimal::parse(range.high.text));
         if (reversed) {
             report(Code::range_form, range.span,
-                   fmt::format("the range [{}, {}] holds no number", shown(range.low),
+                   fmt::format("the range [{}, {}] contains no number", shown(range.low),
                                shown(range.high)));
             return;
         }
@@ -123,16 +122,16 @@ private:
         float value = 0;
         if (to_float(number.text, value) != Fit::overflow) return;
         report(Code::number_overflow, number.span,
-               fmt::format("{} is beyond the largest float32; an open end is written {}inf",
+               fmt::format("{} exceeds the largest float32; write {}inf for an open end",
                            shown(number), number.text.starts_with('-') ? "-" : ""));
     }
 
-    /// A comparison may be false where a sample is missing; a number has no such value.
+    /// Only bools have a value for missing samples; comparisons of numbers may have one.
     std::optional<bool> missing(InputType type) {
         if (declaration_.missing && type != InputType::boolean)
             report(Code::missing_form, declaration_.span,
-                   "only a bool has a value to stand in for a missing sample")
-                .note("say it where it is compared: predicate ... missing false;");
+                   "only a bool can have a value for missing samples")
+                .note("give it in the predicate instead: predicate ... missing false;");
         return declaration_.missing;
     }
 
@@ -140,7 +139,7 @@ private:
         if (!declaration_.hold) return 0;
         const ast::Bound& hold = *declaration_.hold;
         if (!is_duration(hold)) {
-            // A number alone has always been one of steps here: no bound that is perhaps seconds.
+            // A number without a unit has always meant steps here, never seconds.
             const auto steps = Decimal::parse(hold.number.text).whole(kMaxHold);
             if (!steps)
                 report(Code::hold_out_of_range, hold.span,
@@ -154,22 +153,22 @@ private:
         return steps.value_or(0);
     }
 
-    /// Of its inputs, which all have the dimension of what it gives.
+    /// All inputs of an encoder have the dimension of its embeddings.
     Index encoder(const Input& input) {
         if (!declaration_.encoder) return kNone;
         const Index index = resolve(c_, *declaration_.encoder, NameKind::encoder);
         if (index == kNone) return kNone;
         if (input.type != InputType::f32) {
             report(Code::encoder_use, declaration_.encoder->span,
-                   fmt::format("an encoder gives embeddings in float32; expected an input f32[D], "
-                               "found {}",
-                               c_.file.text(declaration_.type.span)));
+                   fmt::format(
+                       "an encoder gives embeddings in float32; expected an input f32[D], found {}",
+                       c_.file.text(declaration_.type.span)));
             return kNone;
         }
         Encoder& encoder = c_.model.encoders[index];
         if (encoder.dimension != 0 && encoder.dimension != input.dimension)
             report(Code::embedding_dimension, declaration_.type.span,
-                   fmt::format("this input has dimension {}, another one by '{}' has {}",
+                   fmt::format("this input has dimension {}, another input by '{}' has {}",
                                input.dimension, encoder.name, encoder.dimension));
         encoder.dimension = input.dimension;
         return index;

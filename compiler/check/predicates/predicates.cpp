@@ -5,29 +5,16 @@
 #include <cmath>
 #include <limits>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/numbers/decimal.hpp"
-#include "check/numbers/range_arithmetic.hpp"
-#include "check/predicates/expressions.hpp"
+#include "check/numbers/range.hpp"
 
 namespace etlc::check {
 
 namespace {
 
 using diag::Code;
-
-Comparison comparison_of(ast::Comparison comparison) {
-    switch (comparison) {
-        case ast::Comparison::less_equal: return Comparison::less_equal;
-        case ast::Comparison::less: return Comparison::less;
-        case ast::Comparison::greater_equal: return Comparison::greater_equal;
-        case ast::Comparison::greater: return Comparison::greater;
-        case ast::Comparison::equal: return Comparison::equal;
-        case ast::Comparison::not_equal: return Comparison::not_equal;
-    }
-    return Comparison::less_equal;
-}
 
 std::optional<Threshold> literal_threshold(Context& c, const ast::Number& number) {
     const std::size_t errors = c.sink.errors();
@@ -39,22 +26,18 @@ std::optional<Threshold> literal_threshold(Context& c, const ast::Number& number
     return c.sink.errors() == errors ? std::optional(std::move(threshold)) : std::nullopt;
 }
 
-/// A distance is never below zero. In a difference of two a negative threshold has its sense.
+/// A distance is never negative, but a difference of two may be.
 bool sign_fits(Context& c, const Expr& expression, const Threshold& threshold) {
-    const bool negative = threshold.range().low < 0;  // not known of one that is not yet calibrated
-    if (expression.kind != Expr::Kind::distance || !negative) return true;
-    if (threshold.adaptation)
-        c.report(Code::negative_threshold, threshold.span,
-                 fmt::format("lo = {} is below every distance, which is never negative",
-                             threshold.adaptation->lo));
-    else
-        c.report(
-            Code::negative_threshold, threshold.span,
-            fmt::format("the threshold {} on a distance, which is never negative", threshold.text));
-    return false;
+    if (expression.kind != Expr::Kind::distance || !(threshold.range().low < 0))
+        return true;  // also before calibration, when it is NaN
+    const std::string negative = threshold.adaptation
+                                     ? fmt::format("lo = {}", threshold.adaptation->lo)
+                                     : fmt::format("the threshold {}", threshold.text);
+    return c.refuse(Code::negative_threshold, threshold.span,
+                    fmt::format("{} is negative, but distances never are", negative));
 }
 
-/// A number, with its sign where it has one.
+/// Returns a single number, with its sign.
 std::optional<ast::Number> lone_number(const ast::Expr& written) {
     if (written.kind == ast::Expr::Kind::number)
         return ast::Number{written.text, written.span, written.constant};
@@ -67,9 +50,9 @@ std::optional<ast::Number> lone_number(const ast::Expr& written) {
     return number;
 }
 
-/// What stands for "x CMP y" where both are numbers that change: x - y CMP 0.
+/// "x CMP y" with a number as y; if both change, it becomes x - y CMP 0.
 struct Sides {
-    std::optional<Expr> expression;  ///< nothing where a side had an error
+    std::optional<Expr> expression;  ///< empty after an error
     Comparison comparison;
     std::optional<Threshold> threshold;
 };
@@ -103,19 +86,18 @@ Sides sides(Context& c, const ast::Expr& left, Comparison comparison, const ast:
     return result;
 }
 
-/// A distance is hardly ever exactly equal to anything, and the rounding of its kernel decides.
+/// Distances are rounded by their kernels, so exact equality means nothing.
 bool can_be_equal(Context& c, const Predicate& predicate) {
     bool measures = false;
     for_each_distance(predicate.expression, [&](Index /*distance*/) { measures = true; });
     if (!predicate.equality() || !measures) return true;
-    c.report(Code::equality_of_distances, predicate.span,
-             fmt::format("'{}' compares distances, which are rounded; expected '<=', '<', '>=' or "
-                         "'>'",
-                         symbol(predicate.comparison)));
-    return false;
+    return c.refuse(
+        Code::equality_of_distances, predicate.span,
+        fmt::format("'{}' compares distances, which are rounded; expected '<=', '<', '>=' or '>'",
+                    symbol(predicate.comparison)));
 }
 
-/// The predicate, or nothing where it had an error. `threshold` is absent where that had one.
+/// Returns the predicate, or nothing after an error.
 std::optional<Predicate> make_predicate(Context& c, Sides sides, Span span) {
     auto& expression = sides.expression;
     auto& threshold = sides.threshold;
@@ -141,14 +123,13 @@ std::optional<Predicate> make_predicate(Context& c, Sides sides, Span span) {
 }
 
 Sides declared_sides(Context& c, const ast::Predicate& declaration) {
-    const Comparison comparison = comparison_of(declaration.comparison);
+    const Comparison comparison = declaration.comparison;
     if (const auto* right = std::get_if<ast::ExprPtr>(&declaration.threshold))
         return sides(c, *declaration.expression, comparison, **right);
     const auto& calibrated = std::get<ast::Calibrated>(declaration.threshold);
     if (comparison == Comparison::equal || comparison == Comparison::not_equal) {
         c.report(Code::comparison_form, calibrated.span,
-                 fmt::format("a calibrated threshold stands behind '<=', '<', '>=' or '>', not "
-                             "behind '{}'",
+                 fmt::format("a calibrated threshold needs '<=', '<', '>=' or '>', found '{}'",
                              symbol(comparison)));
         return {std::nullopt, comparison, std::nullopt};
     }
@@ -156,7 +137,8 @@ Sides declared_sides(Context& c, const ast::Predicate& declaration) {
             check_calibrated(c, calibrated)};
 }
 
-/// epsilon - delta or delta - epsilon; and -inf or +inf, where a missing sample counts as that.
+/// Returns the range of epsilon - delta or delta - epsilon, extended by the value for missing
+/// samples.
 Range robustness_of(const Predicate& predicate) {
     if (std::isnan(predicate.threshold.value)) return kEverything;
     if (predicate.equality()) {
@@ -175,7 +157,7 @@ Range robustness_of(const Predicate& predicate) {
 
 }  // namespace
 
-/// A comparison by order changes its answer at most once along a range: the ends have all answers.
+/// The answer of an ordering changes at most once along a range, so the ends have all answers.
 std::optional<bool> Predicate::constant_answer() const {
     const Range epsilon = threshold.range();
     if (equality()) {
@@ -190,24 +172,11 @@ std::optional<bool> Predicate::constant_answer() const {
     return answer;
 }
 
-std::string_view symbol(Comparison comparison) {
-    switch (comparison) {
-        case Comparison::less_equal: return "<=";
-        case Comparison::less: return "<";
-        case Comparison::greater_equal: return ">=";
-        case Comparison::greater: return ">";
-        case Comparison::equal: return "==";
-        case Comparison::not_equal: return "!=";
-    }
-    return "";
-}
-
 Index comparison_predicate(Context& c, const ast::Formula& comparison) {
     auto predicate = make_predicate(
-        c, sides(c, *comparison.left, comparison_of(comparison.comparison), *comparison.right),
-        comparison.span);
+        c, sides(c, *comparison.left, comparison.comparison, *comparison.right), comparison.span);
     if (!predicate) return kNone;
-    // Equal numbers may be written differently, and the text of the threshold is as written.
+    // Equal thresholds may be written differently.
     const std::string key = predicate->text + Decimal::parse(predicate->threshold.text).text();
     const auto [at, is_new] =
         c.predicate_of_text.try_emplace(key, static_cast<Index>(c.model.predicates.size()));

@@ -1,14 +1,12 @@
-// The target sets.
+// Checks target sets.
 #include <fmt/format.h>
 
 #include <limits>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/encoders/encoded.hpp"
-#include "check/encoders/frames.hpp"
 #include "check/matrices/matrices.hpp"
 #include "check/points/fitted.hpp"
-#include "check/points/fitted_file.hpp"
 #include "check/points/points.hpp"
 #include "data/arrays/array.hpp"
 
@@ -17,10 +15,6 @@ namespace etlc::check {
 namespace {
 
 using diag::Code;
-
-Span span_of(const ast::Target::Source& source) {
-    return std::visit([](const auto& s) { return s.span; }, source);
-}
 
 std::optional<Matrix> rows_of(Context& c, const ast::Target::Source& source,
                               const ast::Target& target) {
@@ -31,28 +25,23 @@ std::optional<Matrix> rows_of(Context& c, const ast::Target::Source& source,
     if (const auto* frames = std::get_if<ast::Frames>(&source)) return read_frames(c, *frames);
     const auto& vector = std::get<ast::VectorLiteral>(source);
     const std::string words{c.file.text(vector.span)};
-    c.report(
-         Code::target_is_vector, vector.span,
-         "a target is a set of embeddings, one a row, so a literal is a matrix; this is a vector")
+    c.report(Code::target_is_vector, vector.span,
+             "a target is a set of embeddings, one per row: expected a matrix, found a vector")
         .note(words.size() <= 60 ? fmt::format("for a set of one embedding write [{}]", words)
-                                 : "for a set of one embedding put it in another pair of brackets");
+                                 : "for a set of one embedding add another pair of brackets");
     return std::nullopt;
 }
 
-/// The rows of several places are one set.
+/// Appends rows from another source.
 bool append(Context& c, Matrix& all, Matrix rows, Span span) {
-    if (rows.columns != all.columns) {
-        c.report(Code::dimension_mismatch, span,
-                 fmt::format("these rows have dimension {}, those before them {}", rows.columns,
-                             all.columns));
-        return false;
-    }
-    if (rows.rows > std::numeric_limits<std::uint32_t>::max() - all.rows) {
-        c.report(Code::matrix_shape, span,
-                 fmt::format("a target of more than {} rows",
-                             std::numeric_limits<std::uint32_t>::max()));
-        return false;
-    }
+    if (rows.columns != all.columns)
+        return c.refuse(Code::dimension_mismatch, span,
+                        fmt::format("these rows have dimension {}, those before them {}",
+                                    rows.columns, all.columns));
+    if (rows.rows > std::numeric_limits<std::uint32_t>::max() - all.rows)
+        return c.refuse(Code::matrix_shape, span,
+                        fmt::format("a target of more than {} rows",
+                                    std::numeric_limits<std::uint32_t>::max()));
     for (EncodedRows of : rows.encoded) {
         of.first += all.rows;
         all.encoded.push_back(of);
@@ -88,17 +77,16 @@ bool set_rows(Context& c, const ast::Target& declaration, Target& target) {
     return true;
 }
 
-/// `of P(z)`: the rows are in the space of P(z) as they are.
+/// `of P(z)`: the rows are in the space of P(z) already.
 bool set_space(Context& c, const ast::Point& written, Target& target) {
     const Index index = check_point(c, written);
     if (index == kNone) return false;
     const Point& point = c.model.points[index];
     if (point.is_projected()) target.space = index;
     if (point.dimension == target.dimension) return true;
-    c.report(Code::dimension_mismatch, written.span,
-             fmt::format("{} has dimension {}, the rows of '{}' have {}", point.text,
-                         point.dimension, target.name, target.dimension));
-    return false;
+    return c.refuse(Code::dimension_mismatch, written.span,
+                    fmt::format("{} has dimension {}, the rows of '{}' have {}", point.text,
+                                point.dimension, target.name, target.dimension));
 }
 
 bool set_fitted(Context& c, const ast::Fitted& written, Target& target) {
@@ -112,7 +100,6 @@ bool set_fitted(Context& c, const ast::Fitted& written, Target& target) {
     if (const fitted::Entry* const entry = fitted_entry(c, target.fitted)) {
         target.values = entry->matrix;
         target.hash = entry->hash;
-        c.model.fitted[target.fitted].filled = true;
     }
     if (c.model.points[fitted.point].is_projected()) target.space = fitted.point;
     return true;

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/numbers/duration.hpp"
 
 namespace etlc::check {
@@ -27,29 +27,27 @@ bool has_too_many_digits(Context& c, const ast::Number& number) {
     const std::size_t digits = Decimal::parse(number.text).digits.size();
     if (digits <= kMaxTimeDigits) return false;
     c.report(Code::time_too_precise, number.span,
-             fmt::format("a time of {} significant digits; at most {} are computed exactly", digits,
+             fmt::format("a time with {} significant digits; etlc computes with at most {}", digits,
                          kMaxTimeDigits));
     return true;
 }
 
-/// A period between a picosecond and about three years; the length of a step is also kept as a
+/// Accepts periods between a picosecond and about three years, since the length of a step is also a
 /// double.
 bool has_usable_length(Context& c, const ast::Rate& rate) {
     const double length = seconds(quantity(rate));
     if (length >= 1e-12 && length <= 1e8) return true;
-    c.report(Code::rate_out_of_range, rate.number.span,
-             fmt::format("a step of {:.3g} s; expected one between 1e-12 s and 1e8 s", length));
-    return false;
+    return c.refuse(
+        Code::rate_out_of_range, rate.number.span,
+        fmt::format("a step of {:.3g} s; expected one between 1e-12 s and 1e8 s", length));
 }
 
 bool is_usable(Context& c, const ast::Rate& rate) {
     if (has_too_many_digits(c, rate.number)) return false;
-    if (!Decimal::parse(rate.number.text).is_positive()) {
-        c.report(Code::rate_out_of_range, rate.number.span,
-                 fmt::format("the {} is {}; expected a positive number", rate_word(rate),
-                             shown(rate.number)));
-        return false;
-    }
+    if (!Decimal::parse(rate.number.text).is_positive())
+        return c.refuse(Code::rate_out_of_range, rate.number.span,
+                        fmt::format("the {} is {}; expected a positive number", rate_word(rate),
+                                    shown(rate.number)));
     return has_usable_length(c, rate);
 }
 
@@ -63,7 +61,7 @@ bool is_infinite(const ast::Bound& bound) {
     return bound.number.text == "inf" || bound.number.text == "-inf";
 }
 
-/// A bare 0 is zero steps and zero time alike.
+/// Whether the bound has no unit and needs none: inf, or 0, which is zero steps and zero time.
 bool has_no_unit_of_its_own(const ast::Bound& bound) {
     return is_infinite(bound) ||
            (bound.unit.empty() && Decimal::parse(bound.number.text).is_zero());
@@ -74,10 +72,10 @@ std::string bound_text(const ast::Bound& bound) {
 }
 
 void report_too_large(Context& c, const ast::Bound& bound) {
-    c.report(Code::bound_too_large, bound.span,
-             fmt::format("{} is more than {} steps, the largest bound there is", bound_text(bound),
-                         kMaxBound))
-        .note("without an upper bound the interval is written [a, inf]");
+    c.report(
+         Code::bound_too_large, bound.span,
+         fmt::format("{} is more than {} steps, the largest bound", bound_text(bound), kMaxBound))
+        .note("without an upper bound, write [a, inf]");
 }
 
 std::optional<std::uint32_t> whole_steps(Context& c, const ast::Bound& bound) {
@@ -102,7 +100,7 @@ void report_not_whole(Context& c, const ast::Bound& bound, std::uint64_t below) 
                            diag::counted(steps, "step"));
     };
     c.report(Code::duration_not_whole, bound.span,
-             fmt::format("{} is not a whole number of steps; the nearest that are: {} and {}",
+             fmt::format("{} is not a whole number of steps; the nearest are {} and {}",
                          bound_text(bound), name(below), name(below + 1)))
         .note(rate.span,
               fmt::format("the {} is {} {}", rate_word(rate), rate.number.text, rate.unit))
@@ -111,7 +109,7 @@ void report_not_whole(Context& c, const ast::Bound& bound, std::uint64_t below) 
                         rate_word(rate), written(rate.number), rate.unit));
 }
 
-/// The whole number of steps that a duration between two of them stands for.
+/// Rounds a duration that is not a whole number of steps.
 std::optional<std::uint32_t> rounded_steps(Context& c, const ast::Bound& bound,
                                            const StepCount& count) {
     const ast::Rate& rate = *c.step.rate;
@@ -120,7 +118,7 @@ std::optional<std::uint32_t> rounded_steps(Context& c, const ast::Bound& bound,
     const auto steps = static_cast<std::uint32_t>(count.floor + (up ? 1 : 0));
     if (steps == 0) {
         c.report(Code::duration_vanishes, bound.span,
-                 fmt::format("{} is less than a step and rounds to nothing", bound_text(bound)))
+                 fmt::format("{} is less than a step and rounds to zero steps", bound_text(bound)))
             .note(rate.span,
                   fmt::format("the {} is {} {}, and durations are rounded {}", rate_word(rate),
                               rate.number.text, rate.unit, in_words(rate.durations)));
@@ -133,16 +131,14 @@ std::optional<std::uint32_t> rounded_steps(Context& c, const ast::Bound& bound,
 std::optional<std::uint32_t> duration_steps(Context& c, const ast::Bound& bound) {
     if (c.step.broken || has_too_many_digits(c, bound.number)) return std::nullopt;
     const Decimal value = Decimal::parse(bound.number.text);
-    if (value.negative) {
-        c.report(Code::bound_not_whole, bound.span,
-                 fmt::format("the bound {} is negative", bound_text(bound)));
-        return std::nullopt;
-    }
+    if (value.negative)
+        return c.no_value(Code::bound_not_whole, bound.span,
+                          fmt::format("the bound {} is negative", bound_text(bound)));
     if (c.step.rate == nullptr) {
         if (!c.incomplete)
             c.report(Code::no_rate, bound.span,
-                     fmt::format("{} is a duration, but the spec has no rate or period that says "
-                                 "how long a step is",
+                     fmt::format("{} is a duration, but the spec has no rate or period to define "
+                                 "the length of a step",
                                  bound_text(bound)))
                 .note("add a line such as 'rate 20 Hz;' or 'period 50 ms;'");
         return std::nullopt;
@@ -177,8 +173,9 @@ void check_rate(Context& c) {
             first = &rate;
             return;
         }
-        c.report(Code::duplicate_rate, rate.span,
-                 fmt::format("a second {}; the length of a step is given once", rate_word(rate)))
+        c.report(
+             Code::duplicate_rate, rate.span,
+             fmt::format("a second {}; the length of a step is given only once", rate_word(rate)))
             .note(first->span, "it is given here");
     });
     if (first == nullptr) return;
@@ -194,37 +191,31 @@ void check_rate(Context& c) {
 bool is_finite_duration(Context& c, const ast::Bound& bound) {
     if (!is_infinite(bound)) return true;
     c.report(Code::bound_not_finite, bound.span,
-             fmt::format("{} cannot stand here; a formula is held for a finite time",
+             fmt::format("{} is not allowed here; a formula is held for a finite time",
                          bound_text(bound)))
-        .note("what has held since the first step is 'H f'");
+        .note("for what has held since the first step, write 'H f'");
     return false;
 }
 
 std::optional<Steps> interval_steps(Context& c, const ast::Interval& interval) {
     const ast::Bound& low = interval.low;
     const ast::Bound& high = interval.high;
-    if (is_infinite(low) || high.number.text == "-inf") {
-        c.report(Code::bound_not_finite, is_infinite(low) ? low.span : high.span,
-                 fmt::format("{} cannot stand here; only the upper bound may be inf",
-                             bound_text(is_infinite(low) ? low : high)));
-        return std::nullopt;
-    }
+    if (is_infinite(low) || high.number.text == "-inf")
+        return c.no_value(Code::bound_not_finite, is_infinite(low) ? low.span : high.span,
+                          fmt::format("{} is not allowed here; only the upper bound may be inf",
+                                      bound_text(is_infinite(low) ? low : high)));
     if (!has_no_unit_of_its_own(low) && !has_no_unit_of_its_own(high) &&
-        is_duration(low) != is_duration(high)) {
-        c.report(Code::mixed_interval, interval.span,
-                 fmt::format("one bound is in steps and one is a duration: {} and {}",
-                             bound_text(low), bound_text(high)));
-        return std::nullopt;
-    }
+        is_duration(low) != is_duration(high))
+        return c.no_value(Code::mixed_interval, interval.span,
+                          fmt::format("one bound is in steps and one is a duration: {} and {}",
+                                      bound_text(low), bound_text(high)));
     const auto low_steps = bound_steps(c, low);
     const auto high_steps = bound_steps(c, high);
     if (!low_steps || !high_steps) return std::nullopt;
-    if (*low_steps > *high_steps) {
-        c.report(Code::interval_reversed, interval.span,
-                 fmt::format("the lower bound {} is above the upper bound {}", bound_text(low),
-                             bound_text(high)));
-        return std::nullopt;
-    }
+    if (*low_steps > *high_steps)
+        return c.no_value(Code::interval_reversed, interval.span,
+                          fmt::format("the lower bound {} is above the upper bound {}",
+                                      bound_text(low), bound_text(high)));
     return Steps{*low_steps, *high_steps};
 }
 
@@ -239,10 +230,10 @@ void warn_of_bare_bounds(Context& c) {
         Code::bare_bound, first.span,
         fmt::format("{} has no unit and counts steps: at the {} of {} {} that is {:.3g} s",
                     bound_text(first), rate_word(rate), rate.number.text, rate.unit, length));
-    warning.note(fmt::format("write '{}' where steps are meant, else a unit of time: '{} s'",
-                             in_steps, written(first.number)));
+    warning.note(fmt::format("write '{}' for steps, or a unit of time: '{} s'", in_steps,
+                             written(first.number)));
     if (const std::size_t others = c.bare_bounds.size() - 1; others > 0)
-        warning.note(fmt::format("{} without a unit; one with 'steps' says that all are meant so",
+        warning.note(fmt::format("{} without a unit; writing 'steps' once confirms all of them",
                                  diag::counted(others, "more bound")));
     warning.meant = in_steps;
 }

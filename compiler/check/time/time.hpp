@@ -1,6 +1,5 @@
-// Time: the length of a step, and interval bounds in steps.
-// Takes: rates, periods and durations as exact decimal fractions. Gives: whole numbers of steps.
-// Keeps true: only what the spec says is rounded: 0.29 s at 100 Hz is 29 steps.
+// The length of a step, and interval bounds in steps, computed exactly: 0.29 s at 100 Hz is 29
+// steps. Rounding happens only where the spec asks for it.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +15,19 @@ struct Steps {
     std::uint32_t high = 0;
 };
 
-/// Neither a number of steps nor inf.
+/// Whether the bound is neither a number of steps nor inf.
 bool is_duration(const ast::Bound& bound);
 
-/// The bound in steps; nothing where it had an error, which is reported.
+/// Returns the bound in steps; nothing after an error.
 std::optional<std::uint32_t> bound_steps(Context& context, const ast::Bound& bound);
 
-/// Not inf: the bound of `held`. An error, which is reported, otherwise.
+/// Whether the bound of `held` is finite; reports an error otherwise.
 bool is_finite_duration(Context& context, const ast::Bound& bound);
 
-/// The interval in steps; nothing where it had an error, which is reported.
+/// Returns the interval in steps; nothing after an error.
 std::optional<Steps> interval_steps(Context& context, const ast::Interval& interval);
 
-/// In a spec with a rate, of bounds that count steps and do not say so: 2 may be meant as 2 s.
+/// Warns of bounds without a unit in a spec with a rate: 2 may be meant as 2 s.
 void warn_of_bare_bounds(Context& context);
 
 }  // namespace etlc::check

@@ -1,36 +1,44 @@
-// What people write who know other languages of temporal logic, mathematics or programming.
-// Takes: a word, or the place at which the parser is stuck. Gives: what is written here in its
-// place. Keeps true: nothing is guessed from a likeness of letters; that is diag::nearest_name.
+// Explains words and forms that people know from other languages of temporal logic, mathematics or
+// programming. Nothing is guessed from similar spelling; diag::nearest_name does that.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "parse/stream/stuck.hpp"
 
 namespace etlc::parse {
 
-/// What a foreign word stands for.
+/// The kind of word that a foreign word replaces.
 enum class Foreign : std::uint8_t { prefix, infix, unit, type, declaration, callable };
 
 struct Native {
-    std::string word;  ///< to be written in its place; empty: there is no one word
-    std::string note;  ///< in words
+    std::string word;  ///< replacement; empty if no single word replaces it
+    std::string note;  ///< the explanation
 };
 
-/// Nothing where the word is not known.
+/// Returns nothing for an unknown word.
 std::optional<Native> native(Foreign kind, std::string_view word);
 
-/// Whether an operand, or an interval, ends with this token; null: there is none.
-bool ends_operand(const Token* token);
+/// Returns the words of this language of one kind, without operators.
+std::vector<std::string> own_words(Foreign kind);
 
-/// An operator of another language: the whole error.
+/// Whether `list`, words separated by blanks, contains `word`.
+bool is_listed(std::string_view list, std::string_view word);
+
+/// Returns the error for an operator of another language.
 std::optional<diag::Diagnostic> foreign_operator(const Stuck& stuck, const Token& found,
                                                  const source::File& file);
 
-/// Adds to an error how the form that was meant is written; nothing where none is known.
+/// Adds a note on how a recognised foreign form is written in this language.
 void add_note_on_foreign_form(const Stuck& stuck, const Token& found, const source::File& file,
                               diag::Diagnostic& to);
+
+/// Explains a token for which is_mistake() holds. `previous` is null if there is none. Returns
+/// nothing for bytes that are not UTF-8, which are reported for the whole file.
+std::optional<diag::Diagnostic> explain_mistake(const Token& token, const Token* previous,
+                                                const source::File& file);
 
 }  // namespace etlc::parse

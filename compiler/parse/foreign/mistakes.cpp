@@ -1,5 +1,4 @@
-#include "parse/foreign/mistakes.hpp"
-
+// Explains mistaken tokens: characters, numbers and operators that the language does not have.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,87 +18,53 @@ using source::Span;
 namespace {
 
 struct Hint {
-    std::string_view written;
+    std::string_view written;  ///< synonyms, separated by blanks
     std::string_view hint;
-    std::string_view meant = "";  ///< where there is but one thing to write instead
+    std::string_view meant = "";  ///< replacement, if there is only one
 };
 
 constexpr std::array kHints{
     Hint{"===", "'equal' is '=='; formulas are compared with '<->'", "=="},
     Hint{"!==", "'not equal' is '!='; 'not' is '!'"},
-    Hint{"<>", "'not equal' is '!='", "!="},
+    Hint{"<> ≠", "'not equal' is '!='", "!="},
     Hint{"=>", "'implies' is '->', 'greater or equal' is '>='"},
-    Hint{"<=>", "'if and only if' is '<->'", "<->"},
-    Hint{"=<", "'less or equal' is '<='", "<="},
-    Hint{"<-->", "'if and only if' is '<->'", "<->"},
-    Hint{"-->", "'implies' is '->'", "->"},
-    Hint{"&", "'and' is '&&'", "&&"},
-    Hint{"/\\", "'and' is '&&'", "&&"},
-    Hint{"|", "'or' is '||'", "||"},
-    Hint{"\\/", "'or' is '||'", "||"},
-    Hint{"~", "'not' is '!'", "!"},
-    Hint{"^", "there are no powers; a square is a product; 'either f or g' is '!(f <-> g)'"},
-    Hint{"**", "there are no powers; a square is a product"},
-    Hint{"%", "a comment begins with '//'; there are no remainders"},
-    Hint{":=", "a declaration has '=' after its name", "="},
-    Hint{"{", "a spec has no blocks; formulas are grouped by '( )'"},
-    Hint{"}", "a spec has no blocks; formulas are grouped by '( )'"},
-    Hint{"'", "a file name stands between double quotes"},
-    Hint{"#", "a comment begins with '//'", "//"},
-    Hint{"≤", "'less or equal' is '<='", "<="},
+    Hint{"<=> <--> ↔ ⇔ ⟷ ⟺", "'if and only if' is '<->'", "<->"},
+    Hint{"--> → ⇒ ⟶ ⟹", "'implies' is '->'", "->"},
+    Hint{"=< ≤", "'less or equal' is '<='", "<="},
     Hint{"≥", "'greater or equal' is '>='", ">="},
-    Hint{"≠", "'not equal' is '!='", "!="},
+    Hint{"& /\\ ⋀ ∧", "'and' is '&&'", "&&"},
+    Hint{"| \\/ ⋁ ∨", "'or' is '||'", "||"},
+    Hint{"~ ¬", "'not' is '!'", "!"},
     Hint{"⊤", "'true' is 'true'", "true"},
     Hint{"⊥", "'false' is 'false'", "false"},
-    Hint{"⋀", "'and' is '&&'", "&&"},
-    Hint{"⋁", "'or' is '||'", "||"},
-    Hint{"∧", "'and' is '&&'", "&&"},
-    Hint{"∨", "'or' is '||'", "||"},
-    Hint{"¬", "'not' is '!'", "!"},
-    Hint{"→", "'implies' is '->'", "->"},
-    Hint{"⇒", "'implies' is '->'", "->"},
-    Hint{"⟶", "'implies' is '->'", "->"},
-    Hint{"⟹", "'implies' is '->'", "->"},
-    Hint{"↔", "'if and only if' is '<->'", "<->"},
-    Hint{"⇔", "'if and only if' is '<->'", "<->"},
-    Hint{"⟷", "'if and only if' is '<->'", "<->"},
-    Hint{"⟺", "'if and only if' is '<->'", "<->"},
-    Hint{"□", "'always' is 'G'", "G"},
-    Hint{"◻", "'always' is 'G'", "G"},
-    Hint{"◊", "'eventually' is 'F'", "F"},
-    Hint{"⬦", "'eventually' is 'F'", "F"},
-    Hint{"◇", "'eventually' is 'F'", "F"},
-    Hint{"♢", "'eventually' is 'F'", "F"},
-    Hint{"○", "'next' is 'X'", "X"},
-    Hint{"◯", "'next' is 'X'", "X"},
+    Hint{"□ ◻", "'always' is 'G'", "G"},
+    Hint{"◊ ⬦ ◇ ♢", "'eventually' is 'F'", "F"},
+    Hint{"○ ◯", "'next' is 'X'", "X"},
     Hint{"𝒰", "'until' is 'U'", "U"},
-    Hint{"µ", "microseconds are 'us'", "u"},
-    Hint{"μ", "microseconds are 'us'", "u"},
-    Hint{"²", "there are no powers; a square is a product"},
+    Hint{"^", "there are no powers; a square is a product; 'either f or g' is '!(f <-> g)'"},
+    Hint{"** ²", "there are no powers; a square is a product"},
     Hint{"√", "the square root of x is sqrt(x)"},
-    Hint{"…", "a comma stands between the bounds: [0, 2 s]"},
-    Hint{"‘", "a file name stands between double quotes"},
-    Hint{"’", "a file name stands between double quotes"},
-    Hint{"„", "a file name stands between plain double quotes"},
-    Hint{"«", "a file name stands between plain double quotes"},
-    Hint{"»", "a file name stands between plain double quotes"},
-    Hint{"−", "this is not the minus sign '-'", "-"},
-    Hint{"–", "this is not the minus sign '-'", "-"},
-    Hint{"×", "a product is written '*'", "*"},
-    Hint{"·", "a product is written '*'", "*"},
+    Hint{"× ·", "a product is written '*'", "*"},
+    Hint{"− –", "this is not the minus sign '-'", "-"},
     Hint{"∞", "infinity is written 'inf'", "inf"},
-    Hint{"“", "a file name stands between plain double quotes"},
-    Hint{"”", "a file name stands between plain double quotes"},
-    Hint{"\xC2\xA0", "this is a no-break space; put a plain space", " "},
-    Hint{"\xE2\x80\x87", "this is a figure space; put a plain space", " "},
-    Hint{"\xE2\x80\x89", "this is a thin space; put a plain space", " "},
-    Hint{"\xE2\x80\xAF", "this is a narrow no-break space; put a plain space", " "},
-    Hint{"\xE2\x80\x8B", "this is a space of no width; take it away"},
-    Hint{"\xEF\xBB\xBF", "this is a byte order mark; take it away"},
-    Hint{"\xE3\x80\x80", "this is an ideographic space; put a plain space", " "},
+    Hint{"µ μ", "microseconds are 'us'", "u"},
+    Hint{"…", "bounds are separated by a comma: [0, 2 s]"},
+    Hint{":=", "a declaration has '=' after its name", "="},
+    Hint{"%", "a comment begins with '//'; there are no remainders"},
+    Hint{"#", "a comment begins with '//'", "//"},
+    Hint{"{ }", "a spec has no blocks; formulas are grouped by '( )'"},
+    Hint{"' ‘ ’", "file names are written in double quotes"},
+    Hint{"„ « » “ ”", "file names are written in plain double quotes"},
+    Hint{"\xC2\xA0", "this is a no-break space; use a plain space", " "},
+    Hint{"\xE2\x80\x87", "this is a figure space; use a plain space", " "},
+    Hint{"\xE2\x80\x89", "this is a thin space; use a plain space", " "},
+    Hint{"\xE2\x80\xAF", "this is a narrow no-break space; use a plain space", " "},
+    Hint{"\xE3\x80\x80", "this is an ideographic space; use a plain space", " "},
+    Hint{"\xE2\x80\x8B", "this is a space of no width; remove it"},
+    Hint{"\xEF\xBB\xBF", "this is a byte order mark; remove it"},
 };
 
-/// Where an operand should begin, and behind an operator, some mean another thing.
+/// Some mean something else where an operand should begin.
 constexpr std::array kHintsBeforeOperand{
     Hint{"<>", "'eventually' is 'F'", "F"},
     Hint{"|", "the value of x without its sign is abs(x)"},
@@ -109,8 +74,9 @@ constexpr Hint kIntervalInBraces{
 
 const Hint* hint_for(std::string_view written, const Token* previous, const source::File& file) {
     const auto in = [written](const auto& hints) -> const Hint* {
-        const auto* const found = std::find_if(
-            hints.begin(), hints.end(), [written](const Hint& h) { return h.written == written; });
+        const auto* const found =
+            std::find_if(hints.begin(), hints.end(),
+                         [written](const Hint& h) { return is_listed(h.written, written); });
         return found == hints.end() ? nullptr : found;
     };
     const bool behind_name = previous != nullptr && text_of(*previous, file).ends_with('_');
@@ -133,15 +99,15 @@ void add_hint(diag::Diagnostic& to, std::string_view written, const Token* previ
     }
 }
 
-constexpr const char* kCommaInInterval = "a comma stands between the bounds: [0, 2 s]";
+constexpr const char* kCommaInInterval = "bounds are separated by a comma: [0, 2 s]";
 
-/// `0.` and `..` of 0..2.
+/// `0.` and `..` in 0..2.
 bool begins_dots(Span span, const source::File& file) {
     const std::string_view rest = file.text().substr(span.begin);
     return rest.starts_with("..") || file.text().substr(span.end).starts_with('.');
 }
 
-/// A number with a digit missing: .5, 5., 0.5f.
+/// Completes a number: .5, 5., 0.5f.
 std::string mended(std::string number) {
     const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
     if (number.starts_with('.')) return "0" + number;
@@ -149,10 +115,6 @@ std::string mended(std::string number) {
     if (number.find('x') != number.npos || number.find('X') != number.npos) return "";
     if (number.ends_with('f') || number.ends_with('F')) number.pop_back();
     return is_digit(number.back()) ? number : "";
-}
-
-diag::Diagnostic diagnostic(diag::Code code, Span span, std::string message) {
-    return {code, std::move(message), span, {}, 0, 0, {}};
 }
 
 std::optional<diag::Diagnostic> explain_character(Span span, const Token* previous,
@@ -165,8 +127,7 @@ std::optional<diag::Diagnostic> explain_character(Span span, const Token* previo
     const bool control = length == 1 && (byte < 0x20 || byte == 0x7F);
     std::string message = control ? fmt::format("unexpected character U+{:04X}", byte)
                                   : fmt::format("unexpected character '{}'", character);
-    diag::Diagnostic result =
-        diagnostic(diag::Code::unexpected_character, span, std::move(message));
+    diag::Diagnostic result{diag::Code::unexpected_character, std::move(message), span};
     if (character == "." && begins_dots(span, file))
         result.note(kCommaInInterval);
     else
@@ -181,29 +142,29 @@ std::optional<diag::Diagnostic> explain_mistake(const Token& token, const Token*
     const Span span = span_of(token);
     switch (token.getType()) {
         case EtlLexer::UNTERMINATED_STRING:
-            return diagnostic(diag::Code::unterminated, {span.begin, span.begin + 1},
-                              "this string has no closing '\"' on its line");
+            return diag::Diagnostic{diag::Code::unterminated,
+                                    "this string has no closing '\"' on its line",
+                                    Span{span.begin, span.begin + 1}};
         case EtlLexer::UNTERMINATED_COMMENT:
-            return diagnostic(diag::Code::unterminated, {span.begin, span.begin + 2},
-                              "this comment has no closing '*/'");
+            return diag::Diagnostic{diag::Code::unterminated, "this comment has no closing '*/'",
+                                    Span{span.begin, span.begin + 2}};
         case EtlLexer::MALFORMED_NUMBER: {
-            diag::Diagnostic result =
-                diagnostic(diag::Code::malformed_number, span,
-                           fmt::format("{} is not a number", quoted(token, file)));
+            diag::Diagnostic result{diag::Code::malformed_number,
+                                    fmt::format("{} is not a number", quoted(token, file)), span};
             if (begins_dots(span, file)) {
                 result.note(kCommaInInterval);
                 return result;
             }
             result.note(
                 "numbers are decimal, with digits on both sides of a point: 2, 0.5, 1.0e-3");
-            result.meant = mended(text_of(token, file));
-            if (!result.meant.empty()) diag::did_you_mean(result, result.meant);
+            const std::string number = mended(text_of(token, file));
+            if (!number.empty()) diag::did_you_mean(result, number);
             return result;
         }
         case EtlLexer::FOREIGN_OPERATOR: {
-            diag::Diagnostic result =
-                diagnostic(diag::Code::unexpected_character, span,
-                           fmt::format("there is no operator {}", quoted(token, file)));
+            diag::Diagnostic result{diag::Code::unexpected_character,
+                                    fmt::format("there is no operator {}", quoted(token, file)),
+                                    span};
             add_hint(result, file.text(span), previous, file);
             return result;
         }

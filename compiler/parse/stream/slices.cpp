@@ -10,8 +10,8 @@ using grammar::EtlLexer;
 
 namespace {
 
-/// Whether a declaration begins at token `i`, judged by its first words: a declaration word alone
-/// may as well be a reserved word that somebody took for a name.
+/// Whether a declaration begins at token `i`. Its first words decide, since a declaration word
+/// alone may be a reserved word mistaken for a name.
 bool begins_declaration(const Tokens& tokens, std::size_t i) {
     const auto type = [&tokens](std::size_t k) {
         return k < tokens.size() ? tokens[k]->getType() : Token::EOF;
@@ -55,7 +55,7 @@ std::vector<Slice> slices_of(const Tokens& tokens) {
         const auto is_semicolon = [&tokens](std::size_t k) {
             return tokens[k]->getType() == EtlLexer::SEMICOLON;
         };
-        // A run of stray ';' is one slice, and one error.
+        // A run of stray ';' is one slice and one error.
         if (is_semicolon(begin) && is_semicolon(i) && is_semicolon(i + 1)) continue;
         if (is_semicolon(i)) {
             slices.push_back({begin, i + 1});

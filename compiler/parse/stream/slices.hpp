@@ -1,9 +1,9 @@
-// Tokens to declarations, each a slice that is parsed by itself.
-// Takes: all tokens of a file. Gives: slices, each ended by its ';', by a word that begins another
-// declaration, or by EOF. Keeps true: the slices cover all tokens but EOF in order, so an error in
-// one cannot reach another.
+// Splits tokens into slices, one for each declaration, which are parsed separately. A slice ends
+// with its ';', before a word that begins another declaration, or at EOF. Slices cover all tokens
+// but EOF in order, so an error in one cannot affect another.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "parse/stream/tokens.hpp"
@@ -11,13 +11,18 @@
 namespace etlc::parse {
 
 struct Slice {
-    std::size_t begin;  ///< index of its first token
-    std::size_t end;    ///< one past its last; there is always a token there, EOF at the latest
+    std::size_t begin;  ///< index of the first token
+    std::size_t end;    ///< index after the last token; a token exists there, EOF at the latest
 };
 
 std::vector<Slice> slices_of(const Tokens& tokens);
 
-/// One slice as ANTLR's token stream. Reads as EOF past the slice's end.
+/// Returns the first token that nests deeper than kMaxNesting, before ANTLR's recursive descent
+/// gets there. Accepted slices recurse at most kMaxNesting times a grammar rule, here and in every
+/// walk over the tree.
+std::optional<std::size_t> too_deep_at(const Tokens& tokens, Slice slice);
+
+/// One slice as ANTLR's token stream, with EOF at its end.
 class SliceStream final : public antlr4::TokenStream {
 public:
     SliceStream(const Tokens& tokens, Slice slice);
@@ -36,7 +41,7 @@ public:
         return tokens_[slice_.begin]->getTokenSource();
     }
     std::string getSourceName() const override { return {}; }
-    // Nobody asks the stream for text: it is the file's.
+    // The stream is never asked for text, which the file has.
     std::string getText(const antlr4::misc::Interval& /*interval*/) override { return {}; }
     std::string getText() override { return {}; }
     std::string getText(antlr4::RuleContext* /*context*/) override { return {}; }
@@ -45,7 +50,7 @@ public:
 private:
     const Tokens& tokens_;
     Slice slice_;
-    std::size_t at_ = 0;  ///< from the slice's begin
+    std::size_t at_ = 0;  ///< from the beginning of the slice
     antlr4::CommonToken end_;
 };
 

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 
 #include "EtlLexer.h"
-#include "parse/stream/byte_stream.hpp"
 #include "source/utf8.hpp"
 
 namespace etlc::parse {
@@ -13,12 +13,50 @@ namespace etlc::parse {
 using grammar::EtlLexer;
 using source::Span;
 
+namespace {
+
+/// Presents a file to ANTLR with one character per byte, so that ANTLR's indices are byte offsets.
+/// Bytes above ASCII read as DEL: they may stand in strings and comments only, where all are alike,
+/// and ANTLR caches transitions for ASCII only.
+class ByteStream final : public antlr4::CharStream {
+public:
+    explicit ByteStream(std::string_view text) : text_(text) {}
+
+    void consume() override { seek(at_ + 1); }
+    std::size_t LA(ssize_t i) override {
+        if (i == 0) return 0;
+        const ssize_t at = static_cast<ssize_t>(at_) + (i > 0 ? i - 1 : i);
+        if (at < 0 || at >= static_cast<ssize_t>(text_.size())) return EOF;
+        constexpr unsigned char kDel = 0x7F;
+        return std::min(static_cast<unsigned char>(text_[static_cast<std::size_t>(at)]), kDel);
+    }
+    ssize_t mark() override { return 0; }
+    void release(ssize_t /*marker*/) override {}
+    std::size_t index() override { return at_; }
+    void seek(std::size_t index) override { at_ = std::min(index, text_.size()); }
+    std::size_t size() override { return text_.size(); }
+    std::string getSourceName() const override { return {}; }
+    std::string getText(const antlr4::misc::Interval& interval) override {
+        const auto begin = static_cast<std::size_t>(std::max<ssize_t>(interval.a, 0));
+        const auto end = static_cast<std::size_t>(std::max<ssize_t>(interval.b + 1, 0));
+        return begin < std::min(end, text_.size()) ? std::string(text_.substr(begin, end - begin))
+                                                   : std::string();
+    }
+    std::string toString() const override { return std::string(text_); }
+
+private:
+    std::string_view text_;
+    std::size_t at_ = 0;
+};
+
+}  // namespace
+
 Tokens tokens_of(const source::File& file) {
     ByteStream bytes(file.text());
     if (file.text().substr(0, source::kByteOrderMark.size()) == source::kByteOrderMark)
         bytes.seek(source::kByteOrderMark.size());
     EtlLexer lexer(&bytes);
-    lexer.removeErrorListeners();  // every byte begins some token: there is nothing to listen to
+    lexer.removeErrorListeners();  // every byte begins some token, so the lexer has no errors
     Tokens tokens;
     do tokens.push_back(lexer.nextToken());
     while (tokens.back()->getType() != Token::EOF);
@@ -65,6 +103,40 @@ bool is_reserved_word(const Token& token, const source::File& file) {
 
 bool is_name(const Token& token) {
     return token.getType() >= EtlLexer::IN && token.getType() <= EtlLexer::IDENTIFIER;
+}
+
+bool is(const Token* token, std::initializer_list<std::size_t> types) {
+    return token != nullptr &&
+           std::find(types.begin(), types.end(), token->getType()) != types.end();
+}
+
+bool begins_operand(const Token& token) {
+    return is_name(token) ||
+           is(&token, {EtlLexer::NUMBER, EtlLexer::TRUE, EtlLexer::FALSE, EtlLexer::LPAREN,
+                       EtlLexer::NOT, EtlLexer::NEXT, EtlLexer::EVENTUALLY, EtlLexer::ALWAYS,
+                       EtlLexer::PREVIOUS, EtlLexer::ONCE, EtlLexer::HISTORICALLY});
+}
+
+bool ends_operand(const Token* token) {
+    return token != nullptr &&
+           (is_name(*token) || is(token, {EtlLexer::NUMBER, EtlLexer::TRUE, EtlLexer::FALSE,
+                                          EtlLexer::RPAREN, EtlLexer::RBRACKET}));
+}
+
+std::optional<ast::Formula::Kind> operator_kind(std::size_t type) {
+    switch (type) {
+#define OPERATOR(name, token, ...) \
+    case EtlLexer::token:          \
+        return ast::Formula::Kind::name;
+#include "ast/operators.def"
+#undef OPERATOR
+        default: return std::nullopt;
+    }
+}
+
+std::string keyword(std::size_t type) {
+    const std::string quoted = EtlLexer(nullptr).getVocabulary().getLiteralName(type);
+    return quoted.size() > 2 ? quoted.substr(1, quoted.size() - 2) : "";
 }
 
 }  // namespace etlc::parse

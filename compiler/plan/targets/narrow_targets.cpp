@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "check/numbers/rounding.hpp"
+#include "check/numbers/decimal.hpp"
 #include "etlmon/distance/widen.hpp"
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/stored.hpp"

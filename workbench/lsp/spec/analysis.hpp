@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "check/inspect.hpp"
+#include "check/check.hpp"
 #include "diag/diag.hpp"
 #include "lsp/spec/names.hpp"
 #include "lsp/text/position.hpp"

@@ -1,9 +1,9 @@
-#include "check/numbers/range_arithmetic.hpp"
+#include "check/numbers/range.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "check/numbers/rounding.hpp"
+#include "check/numbers/decimal.hpp"
 
 namespace etlc::check {
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// A real number: a double and the sign of what the double lacks of it.
+/// A real number as a double and the sign of its rounding error.
 struct Exact {
     double value;
     double rest = 0;
@@ -27,7 +27,7 @@ float up(Exact x) {
     return -down({-x.value, -x.rest});
 }
 
-/// Knuth's TwoSum: the rest is what rounding the sum lost.
+/// Knuth's TwoSum, which also returns the rounding error.
 Exact sum(float a, float b) {
     const double x = a, y = b, s = x + y;
     if (std::isinf(s)) return {s};
@@ -35,14 +35,14 @@ Exact sum(float a, float b) {
     return {s, (x - (s - y_part)) + (y - y_part)};
 }
 
-/// Exact in double. An infinite end stands for finite values without bound, so 0 x inf is 0.
+/// The product is exact in double. Infinite ends stand for unbounded finite values, so 0 x inf is
+/// 0.
 Exact product(float a, float b) {
     if (a == 0 || b == 0) return {0};
     return {static_cast<double>(a) * static_cast<double>(b)};
 }
 
-/// b is not 0. inf / inf stands for finite numbers over finite numbers: the other corners bound
-/// them.
+/// b is not 0. inf / inf stands for a quotient of finite numbers, which the other corners bound.
 Exact exact_quotient(float a, float b) {
     if (std::isinf(b)) return {0};
     const double x = a, y = b, q = x / y;
@@ -64,16 +64,10 @@ Range hull_of_corners(const Range& a, const Range& b, Operation operation) {
     return result;
 }
 
-float sqrt_down(float x) {
-    const auto root = static_cast<float>(std::sqrt(static_cast<double>(x)));
-    const double square = static_cast<double>(root) * static_cast<double>(root);  // exact: 48 bits
-    return square > static_cast<double>(x) ? std::nextafter(root, 0.0F) : root;
-}
-
-float sqrt_up(float x) {
-    const auto root = static_cast<float>(std::sqrt(static_cast<double>(x)));
-    const double square = static_cast<double>(root) * static_cast<double>(root);
-    return square < static_cast<double>(x) ? std::nextafter(root, kInfinity) : root;
+/// The error of the root has the sign of x - root^2, which fma computes exactly.
+Exact exact_root(float a) {
+    const double x = a, root = std::sqrt(x);
+    return {root, std::fma(-root, root, x)};
 }
 
 }  // namespace
@@ -107,7 +101,7 @@ Range abs(const Range& a) {
 
 Range sqrt(const Range& a) {
     if (a.high < 0) return kEverything;
-    return {sqrt_down(std::max(a.low, 0.0F)), sqrt_up(a.high)};
+    return {down(exact_root(std::max(a.low, 0.0F))), up(exact_root(a.high))};
 }
 
 Range min(const std::vector<Range>& ranges) {

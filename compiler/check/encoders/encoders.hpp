@@ -1,0 +1,46 @@
+// Encoders: the preprocessing of images before their models, from a spec or from a .json file
+// beside the model, and whether embeddings in an episode were made by them. A setting is given
+// once, or alike in both places; an episode that does not name its encoder causes a warning.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "check/model/model.hpp"
+#include "diag/diag.hpp"
+#include "embedded/embedded.hpp"
+
+namespace etlc::check {
+
+/// Sets `image`, `mean` or `deviation`. Returns an error message for unsuitable numbers or a
+/// contradiction.
+std::optional<std::string> set_setting(Encoder& encoder, const std::string& key,
+                                       const std::vector<std::string>& numbers);
+
+/// Returns "image [224, 224], mean [0.485, 0.456, 0.406], deviation [0.229, 0.224, 0.225]", with
+/// neutral values for missing settings.
+std::string settings_text(const Encoder& encoder);
+
+/// Reads the settings in MODEL.json beside MODEL.onnx, if it exists.
+std::optional<diag::Failure> take_settings_file(Encoder& encoder, const std::string& model_path);
+
+/// Returns MODEL.json.
+std::string settings_path(const std::string& model_path);
+
+/// Describes the encoder as it is now: the hash of its model, and all settings, which `encoder`
+/// gets too. The caller sets kind and dimension. A failure is about the file `place`.
+diag::Result<embedded::Encoder> describe(Encoder& encoder, const std::string& model_path,
+                                         std::string& place);
+
+/// Returns an error if the array was made by another encoder than the input's. `array` is the name
+/// of the input in the file.
+std::optional<diag::Failure> other_encoder(const Model& model, const Input& input,
+                                           const std::string& array, const embedded::Marks& marks);
+
+/// Whether the input has an encoder and the file does not name the encoder of the array.
+bool is_unmarked(const Input& input, const std::string& array, const embedded::Marks& marks);
+/// Adds notes to the warning about such an episode (W1001): its meaning, and how to keep the name.
+void explain_unmarked(diag::Diagnostic& warning);
+
+}  // namespace etlc::check
