@@ -1,4 +1,4 @@
-// The explanation for people.
+// Prints an explanation as text.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ private:
         text_ += "\n";
     }
 
-    /// Of a verdict that may have another robustness later on.
+    /// Qualifies the robustness of a verdict whose value may still change.
     const char* bound() const {
         if (model_.monitors[report_.question.monitor].sliding || !explained_.for_good) return "";
         return explained_.status == Status::satisfied ? "at least " : "at most ";
@@ -104,7 +104,7 @@ private:
         return text + nearest(i);
     }
 
-    /// ", nearest row 3 then"; of more than a distance ", nearest row 3 of people, 0 of walls".
+    /// ", nearest row 3 then"; for several distances ", nearest row 3 of people, 0 of walls".
     std::string nearest(const Interval& i) const {
         const std::vector<Nearest> rows = explain::nearest(observations_, {i.atom, i.closest});
         std::string text;
