@@ -12,10 +12,6 @@ namespace {
 
 using check::Values;
 
-Unseen negate(const Unseen& range) {
-    return {-range.highest, -range.lowest};
-}
-
 bool holds(const check::Predicate& predicate, double delta, double epsilon) {
     switch (predicate.comparison) {
         case check::Comparison::less_equal: return delta <= epsilon;

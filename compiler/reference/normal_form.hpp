@@ -37,6 +37,7 @@ struct Node {
     std::uint32_t high = check::kUnbounded;
 
     bool is_atom() const { return kind == Kind::predicate || kind == Kind::boolean; }
+    bool connects() const { return kind == Kind::all || kind == Kind::any; }
 };
 
 struct NormalForm {

@@ -28,6 +28,9 @@ struct Unseen {
     double lowest = 0;
     double highest = 0;
 };
+inline Unseen negate(const Unseen& range) {
+    return {-range.highest, -range.lowest};
+}
 
 /// The literals: per node of the normal form that is an atom, its value at each step and its range.
 struct Literals {
@@ -52,19 +55,13 @@ private:
     std::vector<std::optional<Unseen>> unseen_;              // [node]
 
     Value evaluate(const Node& node, Index index, std::uint64_t k);
-    Value eventually(const Node& node, std::uint64_t k);
-    Value always(const Node& node, std::uint64_t k);
-    Value until(const Node& node, std::uint64_t k);
-    Value release(const Node& node, std::uint64_t k);
-    Value once(const Node& node, std::uint64_t k);
-    Value historically(const Node& node, std::uint64_t k);
-    Value since(const Node& node, std::uint64_t k);
-    Value trigger(const Node& node, std::uint64_t k);
+    // Of a node, or of the one whose dual it is, over operands that are negated then.
+    Value greatest(const Node& node, std::uint64_t k);
+    Value future(const Node& node, std::uint64_t k);
+    Value past(const Node& node, std::uint64_t k);
     Unseen find_unseen(const Node& node, Index index);
-    double greatest_known_lower(Index node);
-    double greatest_known_upper(Index node);
-    double least_known_lower(Index node);
-    double least_known_upper(Index node);
+    Value operand(const Node& node, std::size_t n, std::uint64_t position);
+    Unseen unseen_operand(const Node& node, std::size_t n);
 };
 
 }  // namespace etlc::reference
