@@ -1,7 +1,7 @@
 // Rewriting the graph before it is planned.
 // Takes: the program. Gives: an equal one that is smaller to monitor. Keeps true: rho and the
-// bounds of every monitor on every prefix; the passes stand in one table, each is a file. Behind
-// here the program is const.
+// bounds of every monitor on every prefix; the passes stand in one table. Behind here the program
+// is const.
 #pragma once
 
 #include <string_view>

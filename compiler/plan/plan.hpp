@@ -9,7 +9,7 @@
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
 #include "ir/lower.hpp"
-#include "plan/budget/limits.hpp"
+#include "plan/budget/budget.hpp"
 #include "plan/program/program.hpp"
 
 namespace etlc::plan {

@@ -36,43 +36,9 @@ void report(const std::vector<Fault>& faults, std::size_t episodes, diag::Sink& 
 /// exception that ended one of them.
 std::exception_ptr in_threads(unsigned asked, std::size_t most, const std::function<void()>& work);
 
-/// `make()` gives the reader of a thread, whose `score(path)` a diag::Result<T>. Nothing where an
-/// episode cannot be read: the sink then says why. Of the request it uses `jobs` and `progress`.
-template <class T, class Request, class Make>
-std::optional<std::vector<T>> over_episodes(const std::vector<std::string>& paths,
-                                            const Request& request, diag::Sink& sink, Make make) {
-    std::vector<std::optional<diag::Result<T>>> results(paths.size());
-    std::atomic<std::size_t> next = 0;
-    std::size_t done = 0;
-    std::mutex reporting;
-    const auto work = [&] {
-        const auto reader = make();
-        for (std::size_t i = next++; i < paths.size(); i = next++) {
-            results[i].emplace(data::within_memory([&] { return reader->score(paths[i]); }));
-            const std::lock_guard lock(reporting);
-            ++done;
-            if (request.progress) request.progress(done, paths.size());
-        }
-    };
-    const std::exception_ptr failure = in_threads(request.jobs, paths.size(), work);
-    if (failure && done < paths.size()) std::rethrow_exception(failure);
-
-    std::vector<T> all;
-    std::vector<Fault> faults;
-    for (std::size_t i = 0; i < paths.size(); ++i) {
-        if (*results[i])
-            all.push_back(std::move(**results[i]));
-        else
-            faults.push_back({paths[i], results[i]->failure()});
-    }
-    report(faults, paths.size(), sink);
-    if (!faults.empty()) return std::nullopt;
-    return all;
-}
-
-/// The same, where what was made of all episodes is too much to be kept: `take(i, result)` gets
-/// each in the order of the paths, never two at once, and few wait for their turn. False where an
-/// episode cannot be read: the sink then says why.
+/// `make()` gives the reader of a thread, whose `score(path)` a diag::Result<T>. `take(i, result)`
+/// gets each in the order of the paths, never two at once, and few wait for their turn. False where
+/// an episode cannot be read: the sink then says why. Of the request it uses `jobs` and `progress`.
 template <class T, class Request, class Make, class Take>
 bool in_order(const std::vector<std::string>& paths, const Request& request, diag::Sink& sink,
               Make make, Take take) {
@@ -122,6 +88,17 @@ bool in_order(const std::vector<std::string>& paths, const Request& request, dia
     if (failure && turn < paths.size()) std::rethrow_exception(failure);
     report(faults, paths.size(), sink);
     return faults.empty();
+}
+
+/// The same, where all that was made is kept.
+template <class T, class Request, class Make>
+std::optional<std::vector<T>> over_episodes(const std::vector<std::string>& paths,
+                                            const Request& request, diag::Sink& sink, Make make) {
+    std::vector<T> all;
+    if (!in_order<T>(paths, request, sink, make,
+                     [&](std::size_t, T&& one) { all.push_back(std::move(one)); }))
+        return std::nullopt;
+    return all;
 }
 
 }  // namespace etlc::episodes

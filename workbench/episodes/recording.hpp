@@ -5,6 +5,7 @@
 // `truth.NAME` in the episode stands in for the spec's `truth NAME`.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -16,13 +17,63 @@
 #include "data/recordings/episodes.hpp"
 #include "data/recordings/open.hpp"
 #include "data/spill/spool.hpp"
-#include "episodes/frames.hpp"
+#include "diag/diag.hpp"
 #include "episodes/leaks/leaks.hpp"
-#include "episodes/seen.hpp"
 #include "episodes/truth.hpp"
 #include "plan/evaluate/inputs.hpp"
 
 namespace etlc::episodes {
+
+/// The samples of an episode as the monitor sees them, by which episodes are told apart. Two files
+/// of one recording are the same where the monitor could not tell them apart, whatever they are
+/// stored in: a float16 is rounded, a sample that counts as missing is missing however that is
+/// written, `hold` replaces it, a bool is true or false, and a zero has no sign.
+class Seen {
+public:
+    /// The model outlives it.
+    Seen(const check::Model& model, std::vector<Index> inputs);
+
+    /// The next frame; `samples`: by index of the model's inputs.
+    void add(const std::vector<plan::Sample>& samples);
+    /// Of the frames so far.
+    const data::EpisodeHash& hash() const { return hash_; }
+
+private:
+    struct Held {
+        std::vector<float> values;
+        std::uint32_t age = 0;  ///< missing samples since
+    };
+    void see(const check::Input& input, const plan::Sample& sample, Held& held,
+             std::vector<float>& seen) const;
+
+    const check::Model& model_;
+    std::vector<Index> inputs_;
+    std::vector<Held> held_;                ///< per input, the last present sample
+    std::vector<std::vector<float>> seen_;  ///< per input, of this frame; empty: missing
+    data::EpisodeHash hash_;
+};
+
+/// The frames of an episode, one after the other, from a file (Recording) or from memory.
+class Frames {
+public:
+    virtual ~Frames() = default;
+
+    /// The next frame; false at the end of the episode.
+    virtual diag::Result<bool> next() = 0;
+    /// Of this frame, by index of the model's inputs; those not wanted are not there.
+    virtual const std::vector<plan::Sample>& samples() const = 0;
+    /// Of this frame: one of the wanted predicates.
+    virtual Label label(Index predicate) const = 0;
+    /// How many there were so far.
+    virtual std::uint64_t frames() const = 0;
+
+protected:
+    Frames() = default;
+    Frames(const Frames&) = default;
+    Frames(Frames&&) = default;
+    Frames& operator=(const Frames&) = default;
+    Frames& operator=(Frames&&) = default;
+};
 
 struct Wanted {
     const check::Model* model = nullptr;

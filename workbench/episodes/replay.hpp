@@ -8,8 +8,8 @@
 #include <functional>
 #include <vector>
 
-#include "episodes/ground_truth.hpp"
 #include "episodes/recording.hpp"
+#include "episodes/truth.hpp"
 #include "plan/evaluate/evaluator.hpp"
 
 namespace etlc::episodes {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
+#include "plan/evaluate/inputs.hpp"
 
 namespace etlc::episodes {
 
@@ -63,5 +64,23 @@ private:
     std::vector<std::uint32_t> ages_;
     std::uint64_t frame_ = 0;  ///< from 1; 0 before the first
 };
+
+/// The ground-truth monitor: the same formulas, whose predicates with labels are bool inputs that
+/// hold these. A predicate without labels is its own truth, which its comparison decides where the
+/// plan is one of truth values (check::Values::boolean). Formulas, monitors and the inputs that
+/// were there keep their indices.
+struct GroundTruth {
+    check::Model model;
+    /// Per predicate of the original: the input of its label; kNone where it has none.
+    std::vector<Index> inputs;
+};
+
+GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& labelled);
+
+/// The predicates that have labels, ascending.
+std::vector<Index> labelled_predicates(const GroundTruth& truth);
+
+/// The label as the sample of such an input; unknown is missing.
+plan::Sample sample_of(Label label);
 
 }  // namespace etlc::episodes

@@ -9,8 +9,8 @@
 
 #include "check/guarantees/guarantees.hpp"
 #include "check/guarantees/provenance.hpp"
-#include "episodes/ground_truth.hpp"
 #include "episodes/parallel.hpp"
+#include "episodes/truth.hpp"
 #include "fit/blocks.hpp"
 
 namespace etlc::fit {

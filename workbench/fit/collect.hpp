@@ -14,7 +14,6 @@
 #include "fit/algebra/moments.hpp"
 #include "fit/even_frames.hpp"
 #include "fit/readings.hpp"
-#include "fit/request.hpp"
 
 namespace etlc::fit {
 

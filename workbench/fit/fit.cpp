@@ -7,8 +7,7 @@
 
 #include "check/guarantees/provenance.hpp"
 #include "episodes/admission/admission.hpp"
-#include "episodes/label_doubts.hpp"
-#include "episodes/unmarked.hpp"
+#include "episodes/data_warnings.hpp"
 
 namespace etlc::fit {
 

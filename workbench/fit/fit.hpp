@@ -11,7 +11,7 @@
 
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
-#include "fit/request.hpp"
+#include "fit/readings.hpp"
 #include "fit/separation.hpp"
 #include "fit/solve.hpp"
 #include "fitted/fitted.hpp"

@@ -5,16 +5,34 @@
 // within a fold alone.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "episodes/label_doubts.hpp"
+#include "episodes/data_warnings.hpp"
 #include "episodes/ranking/auroc.hpp"
 #include "fit/collect.hpp"
-#include "fit/fill.hpp"
+#include "fit/solve.hpp"
 
 namespace etlc::fit {
+
+/// All that a model has fitted, in order. What cannot be fitted, or rests on such a thing, is
+/// refused, and stays without values.
+struct Filled {
+    check::Model model;
+    std::vector<Solution> solutions;    ///< per fitted thing
+    std::map<Index, Refusal> refusals;  ///< by fitted thing
+};
+Filled fill(const check::Model& model, Solver& solver, std::optional<std::size_t> left_out);
+
+/// In threads: with all folds, where that is wanted, and without each, where that is.
+struct FilledAll {
+    std::optional<Filled> all;
+    std::vector<Filled> without;  ///< per fold
+};
+FilledAll fill_all(const check::Model& model, Solver& solver, bool all, bool without,
+                   unsigned jobs);
 
 struct WorstFrame {
     std::size_t episode = 0;

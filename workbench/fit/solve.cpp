@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "fit/algebra/cholesky.hpp"
+#include "fit/algebra/dense.hpp"
 #include "fit/algebra/linear.hpp"
 
 namespace etlc::fit {

@@ -6,8 +6,7 @@
 #include <set>
 
 #include "etlmon/hosted/footprint.hpp"
-#include "plan/budget/target_bytes.hpp"
-#include "plan/program/samples.hpp"
+#include "plan/program/sample_codes.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/targets/point_checks.hpp"
 #include "plan/targets/stored.hpp"

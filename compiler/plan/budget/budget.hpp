@@ -5,10 +5,28 @@
 // Value has two keys); code_bytes is an estimate.
 #pragma once
 
-#include "plan/budget/limits.hpp"
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <vector>
+
+#include "check/model/model.hpp"
+#include "diag/diag.hpp"
 #include "plan/program/program.hpp"
 
 namespace etlc::plan {
+
+struct Limits {
+    std::uint64_t state_bytes = 1U << 20U;  ///< and the stack of a step with it
+    std::uint64_t code_bytes = 64U << 10U;
+    std::uint64_t operations = 1U << 20U;
+    /// Larger target sets go to a file beside the header.
+    std::uint64_t inline_target_bytes = 256U << 10U;
+};
+
+/// What would fit in place of a monitor that does not, all monitors together or it alone.
+enum class Among : std::uint8_t { all, alone };
+using Advice = std::function<std::vector<diag::Note>(check::Index monitor, Among among)>;
 
 Cost operator+(Cost a, const Cost& b);
 bool within(const Cost& cost, const Limits& limits);
@@ -24,5 +42,12 @@ std::uint64_t elements_of(const check::Model& model, Index predicate);
 Cost cost_of_table(std::size_t states, std::size_t transitions, check::Values values);
 /// Fills in plan.cost and plan.monitor_costs.
 void add_costs(Plan& plan);
+
+/// Whether a machine has vectors of floats: x86-64 and 64-bit Arm do, microcontrollers do not.
+enum class Vectors : bool { without, with };
+
+/// What the target sets and weights of these distances take in memory, to the byte, as the runtime
+/// lays the sets out (etlmon/layout.hpp); sets in the file of targets count as they lie there.
+std::uint64_t target_bytes(const Plan& plan, const std::set<Index>& distances, Vectors vectors);
 
 }  // namespace etlc::plan

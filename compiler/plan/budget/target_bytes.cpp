@@ -1,9 +1,8 @@
-#include "plan/budget/target_bytes.hpp"
-
 #include <set>
 #include <tuple>
 
 #include "etlmon/distance/layout.hpp"
+#include "plan/budget/budget.hpp"
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
 #include "plan/targets/point_checks.hpp"

@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-#include "plan/budget/limits.hpp"
+#include "plan/budget/budget.hpp"
 #include "plan/decide/machine.hpp"
 #include "plan/program/program.hpp"
 

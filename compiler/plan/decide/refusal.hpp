@@ -3,7 +3,7 @@
 // at the operators that need them. Keeps true: a plan within the limits passes without a word.
 #pragma once
 
-#include "plan/budget/limits.hpp"
+#include "plan/budget/budget.hpp"
 #include "plan/decide/readings.hpp"
 #include "plan/program/program.hpp"
 

@@ -19,6 +19,20 @@
 
 namespace etlc::episodes {
 
+/// Tells rows of a target set that were taken from the frames of episodes from those that lie at
+/// them by chance. What is equal to a row is a leak; what is within rounding of a row is one where
+/// so many episodes would not have such a frame by chance, given how many frames lie near rows
+/// (episodes/leaks/rounded_rows.hpp).
+class LeakEvidence {
+public:
+    explicit LeakEvidence(const Identities& episodes);
+
+    std::optional<Leak> of(const Recorded& episode) const;
+
+private:
+    std::vector<bool> leaks_;  ///< per set that frames are compared with
+};
+
 /// "step 4 is row 1 of target 'home', from which 'at_home' measures"
 std::string text(const check::Model& model, const Leak& leak);
 

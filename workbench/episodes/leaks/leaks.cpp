@@ -25,13 +25,6 @@ double rounding(const Input& input, double x) {
     }
 }
 
-double length(const float* v, std::size_t n) {
-    double square = 0;
-    for (std::size_t i = 0; i < n; ++i)
-        square += static_cast<double>(v[i]) * static_cast<double>(v[i]);
-    return std::sqrt(square);
-}
-
 /// The rows as they were before they were projected.
 Index declared(const check::Model& model, const Distance& distance) {
     const Index source = model.targets[distance.target].source;
@@ -148,7 +141,7 @@ void Leaks::watch_near(Index predicate, Index index) {
     const Distance& distance = model_.distances[index];
     const auto add = [&](Index point, Index target) {
         if (model_.targets[target].values.empty() || !is_there(model_, point)) return;
-        NearRows rows(model_, index, point, target);
+        RoundedRows rows(model_, index, point, target);
         const bool known =
             std::any_of(watched_near_.begin(), watched_near_.end(),
                         [&](const WatchedNear& other) { return other.rows.same_as(rows); });
@@ -164,7 +157,7 @@ void Leaks::find_near(const std::vector<plan::Sample>& samples, std::uint64_t fr
     near.resize(watched_near_.size());
     for (std::size_t i = 0; i < watched_near_.size(); ++i) {
         const WatchedNear& watched = watched_near_[i];
-        const NearRows::Found found = watched.rows.find(samples);
+        const RoundedRows::Found found = watched.rows.find(samples);
         near[i].close.add(found.close);
         near[i].wide.add(found.wide);
         if (found.row && !near[i].first)

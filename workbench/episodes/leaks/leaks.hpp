@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "episodes/leaks/near_rows.hpp"
+#include "episodes/leaks/rounded_rows.hpp"
 #include "plan/evaluate/inputs.hpp"
 
 namespace etlc::episodes {
@@ -34,12 +34,12 @@ void fields(Archive& archive, Leak& leak) {
 /// What the frames of an episode say of one set that they are compared with within rounding.
 struct NearLeak {
     std::optional<Leak> first;  ///< a frame that is as near as rounding explains
-    NearRows::Around close;     ///< of all frames
-    NearRows::Around wide;
+    RoundedRows::Around close;  ///< of all frames
+    RoundedRows::Around wide;
 };
 
 template <class Archive>
-void fields(Archive& archive, NearRows::Around& around) {
+void fields(Archive& archive, RoundedRows::Around& around) {
     archive(around.frames, around.chance);
 }
 
@@ -73,7 +73,7 @@ private:
     struct WatchedNear {
         Index predicate = 0;
         Index distance = 0;
-        NearRows rows;
+        RoundedRows rows;
     };
 
     void watch(Index predicate, Index distance);

@@ -6,15 +6,91 @@
 // independent, so whatever says how sure it is counts episodes.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "episodes/ranking/frames_by_score.hpp"
-#include "episodes/ranking/weights.hpp"
+#include "data/spill/sorted.hpp"
 
 namespace etlc::episodes {
+
+/// A labelled frame.
+struct Scored {
+    float score = 0;  ///< not NaN
+    std::uint32_t episode = 0;
+    bool positive = false;
+};
+
+template <class Archive>
+void fields(Archive& archive, Scored& frame) {
+    archive(frame.score, frame.episode, frame.positive);
+}
+
+/// Labelled frames in ascending order of their score; of equal scores those of an episode stand
+/// together. Memory is that of data::Sorted, however many there are.
+class FramesByScore {
+public:
+    /// First all are added. Fewer than 2^31 episodes.
+    void add(const Scored& frame) {
+        positives_ += frame.positive ? 1 : 0;
+        const std::uint32_t rest = frame.episode << 1U | (frame.positive ? 1U : 0U);
+        keys_.add(std::uint64_t{key_of(frame.score)} << 32U | rest);
+    }
+
+    std::uint64_t size() const { return keys_.size(); }
+    std::uint64_t positives() const { return positives_; }
+    std::uint64_t negatives() const { return size() - positives_; }
+
+    /// Calls `visit(frame)` for each; a score of -0 is 0.
+    template <class Visit>
+    void for_each(const Visit& visit) const {
+        keys_.for_each([&](std::uint64_t key) {
+            const auto rest = static_cast<std::uint32_t>(key);
+            visit(Scored{score_of(static_cast<std::uint32_t>(key >> 32U)), rest >> 1U,
+                         (rest & 1U) != 0});
+        });
+    }
+
+private:
+    static constexpr std::uint32_t kSign = 1U << 31U;
+
+    /// Ordered as the scores are.
+    static std::uint32_t key_of(float score) {
+        const auto bits = std::bit_cast<std::uint32_t>(score == 0 ? 0.0F : score);
+        return (bits & kSign) != 0 ? ~bits : bits | kSign;
+    }
+    static float score_of(std::uint32_t key) {
+        return std::bit_cast<float>((key & kSign) != 0 ? key & ~kSign : ~key);
+    }
+
+    data::Sorted<std::uint64_t> keys_;
+    std::uint64_t positives_ = 0;
+};
+
+/// How often each episode counts in every resample: the weights of an episode stand side by side,
+/// so that sums of all resamples are made in one pass.
+class Weights {
+public:
+    using Weight = std::uint16_t;
+
+    /// In every resample each episode counts `weight` times.
+    Weights(std::size_t episodes, std::size_t resamples, Weight weight)
+        : resamples_(resamples), weights_(episodes * resamples, weight) {}
+
+    std::size_t resamples() const { return resamples_; }
+    std::size_t episodes() const { return resamples_ == 0 ? 0 : weights_.size() / resamples_; }
+    /// Of an episode, one for each resample.
+    const Weight* operator[](std::size_t episode) const {
+        return weights_.data() + episode * resamples_;
+    }
+    Weight* operator[](std::size_t episode) { return weights_.data() + episode * resamples_; }
+
+private:
+    std::size_t resamples_;
+    std::vector<Weight> weights_;  ///< by episode, then by resample
+};
 
 struct RankedFrame : Scored {
     std::size_t step = 0;

@@ -73,4 +73,15 @@ private:
     data::Spool<std::string> results_;
 };
 
+// Episodes are shared out by a number of their content, so neither the names of files nor their
+// order matter. Processes that keep the numbers in one file look at each episode once between them.
+
+/// A hash of the size of the episode's file, its first and last 4 KiB and the group in it. The end
+/// of an .npz file has checksums of its arrays.
+std::uint64_t content_of(const std::string& episode);
+
+/// Of all, in order. `kept`: a file that has them, or gets them; empty: none.
+std::vector<std::uint64_t> contents_of(const std::vector<std::string>& episodes,
+                                       const std::string& kept);
+
 }  // namespace etlc::episodes

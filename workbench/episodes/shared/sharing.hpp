@@ -14,7 +14,6 @@
 #include "data/spill/pack.hpp"
 #include "episodes/parallel.hpp"
 #include "episodes/recording.hpp"
-#include "episodes/shared/contents.hpp"
 #include "episodes/shared/part.hpp"
 
 namespace etlc::episodes {

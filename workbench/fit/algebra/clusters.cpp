@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "episodes/random.hpp"
-#include "fit/algebra/products.hpp"
+#include "fit/algebra/dense.hpp"
 
 namespace etlc::fit {
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "fit/algebra/affine.hpp"
+#include "fit/algebra/dense.hpp"
 
 namespace etlc::fit {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fit/algebra/cholesky.hpp"
+#include "fit/algebra/dense.hpp"
 
 namespace etlc::fit {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "fit/algebra/eigenvectors.hpp"
+#include "fit/algebra/dense.hpp"
 #include "fit/algebra/moments.hpp"
 
 namespace etlc::fit {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "fit/algebra/products.hpp"
+#include "fit/algebra/dense.hpp"
 
 namespace etlc::fit {
 

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "fit/algebra/affine.hpp"
+#include "fit/algebra/dense.hpp"
 
 namespace etlc::fit {
 

@@ -8,7 +8,7 @@
 #include "data/text/quote.hpp"
 #include "diag/diag.hpp"
 #include "episodes/admission/admission.hpp"
-#include "episodes/unmarked.hpp"
+#include "episodes/data_warnings.hpp"
 #include "fit/separation.hpp"
 #include "fit/suggest/candidates.hpp"
 #include "plan/budget/budget.hpp"

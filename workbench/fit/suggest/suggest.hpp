@@ -12,7 +12,7 @@
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
 #include "episodes/ranking/auroc.hpp"
-#include "fit/request.hpp"
+#include "fit/readings.hpp"
 
 namespace etlc::fit {
 

@@ -1,4 +1,4 @@
-#include "plan/program/samples.hpp"
+#include "plan/program/sample_codes.hpp"
 
 #include <algorithm>
 

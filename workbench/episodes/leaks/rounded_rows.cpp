@@ -1,4 +1,4 @@
-#include "episodes/leaks/near_rows.hpp"
+#include "episodes/leaks/rounded_rows.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -38,13 +38,6 @@ bool is_half(const float* v, std::size_t n) {
     });
 }
 
-double length(const float* v, std::size_t n) {
-    double square = 0;
-    for (std::size_t i = 0; i < n; ++i)
-        square += static_cast<double>(v[i]) * static_cast<double>(v[i]);
-    return std::sqrt(square);
-}
-
 double largest(const std::vector<double>& all) {
     return all.empty() ? 0 : *std::max_element(all.begin(), all.end());
 }
@@ -57,7 +50,14 @@ double largest_size(const std::vector<float>& all) {
 
 }  // namespace
 
-NearRows::NearRows(const check::Model& model, Index distance, Index point, Index target)
+double length(const float* v, std::size_t n) {
+    double square = 0;
+    for (std::size_t i = 0; i < n; ++i)
+        square += static_cast<double>(v[i]) * static_cast<double>(v[i]);
+    return std::sqrt(square);
+}
+
+RoundedRows::RoundedRows(const check::Model& model, Index distance, Index point, Index target)
     : model_(model), point_(point), target_(target), norms_(model.projections.size()) {
     const check::Distance& of = model.distances[distance];
     const check::Target& rows = model.targets[target];
@@ -94,7 +94,7 @@ NearRows::NearRows(const check::Model& model, Index distance, Index point, Index
 
 /// How far rows are from what they were before they were stored and then projected: of a row the
 /// most of its elements.
-void NearRows::add_moves(const check::Target& rows) {
+void RoundedRows::add_moves(const check::Target& rows) {
     const check::Target& declared = model_.targets[rows.source];
     Index from = declared.space;
     if (from == check::kNone)
@@ -110,7 +110,7 @@ void NearRows::add_moves(const check::Target& rows) {
     }
 }
 
-bool NearRows::may_be_near(const std::vector<float>& sample) const {
+bool RoundedRows::may_be_near(const std::vector<float>& sample) const {
     constexpr std::size_t kProbes = 4;
     const check::Input& input = model_.inputs[model_.points[point_].inputs[0]];
     const std::size_t n = sample.size();
@@ -140,7 +140,8 @@ bool NearRows::may_be_near(const std::vector<float>& sample) const {
 }
 
 /// What was recorded, and how far from what it was before it was stored.
-NearRows::Rounded NearRows::taken(Index index, const std::vector<plan::Sample>& samples) const {
+RoundedRows::Rounded RoundedRows::taken(Index index,
+                                        const std::vector<plan::Sample>& samples) const {
     const check::Point& point = model_.points[index];
     const check::Input& input = model_.inputs[point.inputs[0]];
     Rounded result;
@@ -163,7 +164,7 @@ NearRows::Rounded NearRows::taken(Index index, const std::vector<plan::Sample>& 
     return result;
 }
 
-NearRows::Rounded NearRows::projected(Index index, Index from, const Rounded& at) const {
+RoundedRows::Rounded RoundedRows::projected(Index index, Index from, const Rounded& at) const {
     if (index == from) return at;
     const check::Point& point = model_.points[index];
     const Rounded inner = projected(point.inner, from, at);
@@ -184,8 +185,8 @@ NearRows::Rounded NearRows::projected(Index index, Index from, const Rounded& at
 
 /// What the errors of a point come to behind the map. Roundings of samples have nothing to do with
 /// each other, those of sums have.
-std::vector<double> NearRows::carried(const Rounded& inner, const Projection& map,
-                                      const std::vector<RowNorms>& norms, Index from) const {
+std::vector<double> RoundedRows::carried(const Rounded& inner, const Projection& map,
+                                         const std::vector<RowNorms>& norms, Index from) const {
     std::vector<double> moved(map.rows);
     const double most = largest(inner.error);
     if (most == 0) return moved;
@@ -205,7 +206,7 @@ std::vector<double> NearRows::carried(const Rounded& inner, const Projection& ma
 }
 
 /// Of elements of small weight: what the others' roundings outweigh.
-void NearRows::weigh(Rounded& at) const {
+void RoundedRows::weigh(Rounded& at) const {
     double outweighed = 0;
     for (std::size_t i = 0; i < weights_.size(); ++i) {
         const double x = std::abs(static_cast<double>(at.elements[i]));
@@ -216,7 +217,7 @@ void NearRows::weigh(Rounded& at) const {
         at.error[i] += outweighed / std::sqrt(static_cast<double>(weights_[i]));
 }
 
-NearRows::Found NearRows::find(const std::vector<plan::Sample>& samples) const {
+RoundedRows::Found RoundedRows::find(const std::vector<plan::Sample>& samples) const {
     const check::Point& point = model_.points[point_];
     const bool is_plain = !point.is_projected() && point.inputs.size() == 1 && weights_.empty();
     if (is_plain && !may_be_near(samples[point.inputs[0]].values)) return {};
@@ -243,8 +244,8 @@ NearRows::Found NearRows::find(const std::vector<plan::Sample>& samples) const {
     return found;
 }
 
-void NearRows::add_row(const Rounded& at, double size, std::size_t largest, std::uint32_t row,
-                       Found& found) const {
+void RoundedRows::add_row(const Rounded& at, double size, std::size_t largest, std::uint32_t row,
+                          Found& found) const {
     const std::size_t n = at.elements.size();
     const float* g = model_.targets[target_].values.data() + row * n;
     const double per_length = by_direction_ ? per_length_[row] : 1;

@@ -1,4 +1,4 @@
-#include "plan/recorder.hpp"
+#include "plan/recorder_plan.hpp"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 // the frame is within rounding of, and how many frames as near as this one's neighbourhood would be
 // so by chance. Keeps true: the bounds are above what rounding does, so what was taken from a frame
 // is found; whether it was taken, one frame cannot tell where the point has few dimensions, and
-// LeakEvidence (episodes/admission/leak_evidence.hpp) decides from all.
+// LeakEvidence (episodes/admission/admission.hpp) decides from all.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,16 @@ namespace etlc::episodes {
 
 using check::Index;
 
-class NearRows {
+/// |v|, in double.
+double length(const float* v, std::size_t n);
+
+class RoundedRows {
 public:
     /// `distance`: whose point or target these are, for its metric where it measures from `point`.
     /// `target`: its rows are in the space of `point`. The model outlives it.
-    NearRows(const check::Model& model, Index distance, Index point, Index target);
+    RoundedRows(const check::Model& model, Index distance, Index point, Index target);
 
-    bool same_as(const NearRows& other) const {
+    bool same_as(const RoundedRows& other) const {
         return point_ == other.point_ && target_ == other.target_ &&
                by_direction_ == other.by_direction_ && weights_ == other.weights_;
     }
