@@ -34,7 +34,7 @@ void Keeper::add(const episodes::Recording& recording) {
         }
         for (const Index predicate : wanted_.predicates)
             kept_->labels.push_back(recording.label(predicate));
-    } catch (const std::bad_alloc&) {  // it can be read again
+    } catch (const std::bad_alloc&) {  // the episode can be read again
         return forget();
     }
     ++kept_->frames;
@@ -45,7 +45,7 @@ std::shared_ptr<const Kept> Keeper::take() {
 }
 
 bool Keeper::make_places(std::uint64_t length) {
-    constexpr std::uint64_t kFrames = 64;  // at first, where the file does not tell how many
+    constexpr std::uint64_t kFrames = 64;  // initial room where the length is unknown
     const std::uint64_t more = places_ > 0 ? places_ : length > 0 ? length : kFrames;
     if (!room_.take(more, bytes_)) return false;
     places_ += more;

@@ -1,4 +1,4 @@
-// What `etlc fit` says when it is done.
+// Prints the report of `etlc fit`.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -17,7 +17,7 @@ namespace etlc::fit {
 
 namespace {
 
-/// The first projection of the point that is refused.
+/// Returns the refusal of the first refused projection of the point.
 const Refusal* refusal_of(const check::Model& model, Index point,
                           const std::map<Index, Refusal>& refusals) {
     for (; model.points[point].is_projected(); point = model.points[point].inner) {
@@ -72,11 +72,11 @@ using check::kNone;
 using episodes::Label;
 using episodes::RankedFrame;
 
-/// What one fold is measured with.
+/// The model and plan that measure one fold.
 struct Fold {
     const check::Model& model;
     plan::Plan plan;
-    std::vector<std::optional<Vector>> means;  ///< per predicate: of the plain distance
+    std::vector<std::optional<Vector>> means;  ///< per predicate, for the plain distance
 };
 
 /// The two scores of a predicate in an episode.
@@ -160,7 +160,7 @@ private:
     std::vector<float> point_;
 };
 
-/// One of an episode, of those that are ranked on the wrong side of most others.
+/// Returns the worst frame of each episode among those that rank below half of the other class.
 std::vector<WorstFrame> worst(const std::vector<std::vector<RankedFrame>>& groups) {
     constexpr std::size_t kShown = 3;
     std::vector<const RankedFrame*> frames;

@@ -54,7 +54,7 @@ bool is_small(const Machine& machine) {
 
 namespace {
 
-using Literals = std::vector<Slot>;  // sorted
+using LiteralSlots = std::vector<Slot>;  // sorted
 
 /// A register as an update reads it.
 struct Source {
@@ -66,7 +66,7 @@ struct Source {
 /// true adds nothing.
 struct Product {
     std::vector<Source> sources;
-    Literals literals;
+    LiteralSlots literals;
 };
 
 /// The register of a state becomes the max of these; of none, false.
@@ -90,17 +90,17 @@ struct Updates {
 /// One way into a state: from a register (or from what is always true) through literals.
 struct Way {
     std::uint32_t source = kNone;  ///< kNone: always true
-    Literals literals;
+    LiteralSlots literals;
 
     bool operator==(const Way&) const = default;
 };
 
-bool contains(const Literals& outer, const Literals& inner) {
+bool contains(const LiteralSlots& outer, const LiteralSlots& inner) {
     return std::includes(outer.begin(), outer.end(), inner.begin(), inner.end());
 }
 
-Literals unite(const Literals& a, const Literals& b) {
-    Literals result;
+LiteralSlots unite(const LiteralSlots& a, const LiteralSlots& b) {
+    LiteralSlots result;
     std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(result));
     return result;
 }
@@ -125,7 +125,7 @@ class Programming {
 public:
     explicit Programming(const Machine& machine) : machine_(machine), ways_(machine.states.size()) {
         for (const Transition& t : machine.automaton.transitions) {
-            Literals literals = machine.guards[t.guard];
+            LiteralSlots literals = machine.guards[t.guard];
             std::sort(literals.begin(), literals.end());
             ways_[t.target].push_back(
                 {machine.states[t.source].always_true ? kNone : t.source, std::move(literals)});
@@ -145,9 +145,9 @@ private:
     using Pairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
     /// Every way into `from`, then `through`, is a way into `target` too, or a tighter one is.
-    bool all_lead_on(std::uint32_t from, const Literals& through, std::uint32_t target) const {
+    bool all_lead_on(std::uint32_t from, const LiteralSlots& through, std::uint32_t target) const {
         return std::all_of(original_[from].begin(), original_[from].end(), [&](const Way& way) {
-            const Literals whole = unite(way.literals, through);
+            const LiteralSlots whole = unite(way.literals, through);
             return std::any_of(original_[target].begin(), original_[target].end(),
                                [&](const Way& other) {
                                    return (other.source == way.source || other.source == kNone) &&
@@ -193,13 +193,13 @@ private:
     /// The ways into a state, those through the same literals together.
     std::vector<Product> products(std::uint32_t state) const {
         std::vector<Product> result;
-        const auto product_through = [&](const Literals& literals) -> Product& {
+        const auto product_through = [&](const LiteralSlots& literals) -> Product& {
             const auto found =
                 std::find_if(result.begin(), result.end(),
                              [&](const Product& product) { return product.literals == literals; });
             return found != result.end() ? *found : result.emplace_back(Product{{}, literals});
         };
-        std::set<Literals> unconditional;  // through these alone, whatever the registers
+        std::set<LiteralSlots> unconditional;  // through these alone, whatever the registers
         for (const Way& way : ways_[state]) {
             if (way.source == kNone)
                 unconditional.insert(way.literals);
@@ -208,7 +208,8 @@ private:
         }
         for (const Way& way : updated_[state])
             product_through(way.literals).sources.push_back({way.source, true});
-        for (const Literals& literals : unconditional) product_through(literals).sources.clear();
+        for (const LiteralSlots& literals : unconditional)
+            product_through(literals).sources.clear();
         return result;
     }
 

@@ -16,14 +16,14 @@ namespace {
 
 using Eigen::Index;
 
-/// Rows that lie side by side once they are packed: those of a panel, for one column.
+/// Rows of a panel, which are packed side by side for each column.
 constexpr Index kPanel = 8;
 
 struct alignas(64) PanelColumn {
     double rows[kPanel];
 };
 
-/// Panel by panel, in each column by column; rows that fill up the last one are 0.
+/// Packs panel by panel, in each column by column; pads the last panel with 0.
 std::vector<PanelColumn> packed(const Eigen::Ref<const Matrix>& columns) {
     const Index depth = columns.cols();
     const Index panels = (columns.rows() + kPanel - 1) / kPanel;
@@ -37,7 +37,7 @@ std::vector<PanelColumn> packed(const Eigen::Ref<const Matrix>& columns) {
     return result;
 }
 
-// What is inlined into a function is compiled for the machine that the function is for.
+// Inlined code is compiled for the target of the function around it.
 #define ETLC_INLINE [[gnu::always_inline]] inline
 
 /// A tile of the result, kPanel rows by `kColumns`, summed in registers of `Lanes`.
@@ -126,7 +126,7 @@ void add_products(const Eigen::Ref<const Matrix>& columns, double factor,
 std::optional<Cholesky> Cholesky::of(Matrix symmetric) {
     constexpr double kLeastCondition = 1e-13;
     constexpr Eigen::Index kBlock = 64;
-    // By blocks of columns, so that most of it are products.
+    // Works on blocks of columns, so that most of the work is products.
     const Eigen::Index n = symmetric.rows();
     for (Eigen::Index begin = 0; begin < n; begin += kBlock) {
         const Eigen::Index here = std::min(kBlock, n - begin);
@@ -163,7 +163,7 @@ using Eigen::Index;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Symmetric: `beside` is above and below the diagonal.
+/// A symmetric tridiagonal matrix; `beside` is above and below the diagonal.
 struct Tridiagonal {
     Vector diagonal;
     Vector beside;
@@ -180,13 +180,13 @@ struct Tridiagonal {
     }
 };
 
-/// Solves (T - shift) x = right by Gauss's elimination with row exchanges; a pivot that is 0 counts
-/// as `least`.
+/// Solves (T - shift) x = right by Gaussian elimination with row exchanges; a pivot of 0 counts as
+/// `least`.
 Vector solved(const Tridiagonal& t, double shift, double least, Vector right) {
     const Index n = t.size();
     Vector pivot = t.diagonal.array() - shift;
     Vector above = Vector::Zero(n);   // first beside the diagonal
-    Vector above2 = Vector::Zero(n);  // second, where rows were exchanged
+    Vector above2 = Vector::Zero(n);  // second superdiagonal, after row exchanges
     above.head(n - 1) = t.beside;
     const auto safe = [&](double x) { return std::abs(x) < least ? least : x; };
     for (Index i = 0; i + 1 < n; ++i) {
@@ -215,7 +215,8 @@ Vector solved(const Tridiagonal& t, double shift, double least, Vector right) {
     return right;
 }
 
-/// Of eigenvalues from the greatest. Nothing where the vectors are not what they should be.
+/// Computes the eigenvectors of eigenvalues in descending order. Returns nothing where a residual
+/// is too large.
 std::optional<Matrix> inverse_iteration(const Tridiagonal& t, const Vector& values) {
     constexpr std::uint64_t kSeed = 2026;
     constexpr int kRounds = 4;
@@ -225,7 +226,8 @@ std::optional<Matrix> inverse_iteration(const Tridiagonal& t, const Vector& valu
     for (Index i = 0; i < values.size(); ++i) {
         Vector x(t.size());
         for (double& element : x) element = random.unit() - 0.5;
-        const double shift = values(i) - static_cast<double>(i) * kEpsilon * norm;  // no two equal
+        const double shift =
+            values(i) - static_cast<double>(i) * kEpsilon * norm;  // separates equal values
         for (int round = 0; round < kRounds; ++round) {
             x = solved(t, shift, kEpsilon * norm, x.normalized());
             const auto before = vectors.leftCols(i);

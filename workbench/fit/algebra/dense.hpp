@@ -1,4 +1,4 @@
-// What fitting computes with, in double: affine maps, products, factors and eigenvectors.
+// Dense linear algebra of fitting, in double: affine maps, products, factors and eigenvectors.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +10,8 @@ namespace etlc::fit {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-/// Before anything else: the sums of Eigen's products are in an order that depends on the sizes of
-/// caches. With these, which need not be those of the machine, it is the same everywhere.
+/// Call this first: the order of sums in Eigen's products depends on cache sizes. With these fixed
+/// ones, it is the same on every machine.
 inline void fix_order_of_sums() {
     Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20);
 }
@@ -21,39 +21,39 @@ struct Affine {
     Matrix a;       ///< R x D
     Vector offset;  ///< m: D
 
-    /// Of frames that are columns.
+    /// Maps frames, which are columns.
     Matrix operator()(const Matrix& frames) const { return a * (frames.colwise() - offset); }
 };
 
-/// lower += factor * columns * columns^T, lower triangle alone; above it anything may be written.
-/// Fitting spends its time here. Every element is summed in the order of the columns, each product
-/// rounded before it is added, so machines with wider vectors give the same bits. Eigen takes twice
-/// as long, for it is compiled for the vectors of the oldest machine.
+/// Adds factor * columns * columns^T to the lower triangle; above it anything may be written.
+/// Fitting spends most of its time here. Every element is summed in the order of the columns, each
+/// product rounded before it is added, so machines with wider vectors give the same bits. Eigen
+/// takes twice as long, because it is compiled for the oldest machine's vectors.
 void add_products(const Eigen::Ref<const Matrix>& columns, double factor, Eigen::Ref<Matrix> lower);
 
-/// L L^T = S, for a covariance S, of which the lower triangle counts. Eigen takes twice as
-/// long, and fitting a discriminant makes fifty of these.
+/// The Cholesky factor L of a covariance S = L L^T, of which the lower triangle is read. Eigen
+/// takes twice as long, and fitting a discriminant makes fifty factors.
 class Cholesky {
 public:
-    /// Nothing where it is not positive definite in double.
+    /// Returns nothing where S is not positive definite in double.
     static std::optional<Cholesky> of(Matrix symmetric);
 
-    /// x with S x = right.
+    /// Solves S x = right.
     Vector solve(const Vector& right) const;
-    /// S^-1, symmetric.
+    /// Returns S^-1, symmetric.
     Matrix inverse() const;
-    /// The memory, for another one.
+    /// Returns the memory for reuse.
     Matrix release() && { return std::move(lower_); }
 
 private:
     explicit Cholesky(Matrix lower) : lower_(std::move(lower)) {}
 
-    Matrix lower_;  ///< its lower triangle
+    Matrix lower_;  ///< L, in the lower triangle
 };
 
-/// The greatest eigenvalues of a symmetric matrix, of which the lower triangle counts, and their
-/// eigenvectors, greatest first. Vectors are orthogonal to rounding, those of equal eigenvalues
-/// too. Where few are asked for, the others are not computed: tridiagonal form, its eigenvalues,
+/// Returns the greatest eigenvalues of a symmetric matrix, of which the lower triangle is read, and
+/// their eigenvectors, in descending order. Vectors are orthogonal to rounding, also those of equal
+/// eigenvalues. For few of them the others are not computed: tridiagonal form, its eigenvalues,
 /// inverse iteration (Golub, Van Loan, "Matrix Computations", 8.3 and 8.4).
 struct Eigenpairs {
     Vector values;

@@ -1,4 +1,4 @@
-// Suggestions for people and for programs.
+// Prints suggestions as text and as JSON.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::string row(const Suggestion& one) {
                        one.lines.empty() ? " (as it is)" : "");
 }
 
-/// What to paste, or that nothing is to be.
+/// Prints the lines to paste, if any.
 std::string lines_of(const Suggestion& one) {
     if (one.lines.empty()) return "  nothing: the predicate as it is\n";
     std::string text;
