@@ -10,7 +10,7 @@
 namespace etlc::episodes {
 namespace {
 
-/// Unmarked episodes of a call.
+/// Counts the unmarked episodes of a call.
 class Unmarked {
 public:
     void add(const std::string& path, bool is_unmarked) {

@@ -1,7 +1,7 @@
-// Warnings about episodes and their labels, the same wherever these are read.
-// Keeps true: episodes that do not say which encoder made their embeddings cause one warning
-// (W1001); a spec without an encoder causes none; the direction of labels is doubted where the
-// whole interval of the AUROC says so.
+// Warnings about episodes and their labels, shared by all commands that read these. Episodes that
+// do not name the encoder of their embeddings cause one warning a call (W1001), and none without an
+// encoder in the spec. Labels count as inverted only where the whole interval of the AUROC lies
+// below 0.5.
 #pragma once
 
 #include <cstdint>
@@ -17,28 +17,27 @@
 
 namespace etlc::episodes {
 
-/// Whether one of the inputs is by an encoder and the episode does not say by which. `marks`: what
-/// it says.
+/// Returns whether an input needs an encoder that the episode's marks do not name.
 bool is_unmarked(const check::Model& model, const std::vector<Index>& inputs,
                  const data::NamesInFile& names, const embedded::Marks& marks);
 
 void warn_of_unmarked(const Identities& episodes, diag::Sink& sink);
-/// Of episodes that have been read. `inputs`: those that the command asks them for.
+/// Reads the marks of the episodes. `inputs`: those that the command reads.
 void warn_of_unmarked(const check::Model& model, const std::vector<Index>& inputs,
                       const std::vector<std::string>& paths, const data::NamesInFile& names,
                       diag::Sink& sink);
 
-/// How many frames the labels of a predicate call positive and negative.
+/// The numbers of frames labelled true and false.
 struct Labels {
     std::uint64_t positives = 0;
     std::uint64_t negatives = 0;
 };
 
-/// Whether there was something to warn of.
+/// Warns of one-sided or inverted labels; returns whether it did.
 bool warn_of_labels(const check::Predicate& predicate, Labels labels,
                     const std::optional<Auroc>& auroc, diag::Sink& sink);
 
-/// A warning of the data that is about a place in the spec, of which nothing is wrong.
+/// Reports a warning about the data that points into the spec.
 diag::Diagnostic& warn_of_data(diag::Code code, std::string message, source::Span about,
                                diag::Sink& sink);
 

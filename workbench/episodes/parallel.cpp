@@ -17,7 +17,7 @@ namespace etlc::episodes {
 void report(const std::vector<Fault>& faults, std::size_t episodes, diag::Sink& sink) {
     constexpr std::size_t kMostKinds = 10;
     std::map<std::pair<diag::Code, std::string>, std::size_t> known;
-    std::vector<std::vector<std::string>> kinds;  // paths, in order of the first
+    std::vector<std::vector<std::string>> kinds;  // paths of each kind, in the order of the first
     std::vector<diag::Failure> failures;
     for (const Fault& fault : faults) {
         const auto [at, is_new] =

@@ -21,7 +21,7 @@ namespace {
 using check::Input;
 using check::InputType;
 
-/// A sample of fewer bits is like others by chance.
+/// Samples of fewer bits coincide by chance.
 constexpr std::uint32_t kBitsThatTell = 32;
 
 std::uint32_t bits_of(const Input& input) {
@@ -35,7 +35,8 @@ std::uint32_t bits_of(const Input& input) {
     return 0;
 }
 
-/// Under another declaration the same recording is seen otherwise, so it has another name.
+/// Names an input with its declaration, because another declaration changes the samples that the
+/// monitor sees.
 std::string name_of(const Input& input) {
     std::string name = input.name;
     if (input.type == InputType::f16) name += " f16";
@@ -56,7 +57,7 @@ std::vector<data::HashedInput> hashed(const check::Model& model, const std::vect
     return result;
 }
 
-/// In a form that compilers turn into vectors.
+/// Written so that compilers vectorise it.
 bool are_finite(const std::vector<float>& values) {
     bool finite = true;
     for (const float x : values) finite &= std::abs(x) <= std::numeric_limits<float>::max();
@@ -91,7 +92,7 @@ void Seen::add(const std::vector<plan::Sample>& samples) {
     hash_.add(seen_);
 }
 
-/// As plan::Evaluator takes inputs.
+/// Applies range, `hold` and `missing` as plan::Evaluator does.
 void Seen::see(const Input& input, const plan::Sample& sample, Held& held,
                std::vector<float>& seen) const {
     seen.clear();
@@ -125,7 +126,7 @@ std::string array_name(const check::Model& model, Index predicate) {
     return "truth." + model.predicates[predicate].name;
 }
 
-/// What an episode is opened with: the inputs, then an array of labels for every predicate.
+/// Returns the channels to open: the inputs, then an array of labels for every predicate.
 std::vector<Channel> channels_of(const Wanted& wanted, const std::vector<Index>& inputs,
                                  const std::vector<bool>& required) {
     std::vector<Channel> channels;
@@ -138,7 +139,7 @@ std::vector<Channel> channels_of(const Wanted& wanted, const std::vector<Index>&
     return channels;
 }
 
-/// Inputs that are wanted, and those that truths read.
+/// Returns the wanted inputs and those that truths read.
 std::vector<Index> inputs_of(const Wanted& wanted, const TruthEvaluator& truths) {
     std::set<Index> inputs(wanted.inputs.begin(), wanted.inputs.end());
     inputs.insert(truths.inputs().begin(), truths.inputs().end());
@@ -152,7 +153,7 @@ std::vector<Index> formulas_of(const check::Model& model, const std::vector<Inde
     return formulas;
 }
 
-/// `absent`: what opening the episode says where the array has to be there.
+/// `absent`: the error of opening the episode with the array required.
 Failure no_label(const check::Model& model, Index predicate, const Failure& absent) {
     return {Code::no_label,
             fmt::format("does not say when '{}' holds, nor does a truth in the spec: {}",
@@ -160,8 +161,8 @@ Failure no_label(const check::Model& model, Index predicate, const Failure& abse
             absent.line, absent.column};
 }
 
-/// Whether it does not say which encoder made the embeddings. Failures: that it was another than
-/// the spec's.
+/// Returns whether the episode fails to name the encoder of its embeddings. Fails where that is
+/// another than the spec's.
 diag::Result<bool> read_encoders(const Wanted& wanted, const std::string& path,
                                  const data::NamesInFile& names) {
     const check::Model& model = *wanted.model;
@@ -207,7 +208,7 @@ diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const st
     std::vector<Index> labelled;
     for (const check::Truth& truth : model.truths) labelled.push_back(truth.predicate);
     if (!asked.empty()) {
-        for (const Index input : identity_inputs(model))  // which tell the number of steps
+        for (const Index input : identity_inputs(model))  // they give the number of steps
             channels.push_back(channel_of(model.inputs[input]));
         const auto trace = data::open_trace(path, data::renamed(channels, names));
         if (!trace) return trace.failure();
@@ -239,7 +240,7 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
     std::vector<bool> required(model.inputs.size());
     for (const Index input : wanted.inputs) required[input] = true;
 
-    // What only truths read may be absent where arrays stand in for them.
+    // Inputs that only truths read may be absent where arrays replace these truths.
     Recording result(wanted);
     auto trace = open(channels_of(wanted, inputs, required));
     if (!trace) return trace.failure();
@@ -269,7 +270,7 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
         complete = complete && result.trace_->has(static_cast<std::size_t>(channel));
         required[input] = true;
     }
-    if (!complete) {  // the message about what is lacking is that of the file's format
+    if (!complete) {  // opening with these required gives the message of the file's format
         trace = open(channels_of(wanted, inputs, required));
         if (!trace) return trace.failure();
     }

@@ -132,7 +132,7 @@ Label TruthEvaluator::value(Index index) {
         case always:
         case until:
         case weak_until:
-        case release: break;  // no future operator stands in a truth
+        case release: break;  // truths have no future operators
     }
     return Label::unknown;
 }
@@ -160,7 +160,7 @@ Label TruthEvaluator::compare(const check::Predicate& predicate) const {
                                       [&](Index input) { return values_[input].empty(); });
     const double delta = present ? expression(predicate.expression) : kUnknown;
     if (std::isnan(delta)) return Label::unknown;
-    // Samples are float32, and so is what a monitor takes as equal.
+    // Samples are float32, and monitors compare for equality in float32.
     if (predicate.equality())
         return label_of(check::holds(predicate.comparison, static_cast<float>(delta),
                                      predicate.threshold.value));
@@ -206,7 +206,9 @@ GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& la
     GroundTruth result{model, std::vector<Index>(model.predicates.size(), check::kNone)};
     for (const Index predicate : labelled) {
         check::Input label;
-        label.name = "truth." + model.predicates[predicate].name;  // no name of the spec has a dot
+        label.name =
+            "truth." +
+            model.predicates[predicate].name;  // a dot keeps it apart from names of the spec
         label.type = check::InputType::boolean;
         label.span = model.predicates[predicate].span;
         result.inputs[predicate] = static_cast<Index>(result.model.inputs.size());

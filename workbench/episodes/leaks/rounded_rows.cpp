@@ -15,15 +15,15 @@ namespace {
 using check::InputType;
 using check::Projection;
 
-constexpr double kUnit = 0x1p-24;  ///< of one rounding to float32
-/// A sum of D rounded terms is off by random roundings of its partial sums, whose length grows as
-/// sqrt(D): so many times that is not exceeded, in any order of additions.
+constexpr double kUnit = 0x1p-24;  ///< relative error of one rounding to float32
+/// A sum of D rounded terms is off by random roundings of its partial sums, whose norm grows as
+/// sqrt(D); it stays within this factor of that, in any order of additions.
 constexpr double kDeviations = 4;
-/// So many times the length of as many halves of a grid's steps is not exceeded by the sum of
-/// roundings to that grid: 4 standard deviations.
+/// The sum of roundings to a grid stays within this factor times the norm of as many half steps of
+/// the grid: 4 standard deviations.
 constexpr double kOfUniform = 2.3;
-/// What is `wide`: so many bounds about a row, or as much of the point's largest element if that is
-/// more, for what is recorded is not finer.
+/// `wide` is this many bounds about a row, or this share of the point's largest element if that is
+/// more, because recordings are not finer.
 constexpr double kWide = 8;
 constexpr double kWideOfSize = 0x1p-9;
 
@@ -92,8 +92,7 @@ RoundedRows::RoundedRows(const check::Model& model, Index distance, Index point,
     if (rows.source != check::kNone) add_moves(rows);
 }
 
-/// How far rows are from what they were before they were stored and then projected: of a row the
-/// most of its elements.
+/// Computes how far storing and then projecting moved each row: the maximum over its elements.
 void RoundedRows::add_moves(const check::Target& rows) {
     const check::Target& declared = model_.targets[rows.source];
     Index from = declared.space;
@@ -116,7 +115,7 @@ bool RoundedRows::may_be_near(const std::vector<float>& sample) const {
     const std::size_t n = sample.size();
     const double per_length = by_direction_ ? 1 / length(sample.data(), n) : 1;
     if (!std::isfinite(per_length)) return true;
-    std::uint32_t largest = 0;  // in bits, whose order is that of sizes
+    std::uint32_t largest = 0;  // as bits, which sort as magnitudes do
     for (const float x : sample)
         largest = std::max(largest, std::bit_cast<std::uint32_t>(x) & 0x7fff'ffffU);
     const auto size = static_cast<double>(std::bit_cast<float>(largest));
@@ -129,7 +128,7 @@ bool RoundedRows::may_be_near(const std::vector<float>& sample) const {
         for (std::size_t i = 0; near && i < std::min(n, kProbes); ++i) {
             const auto x = static_cast<double>(sample[i]);
             const auto y = static_cast<double>(g[i]);
-            // No less than what add_row() allows.
+            // At least what add_row() allows.
             const double bound = (half_rounding(x) + grain) * per_length +
                                  half_rounding(y) * per_row + kDeviations * kUnit;
             near = std::abs(x * per_length - y * per_row) <= std::max(kWide * bound, least);
@@ -139,7 +138,7 @@ bool RoundedRows::may_be_near(const std::vector<float>& sample) const {
     return false;
 }
 
-/// What was recorded, and how far from what it was before it was stored.
+/// Returns the recorded point, and how far storing may have moved it.
 RoundedRows::Rounded RoundedRows::taken(Index index,
                                         const std::vector<plan::Sample>& samples) const {
     const check::Point& point = model_.points[index];
@@ -183,8 +182,8 @@ RoundedRows::Rounded RoundedRows::projected(Index index, Index from, const Round
     return result;
 }
 
-/// What the errors of a point come to behind the map. Roundings of samples have nothing to do with
-/// each other, those of sums have.
+/// Carries the errors of a point through the map. Roundings of samples are independent, those of
+/// sums are not.
 std::vector<double> RoundedRows::carried(const Rounded& inner, const Projection& map,
                                          const std::vector<RowNorms>& norms, Index from) const {
     std::vector<double> moved(map.rows);
@@ -205,7 +204,7 @@ std::vector<double> RoundedRows::carried(const Rounded& inner, const Projection&
     return moved;
 }
 
-/// Of elements of small weight: what the others' roundings outweigh.
+/// Widens the errors of elements of small weight to what the others' roundings outweigh.
 void RoundedRows::weigh(Rounded& at) const {
     double outweighed = 0;
     for (std::size_t i = 0; i < weights_.size(); ++i) {
@@ -265,8 +264,8 @@ void RoundedRows::add_row(const Rounded& at, double size, std::size_t largest, s
         if (!(apart <= wide)) return;
         within = within && apart <= bound;
         close = close && apart <= 2 * bound;
-        // Elements say nothing that are zero, as where nothing is seen, or that are lost in their
-        // bounds; of a direction one follows from the others.
+        // Elements that are zero, as where nothing is seen, or lost in their bounds tell nothing;
+        // of a direction one follows from the others.
         const bool tells = (y != 0 || x != 0) && kWide * bound < size;
         if (!tells || (by_direction_ && i == largest)) continue;
         evenly_close /= 2;

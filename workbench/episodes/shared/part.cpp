@@ -22,10 +22,10 @@ using diag::Code;
 using diag::Failure;
 
 constexpr std::string_view kMagic = "etlc part 1\n";
-constexpr std::size_t kHash = 8;  ///< bytes, the last of the file: of all before
+constexpr std::size_t kHash = 8;  ///< bytes at the end of the file: hash of all before
 constexpr std::uint64_t kLargest = std::uint64_t{1} << 40U;
 
-/// What two parts of a call have to share.
+/// Returns whether two parts belong to one call.
 bool same_call(const Part& a, const Part& b) {
     return a.etlc == b.etlc && a.call == b.call && a.loaded == b.loaded && a.shards == b.shards &&
            a.episodes == b.episodes && a.labelled == b.labelled;
@@ -178,7 +178,7 @@ std::vector<std::uint64_t> contents_of(const std::vector<std::string>& episodes,
     std::vector<std::uint64_t> contents;
     contents.reserve(episodes.size());
     for (const std::string& episode : episodes) contents.push_back(content_of(episode));
-    // Where it cannot be written, the next process looks at the episodes again.
+    // If writing fails, the next process reads the episodes again.
     if (!kept.empty())
         static_cast<void>(data::write_file_atomically(kept, data::packed(Kept{episodes, contents}),
                                                       Code::unwritable_output));
