@@ -19,7 +19,7 @@ namespace etlc::plan {
 
 namespace {
 
-/// What is read and measured for these predicates and these inputs.
+/// Sets the inputs, distances and targets that these predicates and inputs need.
 void need(Plan& plan, std::set<Index> inputs, const std::set<Index>& predicates) {
     const check::Model& model = *plan.model;
     std::set<Index> distances;
@@ -36,13 +36,13 @@ void need(Plan& plan, std::set<Index> inputs, const std::set<Index>& predicates)
     plan.targets.assign(targets.begin(), targets.end());
 }
 
-/// Their places are numbers of 32 bits.
+/// Checks that the places of parameters fit into 32 bits.
 void check_parameters(const Plan& plan, diag::Sink& sink) {
     constexpr std::uint64_t kMostFloats = std::uint64_t{1} << 29U;
     std::uint64_t floats = 0;
     for (const Index t : plan.targets) {
         const check::Target& target = plan.model->targets[t];
-        floats += 2 * target.values.size();  // perhaps of length 1 as well
+        floats += 2 * target.values.size();  // possibly normalised as well
         if (floats <= kMostFloats) continue;
         sink.report(diag::Code::not_retargetable, target.span,
                     fmt::format("'{}' and what stands before it take more than the 2 GiB that "
@@ -52,9 +52,9 @@ void check_parameters(const Plan& plan, diag::Sink& sink) {
     }
 }
 
-/// Windows that take the same element at each step, also while finish() reports the last positions:
-/// one without lag goes on beyond the end of the trace, since no position of its own lies there.
-/// And that begin together.
+/// Identifies windows that take the same element at each step and start together. While finish()
+/// reports the last positions they still do, except for one without lag, which has no position
+/// there.
 using Signal = std::tuple<bool, std::vector<Slot>, std::uint32_t, bool, std::uint32_t>;
 
 void widen(Stream& stream, Slot from, std::uint32_t from_length) {
@@ -63,11 +63,11 @@ void widen(Stream& stream, Slot from, std::uint32_t from_length) {
     stream.from_length = from_length;
 }
 
-/// Makes a window the widening of a shorter one over the same signal, where that is at least half
-/// as long (etlmon::Widening). Every value stays; operands may stand after what uses them until the
-/// plan puts them in order.
+/// Turns a window into the widening of a shorter one over the same signal that is at least half as
+/// long (etlmon::Widening). Values stay the same; operands may come after their users until the
+/// plan is sorted.
 void share_windows(Plan& plan) {
-    // On truth values a window is a counter, which nothing undercuts.
+    // Over truth values a window is a counter, which is cheapest.
     if (value_type(plan.values).on_demand) return;
     std::map<Signal, std::vector<Slot>> watching;
     for (Slot slot = 0; slot < plan.streams.size(); ++slot) {
@@ -103,7 +103,7 @@ public:
         plan_.values = values;
     }
 
-    /// False where a monitor is too large; the sink then says which part.
+    /// Returns false after reporting the part of a monitor that is too large.
     bool add_monitor(Index index, diag::Sink& sink, const Advice& advice) {
         const check::Monitor& source = plan_.model->monitors[index];
         Monitor monitor{.name = source.name,
@@ -165,8 +165,7 @@ public:
     }
 
 private:
-    /// Folding leaves streams behind that nothing reads; sharing may leave operands behind what
-    /// uses them.
+    /// Drops streams that folding left unused, and puts operands before their users after sharing.
     void keep_used_streams() {
         std::vector<bool> used(plan_.streams.size(), false);
         const auto use = [&](const auto& self, Slot slot) -> void {
@@ -190,7 +189,7 @@ private:
         for_each_root([&](Slot& slot) { slot = renumbered[slot]; });
     }
 
-    /// Where the number of the step is asked for, from the start of the trace or of a monitor.
+    /// Marks what counts steps, from the start of the trace or of a monitor.
     void count_steps() {
         plan_.counts_steps = plan_.has_sliding;
         const auto count = [&](std::uint32_t from) {
@@ -202,7 +201,7 @@ private:
             if (stream.op == StreamOp::within) count(stream.begins_with);
     }
 
-    /// Every place outside the streams that names one.
+    /// Visits every reference to a stream outside the streams.
     template <class Visit>
     void for_each_root(Visit visit) {
         for (Reading& reading : plan_.readings) plan::for_each_slot(reading, visit);

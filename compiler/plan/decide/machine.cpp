@@ -9,11 +9,11 @@ namespace etlc::plan {
 
 namespace {
 
-/// More states or transitions than these are a constant table and one loop.
+/// Larger machines become a constant table and one loop.
 constexpr std::size_t kMaxUnrolledStates = 32;
 constexpr std::size_t kMaxUnrolledTransitions = 160;
 
-/// The index of a stream's key in its list; 0, the neutral key, for no stream.
+/// Returns the index of a stream's key in its list; 0, the neutral key, for no stream.
 std::uint16_t index_of(std::vector<Slot>& list, Slot slot) {
     if (slot == kNone) return 0;
     const auto found = std::find(list.begin(), list.end(), slot);
@@ -56,38 +56,36 @@ namespace {
 
 using LiteralSlots = std::vector<Slot>;  // sorted
 
-/// A register as an update reads it.
+/// A register read by an update.
 struct Source {
     std::uint32_t state = 0;
-    bool updated = false;  ///< this step's value, else that of the step before
+    bool updated = false;  ///< this step's value instead of the previous one
 };
 
-/// min(max of the sources, literals); without sources the literals alone: a source that is always
-/// true adds nothing.
+/// min(max of the sources, literals); the literals alone without sources, because a source that is
+/// always true adds nothing.
 struct Product {
     std::vector<Source> sources;
     LiteralSlots literals;
 };
 
-/// The register of a state becomes the max of these; of none, false.
+/// Sets the register of a state to the max of these products; to false without any.
 struct Update {
     std::uint32_t state = 0;
     std::vector<Product> products;
 };
 
-/// Updates in this order.
-///
-/// Where every way into S followed by the guard h is also a way into T, those ways are one: min(S
-/// after its update, h). So F (a && F b) is S = max(S, a); T = max(T, min(S, b)): a chain where the
-/// transitions alone give a triangle.
+/// Updates, in order.
+/// Where every way into S followed by the guard h is also a way into T, those ways become one:
+/// min(S after its update, h). So F (a && F b) is S = max(S, a); T = max(T, min(S, b)): a chain
+/// where the transitions alone give a triangle.
 struct Updates {
     std::vector<Update> list;
-    /// No update reads the old value of a register that an earlier one has written: no copies are
-    /// needed.
+    /// No update reads a register after it was written, so no copies are needed.
     bool in_place = false;
 };
 
-/// One way into a state: from a register (or from what is always true) through literals.
+/// A way into a state: from a register, or from one that is always true, through literals.
 struct Way {
     std::uint32_t source = kNone;  ///< kNone: always true
     LiteralSlots literals;
@@ -105,8 +103,8 @@ LiteralSlots unite(const LiteralSlots& a, const LiteralSlots& b) {
     return result;
 }
 
-/// An order of count > 0 states that puts `first` before `second` for each pair; empty where there
-/// is none.
+/// Returns an order of count > 0 states that puts `first` before `second` for each pair; empty if
+/// there is none.
 std::vector<std::uint32_t> sorted(std::size_t count,
                                   const std::set<std::pair<std::uint32_t, std::uint32_t>>& before) {
     std::vector<std::size_t> waiting_for(count, 0);
@@ -144,7 +142,8 @@ public:
 private:
     using Pairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
-    /// Every way into `from`, then `through`, is a way into `target` too, or a tighter one is.
+    /// Returns whether every way into `from`, continued through `through`, is a way into `target`
+    /// too, or a tighter one is.
     bool all_lead_on(std::uint32_t from, const LiteralSlots& through, std::uint32_t target) const {
         return std::all_of(original_[from].begin(), original_[from].end(), [&](const Way& way) {
             const LiteralSlots whole = unite(way.literals, through);
@@ -156,7 +155,7 @@ private:
         });
     }
 
-    /// Reads the updated value of `way.source` where that replaces two ways or more.
+    /// Reads the updated value of `way.source` if that replaces two ways or more.
     void follow(std::uint32_t target, const Way& way) {
         if (!all_lead_on(way.source, way.literals, target)) return;
         const auto covered = [&](const Way& other) {
@@ -190,7 +189,7 @@ private:
         return result;
     }
 
-    /// The ways into a state, those through the same literals together.
+    /// Groups the ways into a state by their literals.
     std::vector<Product> products(std::uint32_t state) const {
         std::vector<Product> result;
         const auto product_through = [&](const LiteralSlots& literals) -> Product& {
@@ -199,7 +198,7 @@ private:
                              [&](const Product& product) { return product.literals == literals; });
             return found != result.end() ? *found : result.emplace_back(Product{{}, literals});
         };
-        std::set<LiteralSlots> unconditional;  // through these alone, whatever the registers
+        std::set<LiteralSlots> unconditional;  // true through these literals alone
         for (const Way& way : ways_[state]) {
             if (way.source == kNone)
                 unconditional.insert(way.literals);
@@ -215,12 +214,12 @@ private:
 
     const Machine& machine_;
     std::vector<std::vector<Way>> original_;
-    std::vector<std::vector<Way>> ways_;     ///< that still read old values
-    std::vector<std::vector<Way>> updated_;  ///< that read new ones
-    Pairs fresh_;  ///< updates that must come before others that read their result
+    std::vector<std::vector<Way>> ways_;     ///< ways that read old values
+    std::vector<std::vector<Way>> updated_;  ///< ways that read new values
+    Pairs fresh_;  ///< updates that must precede those that read their result
 };
 
-/// The code of the updates and what the states' registers are worth.
+/// Writes the code of the updates and of the reading.
 class Writing {
 public:
     Writing(const Machine& machine, const StreamBuilder& streams)
@@ -251,9 +250,9 @@ private:
         return state - (machine_.states[0].always_true ? 1 : 0);
     }
 
-    /// A register a state that is not always true.
+    /// Adds a register for each state that is not always true.
     void keep_registers(bool in_place) {
-        int owing = 0;  // states kept so far that owe something
+        int owing = 0;  // states with obligations so far
         for (std::size_t q = 0; q < machine_.states.size(); ++q) {
             if (machine_.states[q].always_true) continue;
             const std::vector<NodeId>& owed = machine_.automaton.states[q];
@@ -279,8 +278,9 @@ private:
         return Term::extreme(false, std::move(factors));
     }
 
-    /// The max over states of min(register, what is unseen of what the state owes): strongly for
-    /// the upper bound, weakly for the lower one, which is false where something is owed strongly.
+    /// Computes the bounds: the max over states of min(register, unseen value of its obligations),
+    /// of the strong ones for the upper bound, of the weak ones for the lower one, which is false
+    /// where a strong one is open.
     void read() {
         std::vector<Term> rho;
         std::vector<std::pair<Term, Term>> lower;
@@ -303,7 +303,7 @@ private:
         return slot == kNone ? Term::constant(etlmon::kTrue) : streams_.term(slot, end);
     }
 
-    /// The max of min(register, key), registers with the same key together.
+    /// Returns the max of min(register, key), grouped by key.
     static Term best(const std::vector<std::pair<Term, Term>>& registers_and_keys) {
         std::vector<std::pair<Term, std::vector<Term>>> by_key;
         for (const auto& one : registers_and_keys) {
