@@ -1,4 +1,4 @@
-// The rules of opt.hpp that rewrite one node.
+// The rules of opt.hpp.
 #include <algorithm>
 #include <utility>
 
@@ -12,7 +12,8 @@ using ir::Node;
 using ir::NodeId;
 using ir::Op;
 
-/// The connective that the operator distributes over, or the operator itself where there is none.
+/// Returns the connective that the operator distributes over, or the operator itself if there is
+/// none.
 Op distributes_over(Op op) {
     switch (op) {
         case Op::eventually:
@@ -31,9 +32,9 @@ NodeId apply(ir::Graph& graph, const Node& node, NodeId right) {
 
 }  // namespace
 
-/// F (f || g) is F f || F g, G (f && g) is G f && G g, and so for the right side of U and R, over
-/// any interval: max distributes over max. Monitors of the parts add their states where the whole
-/// would multiply them.
+/// Rewrites F (f || g) to F f || F g, G (f && g) to G f && G g, and likewise for the right side of
+/// U and R, over any interval: max distributes over max. Monitors of the parts add their states;
+/// the whole would multiply them.
 NodeId distribute(ir::Graph& graph, NodeId id) {
     const Node node = graph[id];
     const Op connective = distributes_over(node.op);
@@ -41,7 +42,7 @@ NodeId distribute(ir::Graph& graph, NodeId id) {
     const Node inner = graph[node.operands.back()];
     if (inner.op != connective || !inner.has_future) return id;
 
-    std::vector<NodeId> present;  // these need no state of their own and stay together
+    std::vector<NodeId> present;  // these need no state, so they stay together
     std::vector<NodeId> parts;
     for (NodeId operand : inner.operands) {
         if (graph[operand].has_future)
@@ -55,9 +56,9 @@ NodeId distribute(ir::Graph& graph, NodeId id) {
     return graph.combine(connective, std::move(parts), node.span);
 }
 
-/// F (f && F[a,b] g) is F (g && O[a,b] f), and G (f || G[a,b] g) is G (g || H[a,b] f): whichever of
-/// two positions is asked first, the pair is the same. The past is a window over one stream, where
-/// the future is a state per step of it. Only for bounded windows, and f without unbounded past,
+/// Rewrites F (f && F[a,b] g) to F (g && O[a,b] f), and G (f || G[a,b] g) to G (g || H[a,b] f): the
+/// pair of positions is the same, whichever comes first. The past is a window over one stream,
+/// while the future is a state per step. Only for bounded windows, and f without unbounded past,
 /// whose range of unseen values would depend on what is known.
 NodeId look_back(ir::Graph& graph, NodeId id) {
     const Node outer = graph[id];
@@ -83,11 +84,11 @@ NodeId look_back(ir::Graph& graph, NodeId id) {
     return look_back(graph, graph.unary(outer.op, {}, pair, outer.span));
 }
 
-/// G (f || (p U[0,b] q)) is G (f || F[0,b] q) && G (p || T), where T, min over j of max(f(j), q
-/// over [j, now]), says that no f is waiting for its q: while one is, p must hold. Without f: G (p
-/// U[0,b] q) is G F[0,b] q && G (p || q). With a window from a > 0 on, p must hold at every
-/// position: G (p U[a,b] q) is G p && G F[a,b] q. The dual likewise. The identities hold for truth
-/// values on every prefix, and so for min and max: both only compare.
+/// Rewrites G (f || (p U[0,b] q)) to G (f || F[0,b] q) && G (p || T), where T, min over j of
+/// max(f(j), q over [j, now]), says that no f is waiting for its q: while one is, p must hold.
+/// Without f, G (p U[0,b] q) becomes G F[0,b] q && G (p || q). With a window from a > 0 on, p must
+/// hold at every position: G (p U[a,b] q) becomes G p && G F[a,b] q. The dual likewise. The
+/// identities hold for truth values on every prefix, and so for min and max: both only compare.
 NodeId split_until(ir::Graph& graph, NodeId id) {
     const Node outer = graph[id];
     const bool responds = outer.op == Op::always;

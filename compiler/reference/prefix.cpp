@@ -23,8 +23,8 @@ Value max(const Value& a, const Value& b) {
             std::max(a.upper, b.upper)};
 }
 
-/// The duals are made by negation: "`f R[a,b] g`: the dual: -rho(!f U[a,b] !g)", and so min of max,
-/// G of F, H of O, and the trigger, !(!f S !g), of S.
+/// Returns whether negation makes the node from its dual: "`f R[a,b] g`: the dual: -rho(!f U[a,b]
+/// !g)", and likewise min from max, G from F, H from O, and the trigger, !(!f S !g), from S.
 bool is_dual(Node::Kind kind) {
     using enum Node::Kind;
     return kind == all || kind == always || kind == release || kind == historically ||

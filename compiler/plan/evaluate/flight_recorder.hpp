@@ -1,8 +1,6 @@
-// The flight recorder beside the evaluator.
-// Takes: a plan with a recorder, and the evaluator after each of its steps. Gives: the incidents
-// that the generated class gives on the same samples, byte for byte. A Boolean class measures a
-// predicate when a verdict asks for it, and records which it asked for; here all are measured.
-// Keeps true: all memory is asked for when it is made.
+// Records incidents beside the evaluator, byte for byte those of the generated class on the same
+// samples. One difference: a Boolean class measures and records predicates on demand of a verdict;
+// here all are measured. All memory is allocated by the constructor.
 #pragma once
 
 #include <cstdint>
@@ -23,12 +21,12 @@ struct RecorderSizes {
     std::uint32_t incidents = 0;
 };
 
-/// As etlmon::RecorderRow.
+/// Mirrors etlmon::RecorderRow.
 struct RecorderRow : etlmon::RowCalls<RecorderRow> {
     std::vector<std::uint32_t> words;
     std::vector<std::uint8_t> bytes;
 
-    /// A step at which nobody asked for anything.
+    /// Makes the row of a step without queries.
     explicit RecorderRow(const RecorderSizes& sizes)
         : words(1 + sizes.figures, etlmon::kUnaskedBits),
           bytes((sizes.bools + sizes.monitors + 3) / 4 * 4) {
@@ -37,7 +35,7 @@ struct RecorderRow : etlmon::RowCalls<RecorderRow> {
     }
 };
 
-/// As etlmon::RecorderArrays, for sizes that are known at run time.
+/// Mirrors etlmon::RecorderArrays, for sizes known at run time.
 class RecorderStorage {
 public:
     using Row = RecorderRow;
@@ -70,13 +68,13 @@ class FlightRecorder {
 public:
     explicit FlightRecorder(const Plan& plan);
 
-    /// After Evaluator::step().
+    /// Records a step; call it after Evaluator::step().
     void step(const Evaluator& evaluator, const std::vector<etlmon::Verdict>& verdicts);
-    /// After Evaluator::finish().
+    /// Records a final position; call it after Evaluator::finish().
     void finish(const std::vector<etlmon::Verdict>& verdicts);
-    /// Evaluator::restart() was called.
+    /// Call it after Evaluator::restart().
     void restart(std::size_t monitor) { recorder_.restart(static_cast<std::uint32_t>(monitor)); }
-    /// Evaluator::reset() was called.
+    /// Call it after Evaluator::reset().
     void end_episode() { recorder_.end_episode(); }
 
     std::uint32_t complete() const { return recorder_.complete(); }
@@ -84,7 +82,7 @@ public:
     void close() { recorder_.close(); }
     void forget() { recorder_.forget(); }
 
-    /// The bytes of a complete incident, good until the next call.
+    /// Returns the bytes of a complete incident, valid until the next call.
     const std::vector<std::uint8_t>& write(std::uint32_t incident);
 
 private:

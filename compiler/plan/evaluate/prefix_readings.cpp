@@ -1,6 +1,4 @@
-// The readings of a prefix monitor, interpreted: Evaluator's half that ends in a Reading.
-// Takes: the values of the streams at this step. Gives: what the prefix so far, and every
-// continuation of it, say.
+// The part of Evaluator that interprets the readings of prefix monitors.
 #include <algorithm>
 #include <limits>
 
@@ -138,7 +136,7 @@ void PendingEvaluator::reset() {
 
 etlmon::Reading PendingEvaluator::advance(std::uint64_t position,
                                           const std::vector<Value>& streams) {
-    // As in generated code, whose counter saturates.
+    // The counter saturates as in generated code.
     const auto step = static_cast<std::uint32_t>(
         std::min<std::uint64_t>(position, std::numeric_limits<std::uint32_t>::max()));
     const std::uint32_t count = std::min(step, pending_.horizon) + 1;

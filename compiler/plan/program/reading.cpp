@@ -10,7 +10,7 @@ std::uint32_t count(const auto& list) {
     return static_cast<std::uint32_t>(list.size());
 }
 
-/// What is kept of the last positions, then what is settled before them.
+/// Returns the members of the last positions, then those of the settled ones.
 std::vector<Member> members_of(const Pending& pending, NodeId node) {
     std::vector<Member> result;
     for (const Pending::Part& part : pending.parts)
