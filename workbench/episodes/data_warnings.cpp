@@ -25,7 +25,7 @@ public:
             {diag::Code::unmarked_episode, "does not say which encoder made its embeddings"},
             first_));
         if (episodes_ > 1)
-            warning.note(fmt::format("this is so of {} of {} episodes", count_, episodes_));
+            warning.note(fmt::format("this applies to {} of {} episodes", count_, episodes_));
         check::explain_unmarked(warning);
     }
 
@@ -82,7 +82,7 @@ bool warn_of_labels(const check::Predicate& predicate, Labels labels,
                      fmt::format("'{}' is {} at all {}", predicate.name, holds ? "true" : "false",
                                  diag::counted(all, "labelled frame")),
                      span, sink)
-            .note(fmt::format("these say nothing about frames at which it is {}: look at its truth "
+            .note(fmt::format("there are no labels of frames at which it is {}: look at its truth "
                               "or the array truth.{}, or record such frames too",
                               holds ? "false" : "true", predicate.name));
         return true;

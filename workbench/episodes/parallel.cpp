@@ -34,7 +34,7 @@ void report(const std::vector<Fault>& faults, std::size_t episodes, diag::Sink& 
         told += paths.size();
         auto& error = sink.report(data::in_trace(failures[i], paths.front()));
         if (paths.size() > 1)
-            error.note(fmt::format("this is wrong with {} of {} episodes, also with {}",
+            error.note(fmt::format("the same is wrong with {} of {} episodes, also with {}",
                                    paths.size(), episodes,
                                    data::listed({paths.begin() + 1, paths.end()})));
         if (i + 1 == kMostKinds && told < faults.size())

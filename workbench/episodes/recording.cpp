@@ -156,7 +156,7 @@ std::vector<Index> formulas_of(const check::Model& model, const std::vector<Inde
 /// `absent`: the error of opening the episode with the array required.
 Failure no_label(const check::Model& model, Index predicate, const Failure& absent) {
     return {Code::no_label,
-            fmt::format("does not say when '{}' holds, nor does a truth in the spec: {}",
+            fmt::format("does not say when '{}' holds, and the spec has no truth for it: {}",
                         model.predicates[predicate].name, absent.message),
             absent.line, absent.column};
 }

@@ -34,7 +34,7 @@ void warn_of_constants(const check::Model& model, const Fitted& fitted, const So
                     solution.constant, counted(all, "element"), model.points[fitted.point].text,
                     solution.constant == 1 ? "is" : "are", fitted.name),
         fitted.span, sink)
-        .note("what they would be elsewhere, nobody knows: look at how the embedding is made");
+        .note("their values elsewhere are unknown: check how the embedding is made");
 }
 
 /// Returns whether `a` is less than `b` by more than the intervals of both. They are of the same
@@ -58,7 +58,7 @@ void warn_of_doubts(const check::Predicate& predicate, const Separation& separat
         return;
     episodes::warn_of_data(
         Code::fit_makes_worse,
-        fmt::format("'{}' tells frames apart worse by what was fitted than by the plain distance: "
+        fmt::format("'{}' separates frames worse with the fit than by the plain distance: "
                     "the area under the ROC curve is {:.2f}, and {:.2f} without a fit",
                     predicate.name, fitted->value, plain->value),
         predicate.threshold.span, sink)

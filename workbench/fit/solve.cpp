@@ -73,8 +73,9 @@ public:
         if (solution_.counts.holds == 0)
             return Refusal{
                 Code::too_few_frames,
-                fmt::format("of {}, there is none at which 'where' holds and the point is there",
-                            counted(solution_.counts.frames(), "frame"))};
+                fmt::format(
+                    "there is none among {} at which 'where' holds and the point is present",
+                    counted(solution_.counts.frames(), "frame"))};
         switch (fitted_.method) {
             case FittedMethod::mean: return mean();
             case FittedMethod::kmeans:
@@ -105,7 +106,7 @@ private:
         const auto is_number = [](float x) { return std::isfinite(x); };
         if (!std::all_of(numbers.matrix.begin(), numbers.matrix.end(), is_number) ||
             !std::all_of(numbers.offset.begin(), numbers.offset.end(), is_number))
-            return Refusal{Code::fit_out_of_range, "its numbers are beyond those of float32"};
+            return Refusal{Code::fit_out_of_range, "its numbers exceed float32"};
         solution_.filling = std::move(numbers);
         return std::move(solution_);
     }
@@ -132,7 +133,7 @@ private:
         if (found.rank < fitted_.rows)
             return Refusal{
                 Code::degenerate_frames,
-                fmt::format("r = {}, and the frames vary in {} only", fitted_.rows,
+                fmt::format("r = {}, but the frames vary in only {}", fitted_.rows,
                             counted(static_cast<std::uint64_t>(found.rank), "direction"))};
         solution_.explained = found.explained;
         return finished(filling(found.map));

@@ -78,7 +78,7 @@ using diag::Code;
 
 constexpr std::string_view kHowToAllow =
     "if they are different recordings after all, say why with --allow-overlap REASON: the reason "
-    "is kept with the result and stands next to every guarantee";
+    "is stored with the result and shown with every guarantee";
 
 /// "shares about 97 % of its content with"
 std::string in_common(const data::Overlap& overlap) {
@@ -315,7 +315,7 @@ thresholds::Allowance admit_unseen(const Identities& episodes, const thresholds:
                                    diag::Sink& sink) {
     constexpr std::string_view kAllowing =
         "if they are different recordings after all, say why with --allow-overlap REASON: the "
-        "reason stands next to the figures";
+        "reason is shown with the figures";
     refuse_old(thresholds, fitted, sink);
     thresholds::Allowance passed_over{reason};
     const OverlapSearch among =

@@ -59,7 +59,7 @@ std::string as_file(std::string_view body) {
 }
 
 diag::Result<Part> parse_part(std::string_view bytes) {
-    const Failure damaged{Code::damaged_part, "is cut, or was changed after it was written"};
+    const Failure damaged{Code::damaged_part, "is truncated, or was changed after it was written"};
     if (!bytes.starts_with(kMagic))
         return Failure{Code::damaged_part,
                        fmt::format("is no part of a result: expected {} at its begin",
@@ -126,10 +126,10 @@ bool Joined::is_complete(diag::Sink& sink) const {
         const auto end =
             missing.begin() + static_cast<std::ptrdiff_t>(std::min(missing.size(), kMostTold));
         sink.report(data::in_file(
-            {Code::incomplete_parts, fmt::format("is one of {}, of which these are missing: {}{}",
-                                                 diag::counted(call_.shards, "shard"),
-                                                 fmt::join(missing.begin(), end, ", "),
-                                                 missing.size() > kMostTold ? ", ..." : "")},
+            {Code::incomplete_parts,
+             fmt::format("is one of {}; missing: {}{}", diag::counted(call_.shards, "shard"),
+                         fmt::join(missing.begin(), end, ", "),
+                         missing.size() > kMostTold ? ", ..." : "")},
             first_));
         return false;
     }

@@ -41,7 +41,7 @@ std::string report(const Suggestions& all) {
     if (!all.ranked.front().auroc) return text;
     text += "\nBest:\n" + lines_of(all.ranked.front());
     if (all.recommended != 0)
-        text += "\nRecommended, for it costs least of those marked *:\n" +
+        text += "\nRecommended, the cheapest of those marked *:\n" +
                 lines_of(all.ranked[all.recommended]);
     return text;
 }
