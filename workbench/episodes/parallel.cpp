@@ -28,18 +28,18 @@ void report(const std::vector<Fault>& faults, std::size_t episodes, diag::Sink& 
         }
         kinds[at->second].push_back(fault.path);
     }
-    std::size_t told = 0;
+    std::size_t reported = 0;
     for (std::size_t i = 0; i < std::min(kinds.size(), kMostKinds); ++i) {
         const std::vector<std::string>& paths = kinds[i];
-        told += paths.size();
+        reported += paths.size();
         auto& error = sink.report(data::in_trace(failures[i], paths.front()));
         if (paths.size() > 1)
             error.note(fmt::format("the same is wrong with {} of {} episodes, also with {}",
                                    paths.size(), episodes,
                                    data::listed({paths.begin() + 1, paths.end()})));
-        if (i + 1 == kMostKinds && told < faults.size())
+        if (i + 1 == kMostKinds && reported < faults.size())
             error.note(fmt::format("of {} episodes, {} more are wrong in other ways", episodes,
-                                   faults.size() - told));
+                                   faults.size() - reported));
     }
 }
 

@@ -172,9 +172,9 @@ std::vector<WorstFrame> worst(const std::vector<std::vector<RankedFrame>>& group
         return a->episode != b->episode ? a->episode < b->episode : a->step < b->step;
     });
     std::vector<WorstFrame> result;
-    std::set<std::size_t> told;
+    std::set<std::size_t> reported;
     for (const RankedFrame* frame : frames)
-        if (result.size() < kShown && told.insert(frame->episode).second)
+        if (result.size() < kShown && reported.insert(frame->episode).second)
             result.push_back({frame->episode, frame->step, frame->positive, frame->ordered});
     return result;
 }

@@ -2,7 +2,7 @@
 // Takes: a formula in negation normal form. Gives: states, each a set of obligations (temporal
 // formulas that must hold from the next position), and guarded transitions. Keeps true: with v'[T]
 // = max over transitions S -> T of min(v[S], guard), starting from v[initial] = +inf, the greatest
-// v[S] over the states that owe nothing strongly is rho(f, 0, i) on every prefix.
+// v[S] over the states without strong obligations is rho(f, 0, i) on every prefix.
 //
 // A formula expands, at a position, into a disjunction of (literals now, obligations next): F f is
 // "f now, or F f next", G f is "f now, and G f next", U and R alike, windows count down.

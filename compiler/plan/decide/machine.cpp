@@ -252,15 +252,15 @@ private:
 
     /// Adds a register for each state that is not always true.
     void keep_registers(bool in_place) {
-        int owing = 0;  // states with obligations so far
+        int pending = 0;  // states with obligations so far
         for (std::size_t q = 0; q < machine_.states.size(); ++q) {
             if (machine_.states[q].always_true) continue;
-            const std::vector<NodeId>& owed = machine_.automaton.states[q];
-            if (!owed.empty()) ++owing;
+            const std::vector<NodeId>& obligations = machine_.automaton.states[q];
+            if (!obligations.empty()) ++pending;
             Member kept{.first = neutral(q != 0),
-                        .suffix = owed.empty() ? "_met" : fmt::format("_owing_{}", owing),
-                        .before = owed.empty() ? "nothing is owed any more" : "owed: ",
-                        .formulas = owed};
+                        .suffix = obligations.empty() ? "_met" : fmt::format("_owing_{}", pending),
+                        .before = obligations.empty() ? "nothing is owed any more" : "owed: ",
+                        .formulas = obligations};
             if (!in_place) code_.locals.push_back(kept.suffix);
             code_.registers.push_back(std::move(kept));
         }

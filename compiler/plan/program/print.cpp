@@ -70,7 +70,7 @@ std::string stream_text(const Plan& plan, const ir::Graph& graph, Slot slot) {
     return text + "\n";
 }
 
-std::string owed(const ir::Graph& graph, const std::vector<NodeId>& obligations) {
+std::string obligations_text(const ir::Graph& graph, const std::vector<NodeId>& obligations) {
     if (obligations.empty()) return "nothing owed";
     std::string text = "owes ";
     for (NodeId id : obligations) text += (text.size() > 5 ? ", " : "") + graph.text(id);
@@ -121,7 +121,8 @@ std::string table_text(const Table& table, char guarded, const ir::Graph& graph)
     std::string text;
     std::uint32_t begin = 0;
     for (std::size_t state = 0; state < table.ends.size(); ++state) {
-        text += fmt::format("       q{}: {}\n", state, owed(graph, table.obligations[state]));
+        text += fmt::format("       q{}: {}\n", state,
+                            obligations_text(graph, table.obligations[state]));
         for (std::uint32_t i = begin; i < table.ends[state]; ++i) {
             const etlmon::Transition t = table.transitions[i];
             text += fmt::format("           from q{}", t.source);
