@@ -26,7 +26,7 @@ struct Allowance {
 };
 
 /// The newest format of files with episodes behind them. In format 1 these are told apart by the
-/// numbers that were stored, in format 2 as the monitor sees them (episodes/seen.hpp).
+/// numbers that were stored, in format 2 as the monitor sees them (episodes/recording.hpp).
 inline constexpr std::uint32_t kFormat = 2;
 
 class Items;

@@ -15,9 +15,9 @@
 #include "plan/parameters.hpp"
 #include "plan/plan.hpp"
 #include "plan/program/dependents.hpp"
-#include "plan/program/samples.hpp"
+#include "plan/program/sample_codes.hpp"
 #include "plan/program/value_type.hpp"
-#include "plan/recorder.hpp"
+#include "plan/recorder_plan.hpp"
 
 namespace etlc::emit {
 

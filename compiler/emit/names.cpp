@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "emit/text/identifiers.hpp"
-#include "plan/program/samples.hpp"
+#include "plan/program/sample_codes.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"

@@ -8,7 +8,7 @@
 
 #include "check/guarantees/guarantees.hpp"
 #include "driver/compile/compile.hpp"
-#include "episodes/ground_truth.hpp"
+#include "episodes/truth.hpp"
 #include "plan/evaluate/evaluator.hpp"
 #include "random.hpp"
 #include "roads.hpp"

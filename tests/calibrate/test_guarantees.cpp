@@ -9,7 +9,7 @@
 #include "calibrate/fit.hpp"
 #include "check/check.hpp"
 #include "check/guarantees/guarantees.hpp"
-#include "episodes/ground_truth.hpp"
+#include "episodes/truth.hpp"
 #include "ir/lower.hpp"
 #include "parse/parse.hpp"
 #include "plan/evaluate/evaluator.hpp"

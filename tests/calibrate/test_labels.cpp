@@ -58,7 +58,7 @@ TEST_F(Labels, MessagesWhereTheyAreLacking) {
     wanted.predicates = {1};
     EXPECT_EQ(
         labels(wanted, csv_episode("x,v\n1,1\n"), 1),
-        "does not say when 'q' holds, nor does a truth in the spec: no column 'truth.q'; there "
+        "does not say when 'q' holds, and the spec has no truth for it: no column 'truth.q'; there "
         "are 'x' and 'v'");
     EXPECT_EQ(labels(wanted, csv_episode("x,v,truth.q\n1,1,1\n"), 1), "y");
 }

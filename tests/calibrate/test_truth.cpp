@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "episodes/exact_distance.hpp"
-#include "episodes/ground_truth.hpp"
 #include "episodes/truth.hpp"
 #include "loading.hpp"
 #include "random.hpp"

@@ -3,11 +3,9 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "fit/algebra/cholesky.hpp"
 #include "fit/algebra/clusters.hpp"
-#include "fit/algebra/eigenvectors.hpp"
+#include "fit/algebra/dense.hpp"
 #include "fit/algebra/moments.hpp"
-#include "fit/algebra/products.hpp"
 #include "fit/blocks.hpp"
 
 namespace etlc::fit {

@@ -12,8 +12,8 @@
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
+#include "episodes/data_warnings.hpp"
 #include "episodes/folds.hpp"
-#include "episodes/unmarked.hpp"
 
 namespace etlc::calibrate {
 

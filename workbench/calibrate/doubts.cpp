@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "check/numbers/decimal.hpp"
-#include "episodes/label_doubts.hpp"
+#include "episodes/data_warnings.hpp"
 #include "episodes/ranking/auroc.hpp"
 
 namespace etlc::calibrate {

@@ -8,7 +8,7 @@
 
 #include "calibrate/scores.hpp"
 #include "data/spill/sorted.hpp"
-#include "episodes/ranking/frames_by_score.hpp"
+#include "episodes/ranking/auroc.hpp"
 
 namespace etlc::calibrate {
 

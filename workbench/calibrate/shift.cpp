@@ -14,9 +14,9 @@
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
+#include "episodes/data_warnings.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
-#include "episodes/unmarked.hpp"
 #include "pipeline/compile.hpp"
 
 namespace etlc::calibrate {

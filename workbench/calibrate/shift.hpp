@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "calibrate/calibrate.hpp"
-#include "episodes/ground_truth.hpp"
 #include "episodes/recording.hpp"
+#include "episodes/truth.hpp"
 #include "plan/plan.hpp"
 
 namespace etlc::calibrate {

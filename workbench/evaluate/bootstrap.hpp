@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "episodes/ranking/weights.hpp"
+#include "episodes/ranking/auroc.hpp"
 
 namespace etlc::evaluate {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "episodes/ranking/weights.hpp"
+#include "episodes/ranking/auroc.hpp"
 #include "episodes/truth.hpp"
 
 namespace etlc::evaluate {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "episodes/label_doubts.hpp"
+#include "episodes/data_warnings.hpp"
 #include "evaluate/evaluate.hpp"
 
 namespace etlc::evaluate {

@@ -8,8 +8,7 @@
 
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
-#include "episodes/admission/leak_evidence.hpp"
-#include "episodes/unmarked.hpp"
+#include "episodes/data_warnings.hpp"
 
 namespace etlc::evaluate {
 

@@ -16,7 +16,7 @@
 
 #include "data/spill/spool.hpp"
 #include "diag/diag.hpp"
-#include "episodes/ranking/frames_by_score.hpp"
+#include "episodes/ranking/auroc.hpp"
 #include "episodes/shared/sharing.hpp"
 #include "evaluate/bootstrap.hpp"
 #include "evaluate/by_episode.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "episodes/ground_truth.hpp"
+#include "episodes/truth.hpp"
 
 namespace etlc::evaluate {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "episodes/admission/leak_evidence.hpp"
+#include "episodes/admission/admission.hpp"
 #include "episodes/admission/overlaps.hpp"
 #include "episodes/ranking/auroc.hpp"
 #include "evaluate/evaluate.hpp"

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "episodes/replay.hpp"
-#include "fit/algebra/eigenvectors.hpp"
+#include "fit/algebra/dense.hpp"
 #include "plan/plan.hpp"
 
 namespace etlc::report {

@@ -12,7 +12,6 @@
 
 #include "episodes/replay.hpp"
 #include "evaluate/subject.hpp"
-#include "explain/history.hpp"
 #include "explain/report.hpp"
 #include "ir/lower.hpp"
 #include "report/plane.hpp"

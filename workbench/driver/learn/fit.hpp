@@ -8,7 +8,7 @@
 
 #include "check/check.hpp"
 #include "diag/diag.hpp"
-#include "fit/request.hpp"
+#include "fit/readings.hpp"
 #include "fitted/fitted.hpp"
 #include "source/source.hpp"
 

@@ -1,4 +1,4 @@
-#include "plan/program/samples.hpp"
+#include "plan/program/sample_codes.hpp"
 
 #include <algorithm>
 
@@ -25,7 +25,7 @@ std::uint64_t codes_of(const std::vector<Samples::Place>& places) {
     return codes;
 }
 
-/// Those of the largest sets are not told apart where there are too many.
+/// Drops the rows of the largest sets where there are too many codes.
 void leave_out_rows(std::vector<Samples::Place>& places) {
     const auto most = [](const Samples::Place& a, const Samples::Place& b) {
         return a.rows < b.rows;
@@ -63,7 +63,7 @@ Samples samples(const Plan& plan) {
 }
 
 std::uint64_t bytes_of(const Samples& samples, std::size_t monitors) {
-    constexpr std::uint64_t kStep = 4;  // which one measure() is at
+    constexpr std::uint64_t kStep = 4;  // the current one of measure()
     return samples.places.empty() ? 0 : kStep + monitors * sizeof(etlmon::SourcedKey);
 }
 

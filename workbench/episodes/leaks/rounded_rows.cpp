@@ -1,4 +1,4 @@
-#include "episodes/leaks/near_rows.hpp"
+#include "episodes/leaks/rounded_rows.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -15,15 +15,15 @@ namespace {
 using check::InputType;
 using check::Projection;
 
-constexpr double kUnit = 0x1p-24;  ///< of one rounding to float32
-/// A sum of D rounded terms is off by random roundings of its partial sums, whose length grows as
-/// sqrt(D): so many times that is not exceeded, in any order of additions.
+constexpr double kUnit = 0x1p-24;  ///< relative error of one rounding to float32
+/// A sum of D rounded terms is off by random roundings of its partial sums, whose norm grows as
+/// sqrt(D); it stays within this factor of that, in any order of additions.
 constexpr double kDeviations = 4;
-/// So many times the length of as many halves of a grid's steps is not exceeded by the sum of
-/// roundings to that grid: 4 standard deviations.
+/// The sum of roundings to a grid stays within this factor times the norm of as many half steps of
+/// the grid: 4 standard deviations.
 constexpr double kOfUniform = 2.3;
-/// What is `wide`: so many bounds about a row, or as much of the point's largest element if that is
-/// more, for what is recorded is not finer.
+/// `wide` is this many bounds about a row, or this share of the point's largest element if that is
+/// more, because recordings are not finer.
 constexpr double kWide = 8;
 constexpr double kWideOfSize = 0x1p-9;
 
@@ -38,13 +38,6 @@ bool is_half(const float* v, std::size_t n) {
     });
 }
 
-double length(const float* v, std::size_t n) {
-    double square = 0;
-    for (std::size_t i = 0; i < n; ++i)
-        square += static_cast<double>(v[i]) * static_cast<double>(v[i]);
-    return std::sqrt(square);
-}
-
 double largest(const std::vector<double>& all) {
     return all.empty() ? 0 : *std::max_element(all.begin(), all.end());
 }
@@ -57,7 +50,14 @@ double largest_size(const std::vector<float>& all) {
 
 }  // namespace
 
-NearRows::NearRows(const check::Model& model, Index distance, Index point, Index target)
+double length(const float* v, std::size_t n) {
+    double square = 0;
+    for (std::size_t i = 0; i < n; ++i)
+        square += static_cast<double>(v[i]) * static_cast<double>(v[i]);
+    return std::sqrt(square);
+}
+
+RoundedRows::RoundedRows(const check::Model& model, Index distance, Index point, Index target)
     : model_(model), point_(point), target_(target), norms_(model.projections.size()) {
     const check::Distance& of = model.distances[distance];
     const check::Target& rows = model.targets[target];
@@ -92,9 +92,8 @@ NearRows::NearRows(const check::Model& model, Index distance, Index point, Index
     if (rows.source != check::kNone) add_moves(rows);
 }
 
-/// How far rows are from what they were before they were stored and then projected: of a row the
-/// most of its elements.
-void NearRows::add_moves(const check::Target& rows) {
+/// Computes how far storing and then projecting moved each row: the maximum over its elements.
+void RoundedRows::add_moves(const check::Target& rows) {
     const check::Target& declared = model_.targets[rows.source];
     Index from = declared.space;
     if (from == check::kNone)
@@ -110,13 +109,13 @@ void NearRows::add_moves(const check::Target& rows) {
     }
 }
 
-bool NearRows::may_be_near(const std::vector<float>& sample) const {
+bool RoundedRows::may_be_near(const std::vector<float>& sample) const {
     constexpr std::size_t kProbes = 4;
     const check::Input& input = model_.inputs[model_.points[point_].inputs[0]];
     const std::size_t n = sample.size();
     const double per_length = by_direction_ ? 1 / length(sample.data(), n) : 1;
     if (!std::isfinite(per_length)) return true;
-    std::uint32_t largest = 0;  // in bits, whose order is that of sizes
+    std::uint32_t largest = 0;  // as bits, which sort as magnitudes do
     for (const float x : sample)
         largest = std::max(largest, std::bit_cast<std::uint32_t>(x) & 0x7fff'ffffU);
     const auto size = static_cast<double>(std::bit_cast<float>(largest));
@@ -129,7 +128,7 @@ bool NearRows::may_be_near(const std::vector<float>& sample) const {
         for (std::size_t i = 0; near && i < std::min(n, kProbes); ++i) {
             const auto x = static_cast<double>(sample[i]);
             const auto y = static_cast<double>(g[i]);
-            // No less than what add_row() allows.
+            // At least what add_row() allows.
             const double bound = (half_rounding(x) + grain) * per_length +
                                  half_rounding(y) * per_row + kDeviations * kUnit;
             near = std::abs(x * per_length - y * per_row) <= std::max(kWide * bound, least);
@@ -139,8 +138,9 @@ bool NearRows::may_be_near(const std::vector<float>& sample) const {
     return false;
 }
 
-/// What was recorded, and how far from what it was before it was stored.
-NearRows::Rounded NearRows::taken(Index index, const std::vector<plan::Sample>& samples) const {
+/// Returns the recorded point, and how far storing may have moved it.
+RoundedRows::Rounded RoundedRows::taken(Index index,
+                                        const std::vector<plan::Sample>& samples) const {
     const check::Point& point = model_.points[index];
     const check::Input& input = model_.inputs[point.inputs[0]];
     Rounded result;
@@ -163,7 +163,7 @@ NearRows::Rounded NearRows::taken(Index index, const std::vector<plan::Sample>& 
     return result;
 }
 
-NearRows::Rounded NearRows::projected(Index index, Index from, const Rounded& at) const {
+RoundedRows::Rounded RoundedRows::projected(Index index, Index from, const Rounded& at) const {
     if (index == from) return at;
     const check::Point& point = model_.points[index];
     const Rounded inner = projected(point.inner, from, at);
@@ -182,10 +182,10 @@ NearRows::Rounded NearRows::projected(Index index, Index from, const Rounded& at
     return result;
 }
 
-/// What the errors of a point come to behind the map. Roundings of samples have nothing to do with
-/// each other, those of sums have.
-std::vector<double> NearRows::carried(const Rounded& inner, const Projection& map,
-                                      const std::vector<RowNorms>& norms, Index from) const {
+/// Carries the errors of a point through the map. Roundings of samples are independent, those of
+/// sums are not.
+std::vector<double> RoundedRows::carried(const Rounded& inner, const Projection& map,
+                                         const std::vector<RowNorms>& norms, Index from) const {
     std::vector<double> moved(map.rows);
     const double most = largest(inner.error);
     if (most == 0) return moved;
@@ -204,8 +204,8 @@ std::vector<double> NearRows::carried(const Rounded& inner, const Projection& ma
     return moved;
 }
 
-/// Of elements of small weight: what the others' roundings outweigh.
-void NearRows::weigh(Rounded& at) const {
+/// Widens the errors of elements of small weight to what the others' roundings outweigh.
+void RoundedRows::weigh(Rounded& at) const {
     double outweighed = 0;
     for (std::size_t i = 0; i < weights_.size(); ++i) {
         const double x = std::abs(static_cast<double>(at.elements[i]));
@@ -216,7 +216,7 @@ void NearRows::weigh(Rounded& at) const {
         at.error[i] += outweighed / std::sqrt(static_cast<double>(weights_[i]));
 }
 
-NearRows::Found NearRows::find(const std::vector<plan::Sample>& samples) const {
+RoundedRows::Found RoundedRows::find(const std::vector<plan::Sample>& samples) const {
     const check::Point& point = model_.points[point_];
     const bool is_plain = !point.is_projected() && point.inputs.size() == 1 && weights_.empty();
     if (is_plain && !may_be_near(samples[point.inputs[0]].values)) return {};
@@ -243,8 +243,8 @@ NearRows::Found NearRows::find(const std::vector<plan::Sample>& samples) const {
     return found;
 }
 
-void NearRows::add_row(const Rounded& at, double size, std::size_t largest, std::uint32_t row,
-                       Found& found) const {
+void RoundedRows::add_row(const Rounded& at, double size, std::size_t largest, std::uint32_t row,
+                          Found& found) const {
     const std::size_t n = at.elements.size();
     const float* g = model_.targets[target_].values.data() + row * n;
     const double per_length = by_direction_ ? per_length_[row] : 1;
@@ -264,8 +264,8 @@ void NearRows::add_row(const Rounded& at, double size, std::size_t largest, std:
         if (!(apart <= wide)) return;
         within = within && apart <= bound;
         close = close && apart <= 2 * bound;
-        // Elements say nothing that are zero, as where nothing is seen, or that are lost in their
-        // bounds; of a direction one follows from the others.
+        // Elements that are zero, as where nothing is seen, or lost in their bounds tell nothing;
+        // of a direction one follows from the others.
         const bool tells = (y != 0 || x != 0) && kWide * bound < size;
         if (!tells || (by_direction_ && i == largest)) continue;
         evenly_close /= 2;

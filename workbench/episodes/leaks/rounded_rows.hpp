@@ -1,10 +1,8 @@
-// Rows of a target set that a frame may have been before it was rounded: projected in another
-// order, stored as float16 or float32, scaled to another length.
-// Takes: a point of the model, rows in its space, and a frame after the other. Gives: the row that
-// the frame is within rounding of, and how many frames as near as this one's neighbourhood would be
-// so by chance. Keeps true: the bounds are above what rounding does, so what was taken from a frame
-// is found; whether it was taken, one frame cannot tell where the point has few dimensions, and
-// LeakEvidence (episodes/admission/leak_evidence.hpp) decides from all.
+// Finds rows of a target set that a frame may have been before rounding: projected in another
+// order, stored as float16 or float32, or scaled to another length. Also counts how many frames
+// near a row would be within rounding by chance. The bounds exceed what rounding does, so every row
+// taken from a frame is found; whether it was taken, one frame cannot tell in few dimensions, and
+// LeakEvidence (episodes/admission/admission.hpp) decides from all.
 #pragma once
 
 #include <cstdint>
@@ -18,18 +16,21 @@ namespace etlc::episodes {
 
 using check::Index;
 
-class NearRows {
-public:
-    /// `distance`: whose point or target these are, for its metric where it measures from `point`.
-    /// `target`: its rows are in the space of `point`. The model outlives it.
-    NearRows(const check::Model& model, Index distance, Index point, Index target);
+/// Returns |v| in double.
+double length(const float* v, std::size_t n);
 
-    bool same_as(const NearRows& other) const {
+class RoundedRows {
+public:
+    /// `distance`: one whose point or target these are; its metric counts where it measures from
+    /// `point`. `target`: its rows are in the space of `point`. The model outlives this.
+    RoundedRows(const check::Model& model, Index distance, Index point, Index target);
+
+    bool same_as(const RoundedRows& other) const {
         return point_ == other.point_ && target_ == other.target_ &&
                by_direction_ == other.by_direction_ && weights_ == other.weights_;
     }
 
-    /// Frames about rows, and how many of them would be within rounding if they lay evenly there.
+    /// Frames around rows, and how many would be within rounding if they were evenly spread there.
     struct Around {
         std::uint64_t frames = 0;
         double chance = 0;
@@ -44,7 +45,7 @@ public:
         Around close;                      ///< within twice as much
         Around wide;                       ///< within many times as much
     };
-    /// `samples`: of this frame, by index of the model's inputs.
+    /// Compares a frame with all rows. `samples`: by index of the model's inputs.
     Found find(const std::vector<plan::Sample>& samples) const;
 
 private:
@@ -53,22 +54,22 @@ private:
         std::vector<float> elements;  ///< empty: unknown
         std::vector<double> error;
     };
-    /// What is known of a row of a projection's matrix.
+    /// Norms of a row of a projection's matrix.
     struct RowNorms {
-        double sum = 0;     ///< of |a|
-        double length = 0;  ///< of a
-        double offset = 0;  ///< the size of a (-m)
+        double sum = 0;     ///< sum of |a|
+        double length = 0;  ///< length of a
+        double offset = 0;  ///< magnitude of a (-m)
     };
 
     void add_moves(const check::Target& rows);
-    /// False where the first elements of a sample tell that it is near no row, as they mostly do.
+    /// Returns false where the first elements exclude all rows, as they mostly do.
     bool may_be_near(const std::vector<float>& sample) const;
-    /// `at`: what `from` is, through which the point goes.
+    /// Projects `at`, the value of the point `from`, to `point`.
     Rounded projected(Index point, Index from, const Rounded& at) const;
     Rounded taken(Index point, const std::vector<plan::Sample>& samples) const;
     std::vector<double> carried(const Rounded& inner, const check::Projection& map,
                                 const std::vector<RowNorms>& norms, Index from) const;
-    /// Adds what the weights make of no account.
+    /// Widens errors that the weights make negligible.
     void weigh(Rounded& at) const;
     void add_row(const Rounded& at, double size, std::size_t largest, std::uint32_t row,
                  Found& found) const;
@@ -77,10 +78,10 @@ private:
     Index point_;
     Index target_;
     bool by_direction_ = false;
-    std::vector<float> weights_;      ///< diagonal ones
+    std::vector<float> weights_;      ///< diagonal weights
     std::vector<double> per_length_;  ///< by direction: 1 / |row|
-    std::vector<bool> is_half_;       ///< per row: its numbers are all of float16
-    std::vector<double> moved_;       ///< per row that was projected, what it was rounded before
+    std::vector<bool> is_half_;       ///< per row: all numbers are float16
+    std::vector<double> moved_;       ///< per projected row, its rounding before the projection
     std::vector<std::vector<RowNorms>> norms_;  ///< per projection of the model
 };
 

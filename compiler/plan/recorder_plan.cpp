@@ -1,4 +1,4 @@
-#include "plan/recorder.hpp"
+#include "plan/recorder_plan.hpp"
 
 #include <fmt/format.h>
 
@@ -13,14 +13,14 @@ namespace etlc::plan {
 
 namespace {
 
-/// Of a step, and of writing an incident, estimated.
+/// Estimated code of a step and of writing an incident.
 constexpr std::uint64_t kCode = 2500;
 
-/// Farther than any state goes.
+/// More than any state can hold.
 constexpr double kMostSteps = 1e9;
 
-/// At least that long, in steps. What is a whole number of steps but for the rounding of a double
-/// stays that.
+/// Converts a length to steps, rounded up; a whole number of steps stays whole in spite of rounding
+/// in double.
 std::optional<std::uint32_t> steps_of(const Length& length, const check::Model& model,
                                       diag::Sink& sink) {
     double steps = length.number;
@@ -39,7 +39,7 @@ std::optional<std::uint32_t> steps_of(const Length& length, const check::Model& 
     return static_cast<std::uint32_t>(std::min(steps, kMostSteps));
 }
 
-/// A line for each column: what the hash is of.
+/// Returns the text that is hashed, a line per column.
 std::string columns_text(const Plan& plan) {
     const check::Model& model = *plan.model;
     const RecorderColumns columns = recorder_columns(plan);
