@@ -1,6 +1,6 @@
 // The file of fitted things: it reads back to the same bits, is an archive that numpy reads, and
 // every fault has its key, what is there and what should be.
-#include "fitted/fitted.hpp"
+#include "artifacts/fitted.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -7,8 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "artifacts/file.hpp"
+#include "artifacts/thresholds.hpp"
 #include "npy_bytes.hpp"
-#include "thresholds/thresholds.hpp"
 
 namespace etlc::thresholds {
 namespace {
@@ -334,7 +335,7 @@ TEST(Thresholds, CutAnywhere) {
 
 TEST(Thresholds, MoreValuesThanAreRead) {
     std::string json = "[0";
-    for (std::uint64_t i = 0; i < kMaxValues; ++i) json += ",0";
+    for (std::uint64_t i = 0; i < artifacts::kMaxValues; ++i) json += ",0";
     const auto file = parse(json + "]", "x");
     ASSERT_FALSE(file);
     EXPECT_EQ(file.failure().code, Code::malformed_thresholds);

@@ -5,9 +5,10 @@
 
 #include <fstream>
 
+#include "artifacts/file.hpp"
+#include "artifacts/thresholds.hpp"
 #include "data/files/hash.hpp"
 #include "npy_bytes.hpp"
-#include "thresholds/thresholds.hpp"
 
 namespace etlc::thresholds {
 namespace {
@@ -138,7 +139,7 @@ TEST(ThresholdsOfEpisodes, LargeFilesThatAreWrittenAreRead) {
 }
 
 TEST(ThresholdsOfEpisodes, WhatStaysInMemoryIsLimited) {
-    const auto large = parse(std::string(kMaxKeptBytes + (1U << 17U), ' '), "x");
+    const auto large = parse(std::string(artifacts::kMaxKeptBytes + (1U << 17U), ' '), "x");
     ASSERT_FALSE(large);
     EXPECT_EQ(large.failure().code, Code::unreadable_thresholds);
     EXPECT_EQ(large.failure().message,

@@ -14,7 +14,7 @@
 #include "diag/diag.hpp"
 #include "embed/encoder.hpp"
 #include "embed/recordings.hpp"
-#include "embedded/embedded.hpp"
+#include "artifacts/embedded.hpp"
 
 namespace etlc::embed {
 

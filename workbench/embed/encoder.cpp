@@ -9,7 +9,7 @@
 
 #include "data/frames/protocol.hpp"
 #include "data/text/quote.hpp"
-#include "embedded/embedded.hpp"
+#include "artifacts/embedded.hpp"
 
 namespace etlc::embed {
 

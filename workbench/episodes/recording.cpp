@@ -8,7 +8,7 @@
 #include "check/encoders/marks.hpp"
 #include "data/datasets/trace.hpp"
 #include "data/text/quote.hpp"
-#include "embedded/embedded.hpp"
+#include "artifacts/embedded.hpp"
 #include "episodes/unmarked.hpp"
 
 namespace etlc::episodes {

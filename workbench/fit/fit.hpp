@@ -14,7 +14,7 @@
 #include "fit/request.hpp"
 #include "fit/separation.hpp"
 #include "fit/solve.hpp"
-#include "fitted/fitted.hpp"
+#include "artifacts/fitted.hpp"
 
 namespace etlc::fit {
 

@@ -20,8 +20,8 @@
 #include "check/context/scope.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
-#include "embedded/embedded.hpp"
-#include "fitted/fitted.hpp"
+#include "artifacts/embedded.hpp"
+#include "artifacts/fitted.hpp"
 
 namespace etlc::check {
 

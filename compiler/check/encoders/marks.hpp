@@ -8,7 +8,7 @@
 
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
-#include "embedded/embedded.hpp"
+#include "artifacts/embedded.hpp"
 
 namespace etlc::check {
 

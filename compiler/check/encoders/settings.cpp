@@ -10,7 +10,7 @@
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/text/quote.hpp"
-#include "thresholds/json.hpp"
+#include "artifacts/json.hpp"
 
 namespace etlc::check {
 
@@ -18,7 +18,7 @@ namespace {
 
 using diag::Code;
 using diag::Failure;
-using thresholds::Json;
+using artifacts::Json;
 
 constexpr std::uint64_t kMaxExtent = 1U << 14U;  ///< of an image, rows or columns
 constexpr std::uint64_t kMaxSettingsBytes = 1U << 20U;
@@ -115,7 +115,7 @@ std::optional<Failure> take_settings_file(Encoder& encoder, const std::string& m
     const auto text = data::read_file(path, kMaxSettingsBytes, Code::encoder_form);
     if (!text) return text.failure();
     const auto root =
-        thresholds::parse_json(*text, kMaxSettingsValues, Code::encoder_form, Code::encoder_form);
+        artifacts::parse_json(*text, kMaxSettingsValues, Code::encoder_form);
     if (!root) return root.failure();
     if (root->kind != Json::Kind::object)
         return wrong(fmt::format("the file is {}, expected an object with {}", describe(*root),

@@ -15,7 +15,7 @@
 #include "check/numbers/decimal.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "thresholds/thresholds.hpp"
+#include "artifacts/thresholds.hpp"
 
 namespace etlc::check {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "check/context/context.hpp"
-#include "fitted/fitted.hpp"
+#include "artifacts/fitted.hpp"
 
 namespace etlc::check {
 

@@ -12,8 +12,8 @@
 #include "calibrate/calibrate.hpp"
 #include "diag/diag.hpp"
 #include "driver/compile/compile.hpp"
-#include "fitted/fitted.hpp"
-#include "thresholds/thresholds.hpp"
+#include "artifacts/fitted.hpp"
+#include "artifacts/thresholds.hpp"
 
 namespace etlc::driver {
 

@@ -14,7 +14,7 @@
 #include "driver/compile/compile.hpp"
 #include "driver/fleet/fleet.hpp"
 #include "evaluate/evaluate.hpp"
-#include "thresholds/thresholds.hpp"
+#include "artifacts/thresholds.hpp"
 
 namespace etlc::driver {
 

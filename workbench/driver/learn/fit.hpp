@@ -9,7 +9,7 @@
 #include "check/check.hpp"
 #include "diag/diag.hpp"
 #include "fit/request.hpp"
-#include "fitted/fitted.hpp"
+#include "artifacts/fitted.hpp"
 #include "source/source.hpp"
 
 namespace etlc::driver {

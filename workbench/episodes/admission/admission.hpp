@@ -14,8 +14,8 @@
 
 #include "diag/diag.hpp"
 #include "episodes/recording.hpp"
-#include "fitted/fitted.hpp"
-#include "thresholds/thresholds.hpp"
+#include "artifacts/fitted.hpp"
+#include "artifacts/thresholds.hpp"
 
 namespace etlc::episodes {
 

@@ -1,25 +1,25 @@
-#include "thresholds/json.hpp"
+#include "artifacts/json.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <unordered_set>
 
 #include "data/text/quote.hpp"
-#include "source/source.hpp"
 
-namespace etlc::thresholds {
+namespace etlc::artifacts {
 namespace {
 
 using diag::Code;
 using diag::Failure;
 
+constexpr std::size_t kPiece = std::size_t{1} << 16U;
+constexpr std::size_t kBehind = 4;    ///< bytes of the previous piece that are kept
 constexpr int kNumberOverflow = 406;  ///< nlohmann's id of this error
 
-/// The bytes of a text, for nlohmann's parser.
+/// An iterator over the bytes of a text, for nlohmann's parser.
 class Bytes {
 public:
     using iterator_category = std::input_iterator_tag;
@@ -34,7 +34,7 @@ public:
         text_->advance();
         return *this;
     }
-    /// With the end.
+    /// Compares with the end.
     bool operator==(const Bytes&) const { return text_->at_end(); }
     bool operator!=(const Bytes& end) const { return !(*this == end); }
 
@@ -42,7 +42,7 @@ private:
     Text* text_;
 };
 
-/// Builds the tree from nlohmann's events. Returning false stops the parser.
+/// Builds the tree from nlohmann's events.
 class Builder {
 public:
     Builder(Text& text, std::uint64_t max_values, Code malformed, Code invalid,
@@ -53,7 +53,7 @@ public:
           invalid_(invalid),
           takers_(takers) {}
 
-    bool null() { return add({}) != nullptr && complete(); }
+    bool null() { return leaf(Json::Kind::null, ""); }
     bool boolean(bool value) { return leaf(Json::Kind::boolean, value ? "true" : "false"); }
     bool number_integer(std::int64_t value) {
         return leaf(Json::Kind::number, std::to_string(value));
@@ -74,16 +74,14 @@ public:
 
     bool key(std::string& name) {
         Open& object = open_.back();
-        if (object.taker.item) {
-            failure_ = object.taker.key(name);
-        } else if (object.seen.insert(name).second) {
+        if (object.taker.item)
+            object.taker.key(name);
+        else if (object.seen.insert(name).second)
             object.json->keys.push_back(name);
-        } else {
-            failure_ = Failure{
-                invalid_, fmt::format("key {} stands twice in one object", data::in_quotes(name))};
-        }
+        else
+            throw Fault{stands_twice(invalid_, name)};
         path_.back() = std::move(name);
-        return !failure_;
+        return true;
     }
 
     bool parse_error(std::size_t position, const std::string&,
@@ -96,20 +94,18 @@ public:
             const std::string found = text_.character(at);
             what = found.empty() ? "its end" : data::in_quotes(found);
         }
-        failure_ = Failure{malformed_, fmt::format("is no JSON: unexpected {}", what), place.line,
-                           place.column};
-        return false;
+        throw Fault{
+            {malformed_, fmt::format("is no JSON: unexpected {}", what), place.line, place.column}};
     }
 
-    std::optional<Failure> failure() const { return failure_; }
     Json take() { return std::move(root_); }
 
 private:
-    /// An array or object that has begun.
+    /// An array or object whose end has not been read.
     struct Open {
         Json* json;
         ItemTaker taker;
-        std::uint64_t values;                  ///< up to it, itself included
+        std::uint64_t values;                  ///< number of values up to and including it
         std::size_t taken = 0;                 ///< items
         std::unordered_set<std::string> seen;  ///< keys
     };
@@ -118,19 +114,16 @@ private:
         Json json;
         json.kind = kind;
         json.text = std::move(text);
-        return add(std::move(json)) != nullptr && complete();
+        add(std::move(json));
+        return complete();
     }
 
     bool open(Json::Kind kind) {
-        if (open_.size() == kMaxJsonDepth) {
-            failure_ =
-                Failure{malformed_, fmt::format("nests deeper than {} levels", kMaxJsonDepth)};
-            return false;
-        }
+        if (open_.size() == kMaxJsonDepth)
+            throw Fault{{malformed_, fmt::format("nests deeper than {} levels", kMaxJsonDepth)}};
         Json json;
         json.kind = kind;
         Json* added = add(std::move(json));
-        if (added == nullptr) return false;
         ItemTaker taker = takers_ ? takers_(path_, kind) : ItemTaker{};
         if (taker.item) text_.pass(true);
         open_.push_back({added, std::move(taker), values_, 0, {}});
@@ -144,27 +137,23 @@ private:
         return complete();
     }
 
-    /// A value that was added last.
+    /// Passes a complete value on if it is an item.
     bool complete() {
         if (open_.empty() || !open_.back().taker.item) return true;
         Open& in = open_.back();
         const Json item = std::move(in.json->items.back());
         in.json->items.pop_back();
         values_ = in.values;
-        Taken taken = in.taker.item(in.taken++, path_.back(), item);
-        text_.pass(taken.keeps);
-        failure_ = std::move(taken.failure);
-        return !failure_;
+        text_.pass(in.taker.item(in.taken++, path_.back(), item));
+        return true;
     }
 
-    /// Pointers to open arrays and objects stay good: only the innermost one grows.
+    /// Adds a value to the innermost array or object. Pointers to the others stay valid.
     Json* add(Json json) {
-        if (values_ == max_values_) {
-            failure_ = Failure{
-                malformed_,
-                fmt::format("holds more than {} values, the most that are read", max_values_)};
-            return nullptr;
-        }
+        if (values_ == max_values_)
+            throw Fault{
+                {malformed_,
+                 fmt::format("holds more than {} values, the most that are read", max_values_)}};
         ++values_;
         if (open_.empty()) {
             root_ = std::move(json);
@@ -183,31 +172,70 @@ private:
     std::uint64_t values_ = 0;
     Json root_;
     std::vector<Open> open_;
-    std::vector<std::string> path_;  ///< of each that is open, the key of its last value
-    std::optional<Failure> failure_;
+    std::vector<std::string> path_;  ///< for each open value the key of its last member
 };
 
 }  // namespace
+
+bool Text::next_piece() {
+    if (counted_ + read() - passed_ > most_)
+        throw Unreadable{
+            {{unreadable_,
+              fmt::format("is larger than {} bytes without its recordings, the most that is read",
+                          most_)}}};
+    const std::size_t past = piece_.size() - std::min(piece_.size(), kBehind);
+    begin_ += past;
+    piece_.erase(0, past);
+    at_ = piece_.size();
+    return extend();
+}
+
+bool Text::extend() {
+    const std::size_t before = piece_.size();
+    piece_.resize(before + kPiece);
+    const auto got = source_.read(piece_.data() + before, kPiece);
+    if (!got) {
+        diag::Failure failure = got.failure();
+        if (failure.code == diag::Code::unreadable_data_file) failure.code = unreadable_;
+        throw Unreadable{{failure}};
+    }
+    piece_.resize(before + *got);
+    return piece_.size() > before;
+}
+
+std::string Text::character(std::uint64_t at) {
+    const auto first = static_cast<std::size_t>(at - begin_);
+    if (first + kBehind > piece_.size()) extend();
+    if (first >= piece_.size()) return {};
+    std::size_t end = first + 1;
+    while (end < piece_.size() && end < first + 4 && continues(piece_[end])) ++end;
+    return piece_.substr(first, end - first);
+}
 
 const Json* Json::find(const std::string& key) const {
     const auto found = std::find(keys.begin(), keys.end(), key);
     return found == keys.end() ? nullptr : &items[static_cast<std::size_t>(found - keys.begin())];
 }
 
-diag::Result<Json> parse_json(Text& text, std::uint64_t max_values, Code malformed, Code invalid,
-                              const ItemTakers& takers) {
+Json parse_json(Text& text, std::uint64_t max_values, Code malformed, Code invalid,
+                const ItemTakers& takers) {
     Builder builder(text, max_values, malformed, invalid, takers);
     nlohmann::json::sax_parse(Bytes(&text), Bytes(), &builder);
-    if (text.failure()) return *text.failure();
-    if (auto failure = builder.failure()) return *failure;
     return builder.take();
 }
 
-diag::Result<Json> parse_json(const std::string& text, std::uint64_t max_values, Code malformed,
-                              Code invalid, const ItemTakers& takers) {
+diag::Result<Json> parse_json(const std::string& text, std::uint64_t max_values, Code code) {
     const auto bytes = data::from_memory(text);
-    Text all(*bytes, text.size(), malformed);
-    return parse_json(all, max_values, malformed, invalid, takers);
+    Text all(*bytes, text.size(), code);
+    try {
+        return parse_json(all, max_values, code, code);
+    } catch (const Fault& fault) {
+        return fault.failure;
+    }
+}
+
+Failure stands_twice(Code code, const std::string& key) {
+    return {code, fmt::format("key {} stands twice in one object", data::in_quotes(key))};
 }
 
 std::string describe(const Json& json) {
@@ -222,4 +250,4 @@ std::string describe(const Json& json) {
     return "nothing";
 }
 
-}  // namespace etlc::thresholds
+}  // namespace etlc::artifacts
