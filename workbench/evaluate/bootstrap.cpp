@@ -12,7 +12,7 @@ constexpr std::uint64_t kSeed = 2026;
 constexpr double kLow = 0.025;
 constexpr double kHigh = 0.975;
 
-/// x % n of one n, as Random::below has it, without a division each: draws are many.
+/// Computes x % n for a fixed n without a division, with the result of Random::below.
 class Remainder {
 public:
     explicit Remainder(std::uint64_t n) : n_(n), inverse_(UINT64_MAX / n) {}
@@ -30,8 +30,8 @@ private:
     std::uint64_t inverse_;
 };
 
-/// How many resamples of so many episodes are made at a time. The more, the
-/// less often frames are read; at least eight, so that sums keep a processor busy.
+/// Returns the number of resamples in a batch. Larger batches read frames less often; eight are
+/// enough to keep a processor busy with sums.
 std::size_t batch_of(std::size_t episodes) {
     constexpr std::size_t kMemory = std::size_t{4} << 20U;
     constexpr std::size_t kLeast = 8;
@@ -39,7 +39,7 @@ std::size_t batch_of(std::size_t episodes) {
                                    kResamples);
 }
 
-/// The next draws. One resample after the other, for the draws are all over its episodes.
+/// Draws the next resamples, one after the other: the draws of each are spread over all episodes.
 Weights draw(episodes::Random& random, std::size_t episodes, std::size_t resamples) {
     const Remainder remainder(episodes);
     std::vector<Weights::Weight> by_resample(episodes * resamples);
@@ -81,13 +81,14 @@ Figure Bootstrap::figure(
 }
 
 std::optional<Interval> percentile_interval(const std::vector<std::optional<double>>& values) {
-    std::vector<double> there;
+    std::vector<double> defined;
     for (const auto& value : values)
-        if (value) there.push_back(*value);
-    if (2 * there.size() < values.size() || there.empty()) return std::nullopt;
-    std::sort(there.begin(), there.end());
+        if (value) defined.push_back(*value);
+    if (2 * defined.size() < values.size() || defined.empty()) return std::nullopt;
+    std::sort(defined.begin(), defined.end());
     const auto quantile = [&](double share) {
-        return there[static_cast<std::size_t>(share * static_cast<double>(there.size() - 1) + 0.5)];
+        const double last = static_cast<double>(defined.size() - 1);
+        return defined[static_cast<std::size_t>(share * last + 0.5)];
     };
     return Interval{quantile(kLow), quantile(kHigh)};
 }

@@ -1,8 +1,7 @@
-// Intervals by resampling episodes: frames of one episode are not independent, episodes are.
-// Takes: the number of episodes, and a statistic of how often each counts. Gives: the 2.5 %
-// and 97.5 % quantiles over kResamples draws with replacement (Efron's percentile interval). Keeps
-// true: the draws come from a fixed seed, so that the same data give the same interval, on every
-// machine and with any number of threads; memory is that of as many draws as fit 8 MB.
+// Confidence intervals from resampled episodes. Frames of one episode are not independent; episodes
+// are. Intervals are Efron's percentile intervals: the 2.5 % and 97.5 % quantiles over kResamples
+// draws with replacement. The seed is fixed, so the same data give the same interval on every
+// machine and with any number of threads.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +20,7 @@ struct Interval {
     double high = 0;
 };
 
-/// A figure, where there is one, and its interval, where most resamples have the figure too.
+/// A figure, if it is defined, and its interval, if most resamples define it too.
 struct Figure {
     std::optional<double> value;
     std::optional<Interval> interval;
@@ -33,12 +32,12 @@ class Bootstrap {
 public:
     explicit Bootstrap(std::size_t episodes);
 
-    /// Calls `visit` with all resamples, always the same ones in the same order, some at a time.
+    /// Calls `visit` with all resamples in batches: always the same ones, in the same order.
     void for_each_batch(const std::function<void(const Weights&)>& visit) const;
-    /// One in which every episode counts once.
+    /// Returns weights that count every episode once.
     const Weights& whole() const { return whole_; }
 
-    /// `statistic(weights)`: of each of their resamples, in order.
+    /// Computes a figure. `statistic(weights)` returns its value for each resample, in order.
     Figure figure(
         const std::function<std::vector<std::optional<double>>(const Weights&)>& statistic) const;
 
@@ -46,7 +45,7 @@ private:
     Weights whole_;
 };
 
-/// Of the values that are there, which need not be sorted.
+/// Returns the interval of the defined values, which need not be sorted.
 std::optional<Interval> percentile_interval(const std::vector<std::optional<double>>& values);
 
 }  // namespace etlc::evaluate

@@ -25,21 +25,14 @@ void Counts::add(Label said, Label is) {
 }
 
 void Counts::add(const Counts& other, std::uint64_t times) {
-    true_positives += times * other.true_positives;
-    false_positives += times * other.false_positives;
-    false_negatives += times * other.false_negatives;
-    true_negatives += times * other.true_negatives;
-    unsaid_positives += times * other.unsaid_positives;
-    unsaid_negatives += times * other.unsaid_negatives;
-    unlabelled += times * other.unlabelled;
+    for (const auto& [name, count] : kCounts) this->*count += times * other.*count;
 }
 
 Rates rates(const Counts& c) {
     const std::uint64_t hits = c.true_positives;
-    Rates result{share(2 * hits, hits + c.false_positives + c.positives()),
-                 share(hits, hits + c.false_positives),
-                 share(hits, c.positives()),
-                 share(hits + c.true_negatives, c.total()),
+    Rates result{{share(2 * hits, hits + c.false_positives + c.positives()),
+                  share(hits, hits + c.false_positives), share(hits, c.positives()),
+                  share(hits + c.true_negatives, c.total())},
                  {}};
     const auto always_true = share(2 * c.positives(), c.positives() + c.total());
     if (result.f1 && always_true) result.gain = *result.f1 - *always_true;
@@ -47,13 +40,10 @@ Rates rates(const Counts& c) {
 }
 
 std::vector<Rates> rates(const std::vector<Counts>& episodes, const episodes::Weights& weights) {
-    constexpr std::uint64_t Counts::*kCounts[] = {
-        &Counts::true_positives, &Counts::false_positives,  &Counts::false_negatives,
-        &Counts::true_negatives, &Counts::unsaid_positives, &Counts::unsaid_negatives};
     std::vector<Rates> result(weights.resamples());
     std::vector<Counts> sums(weights.resamples());
     std::vector<std::uint64_t> sum(weights.resamples());
-    for (const auto count : kCounts) {
+    for (const auto& [name, count] : kCounts) {
         std::fill(sum.begin(), sum.end(), 0);
         for (std::size_t e = 0; e < episodes.size(); ++e) {
             const std::uint64_t own = episodes[e].*count;

@@ -1,11 +1,12 @@
-// How often claims agree with the truth.
-// Takes: pairs of what was said and what was true. Gives: precision, recall, F1 and agreement, and
-// those of the two baselines that ignore the data. Keeps true: what could not be said (a missing
-// sample) is a miss and never agrees; a rate without a case is no number.
+// Counts of claims that agree or disagree with the truth, and their rates: precision, recall, F1
+// and agreement. A claim that a missing sample leaves open is a miss and never agrees; a rate
+// without a case is undefined.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "episodes/ranking/weights.hpp"
@@ -20,12 +21,12 @@ struct Counts {
     std::uint64_t false_positives = 0;
     std::uint64_t false_negatives = 0;
     std::uint64_t true_negatives = 0;
-    std::uint64_t unsaid_positives = 0;  ///< true, and neither said to be so nor not
+    std::uint64_t unsaid_positives = 0;  ///< true, and left open by the monitor
     std::uint64_t unsaid_negatives = 0;
-    std::uint64_t unlabelled = 0;  ///< where the truth is unknown: counted here, and nowhere else
+    std::uint64_t unlabelled = 0;  ///< cases of unknown truth, which no other count includes
 
     void add(Label said, Label is);
-    /// The same counts, `times` over, on top of these.
+    /// Adds the other counts, `times` over.
     void add(const Counts& other, std::uint64_t times = 1);
 
     std::uint64_t positives() const { return true_positives + false_negatives + unsaid_positives; }
@@ -35,27 +36,56 @@ struct Counts {
     bool operator==(const Counts&) const = default;
 };
 
+/// All counts with their names.
+inline constexpr std::pair<const char*, std::uint64_t Counts::*> kCounts[] = {
+    {"true_positives", &Counts::true_positives},
+    {"false_positives", &Counts::false_positives},
+    {"false_negatives", &Counts::false_negatives},
+    {"true_negatives", &Counts::true_negatives},
+    {"unsaid_positives", &Counts::unsaid_positives},
+    {"unsaid_negatives", &Counts::unsaid_negatives},
+    {"unlabelled", &Counts::unlabelled}};
+
 template <class Archive>
 void fields(Archive& archive, Counts& counts) {
-    archive(counts.true_positives, counts.false_positives, counts.false_negatives,
-            counts.true_negatives, counts.unsaid_positives, counts.unsaid_negatives,
-            counts.unlabelled);
+    for (const auto& [name, count] : kCounts) archive(counts.*count);
 }
 
-struct Rates {
-    /// 2 TP / (2 TP + FP + misses): not defined where nothing is true or said.
-    std::optional<double> f1;
-    std::optional<double> precision;  ///< TP / (TP + FP)
-    std::optional<double> recall;     ///< TP / positives
-    std::optional<double> agreement;  ///< (TP + TN) / total
-    std::optional<double> gain;       ///< F1, less that of saying true every time
+/// A value for each rate.
+template <class T>
+struct ByRate {
+    /// 2 TP / (2 TP + FP + misses); undefined where nothing is true or claimed.
+    T f1;
+    T precision;  ///< TP / (TP + FP)
+    T recall;     ///< TP / positives
+    T agreement;  ///< (TP + TN) / total
+
+    /// Calls `visit(name, value)` for each.
+    template <class Visit>
+    void for_each(Visit&& visit) const {
+        visit("f1", f1);
+        visit("precision", precision);
+        visit("recall", recall);
+        visit("agreement", agreement);
+    }
 };
 
+struct Rates : ByRate<std::optional<double>> {
+    std::optional<double> gain;  ///< F1 less the F1 of always claiming true
+};
+using Rate = std::optional<double> Rates::*;
+
+/// Calls `get(rate)` for each rate.
+template <class Get>
+ByRate<std::invoke_result_t<Get, Rate>> by_rate(const Get& get) {
+    return {get(&Rates::f1), get(&Rates::precision), get(&Rates::recall), get(&Rates::agreement)};
+}
+
 Rates rates(const Counts& counts);
-/// Of the sum over all episodes, in each resample.
+/// Returns for each resample the rates of the summed counts.
 std::vector<Rates> rates(const std::vector<Counts>& episodes, const episodes::Weights& weights);
 
-/// Of a claim that is the same every time, on data of which these are true and the rest is not.
+/// Returns the rates of a constant claim on `total` cases, `positives` of which are true.
 Rates rates_of_constant(bool claim, std::uint64_t positives, std::uint64_t total);
 
 }  // namespace etlc::evaluate

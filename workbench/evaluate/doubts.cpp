@@ -1,4 +1,4 @@
-// What to doubt about an evaluation.
+// Warnings about the labels and thresholds behind an evaluation.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,11 +10,11 @@ namespace etlc::evaluate {
 
 namespace {
 
-/// Fewer give no interval that can be relied on.
+/// Fewer episodes give no reliable interval.
 constexpr std::uint64_t kFewEpisodes = 5;
 
-/// Where both truths occur, and nearly no resample has a gain. Predicates alone: a monitor that may
-/// not miss an alarm gives many, which is what it is for.
+/// Warns where both labels occur and nearly no resample has a gain. Only predicates: a monitor that
+/// must not miss an alarm raises many on purpose.
 void warn_of_no_gain(const std::string& name, const Score& score, source::Span span,
                      diag::Sink& sink) {
     const bool both = score.counts.positives() > 0 && score.counts.negatives() > 0;

@@ -15,7 +15,8 @@ namespace etlc::evaluate {
 
 namespace {
 
-/// At distance 0 a frame is easier to tell than any that is not a target.
+/// Warns about episodes with a target among their frames: at distance 0 a frame is easier to tell
+/// than any other.
 void warn_of_leaks(const check::Model& model, const Judgement& judgement, const Request& request,
                    diag::Sink& sink) {
     const episodes::LeakEvidence evidence(judgement.episodes);
@@ -62,7 +63,7 @@ std::vector<std::pair<std::string, float>> calibrated_in(const check::Model& mod
     return thresholds;
 }
 
-/// Empty, and by name what it will be about.
+/// Returns a judgement without episodes that names the predicates and monitors.
 Judgement judgement_of(const check::Model& model, const Subject& subject, std::size_t episodes,
                        std::size_t folds) {
     Judgement result;
@@ -84,7 +85,7 @@ Judgement judgement_of(const check::Model& model, const Subject& subject, std::s
     return result;
 }
 
-/// Takes an episode of the request, of fold `fold`, into what is said of all.
+/// Adds the result of an episode of the request.
 void add(EpisodeResult result, std::size_t episode, std::size_t fold, Judgement& judgement) {
     judgement.place[episode] = static_cast<std::uint32_t>(judgement.episodes.size());
     judgement.fold_of[episode] = static_cast<std::uint32_t>(fold);
@@ -101,7 +102,7 @@ void add(EpisodeResult result, std::size_t episode, std::size_t fold, Judgement&
         judgement.monitors[m].episodes.add(result.monitors[m]);
 }
 
-/// Scores the episodes of a trial. `own`: what tells them apart. False where not all were scored.
+/// Scores the episodes of a trial and adds their identities to `own`. Returns false after an error.
 bool score(const Trial& trial, std::size_t fold, const Subject& subject, const Request& request,
            Judgement& judgement, episodes::Identities& own, diag::Sink& sink) {
     const auto truth =
