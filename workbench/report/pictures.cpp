@@ -1,6 +1,7 @@
-#include "report/pictures/pictures.hpp"
+#include "report/pictures.hpp"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -13,8 +14,7 @@
 #include "data/frames/frames.hpp"
 #include "data/recordings/open.hpp"
 #include "data/text/quote.hpp"
-#include "report/packing/pack.hpp"
-#include "report/pictures/png.hpp"
+#include "report/blob.hpp"
 
 namespace etlc::report {
 
@@ -27,7 +27,44 @@ constexpr std::string_view kEpisode = "{episode}";
 constexpr std::size_t kMostPictures = 120;
 constexpr std::uint64_t kLargestFile = 64U << 20U;
 
-/// Evenly, first and last among them.
+std::string big_endian(std::uint32_t number) {
+    std::string bytes;
+    for (const unsigned shift : {24U, 16U, 8U, 0U})
+        bytes += static_cast<char>(number >> shift & 0xFFU);
+    return bytes;
+}
+
+std::string chunk(const std::string& name, const std::string& data) {
+    const std::string checked = name + data;
+    const uLong sum =
+        crc32(0, reinterpret_cast<const Bytef*>(checked.data()), static_cast<uInt>(checked.size()));
+    return big_endian(static_cast<std::uint32_t>(data.size())) + checked +
+           big_endian(static_cast<std::uint32_t>(sum));
+}
+
+/// Filters the rows: none, or (`up`) the differences from the row above.
+std::string filtered(const Picture& picture, bool up) {
+    const std::size_t row = std::size_t{3} * picture.width;
+    std::string bytes;
+    for (std::size_t y = 0; y < picture.height; ++y) {
+        bytes += up ? '\2' : '\0';
+        for (std::size_t i = y * row; i < (y + 1) * row; ++i)
+            bytes += static_cast<char>(picture.pixels[i] -
+                                       (up && y > 0 ? picture.pixels[i - row] : '\0'));
+    }
+    return bytes;
+}
+
+std::string png(const Picture& picture) {
+    const std::string plain = deflated(filtered(picture, false));
+    const std::string up = deflated(filtered(picture, true));
+    const std::string head = big_endian(picture.width) + big_endian(picture.height) +
+                             std::string("\x08\x02\x00\x00\x00", 5);  // 8 bits, RGB
+    return "\x89PNG\r\n\x1a\n" + chunk("IHDR", head) +
+           chunk("IDAT", up.size() < plain.size() ? up : plain) + chunk("IEND", "");
+}
+
+/// Returns evenly spaced steps, including the first and the last.
 std::vector<std::uint64_t> chosen_steps(std::uint64_t steps, std::size_t most) {
     const std::size_t n = std::min<std::size_t>(steps, most);
     std::vector<std::uint64_t> chosen;
@@ -36,7 +73,7 @@ std::vector<std::uint64_t> chosen_steps(std::uint64_t steps, std::size_t most) {
     return chosen;
 }
 
-/// "runs/ep3.npz" is ep3, "set.h5:data/demo_7" is demo_7.
+/// Returns the name of an episode: ep3 for "runs/ep3.npz", demo_7 for "set.h5:data/demo_7".
 std::string name_of(const std::string& episode) {
     const std::string file = data::trace_file(episode);
     if (file.size() == episode.size()) return std::filesystem::path(file).stem().string();
@@ -74,7 +111,7 @@ diag::Result<Pictures> from_files(const std::vector<std::string>& paths, std::ui
         result.why = not_one_a_step(paths.size(), steps);
         return result;
     }
-    // As many as fit, by the size of the first.
+    // The size of the first determines how many fit.
     const auto first = address_of(paths[0]);
     if (!first) return first.failure();
     const std::size_t most = std::min<std::uint64_t>(kMostPictures, most_bytes / first->size());
@@ -97,7 +134,7 @@ std::string sheet(const std::vector<Picture>& pictures, std::size_t stride) {
     return address(all);
 }
 
-/// Every so many of them, on one sheet that has room.
+/// Puts as many of the pictures as fit on one sheet, evenly.
 Pictures on_a_sheet(const std::vector<Picture>& pictures, const std::vector<std::uint64_t>& steps,
                     std::uint64_t most_bytes) {
     Pictures result;
@@ -114,7 +151,7 @@ Pictures on_a_sheet(const std::vector<Picture>& pictures, const std::vector<std:
     return result;
 }
 
-/// Frames that are not wanted are decoded as well, since all have to be counted.
+/// Decodes all frames, to count them.
 diag::Result<Pictures> from_video(const std::string& path, const Length& length,
                                   std::uint64_t most_bytes) {
     const auto decoded = data::open_video(path, {.rate = length.rate});
@@ -136,7 +173,7 @@ diag::Result<Pictures> from_video(const std::string& path, const Length& length,
     return result;
 }
 
-/// An array T x H x W x 3, or T x H x W, of bytes.
+/// An array of bytes: T x H x W x 3, or T x H x W.
 struct Film {
     std::uint64_t steps = 0;
     std::uint32_t height = 0;
@@ -158,7 +195,7 @@ std::optional<Film> film_of(const data::NpyHeader& header) {
                 static_cast<std::uint32_t>(shape[2]), is_grey ? 1U : 3U};
 }
 
-/// The pictures of these steps, small.
+/// Reads the pictures of these steps and shrinks them.
 diag::Result<std::vector<Picture>> small_pictures(data::ByteSource& source, const Film& film,
                                                   const std::vector<std::uint64_t>& steps) {
     std::vector<Picture> pictures;
@@ -229,6 +266,33 @@ diag::Result<Pictures> pictures_of(const FramesOption& option, const std::string
     if (paths.size() == 1 && data::is_video(paths[0]))
         return from_video(paths[0], length, most_bytes);
     return from_files(paths, length.steps, most_bytes);
+}
+
+std::string address(const Picture& picture) {
+    return "data:image/png;base64," + base64(png(picture));
+}
+
+Picture shrunk(std::string_view pixels, std::uint32_t width, std::uint32_t height,
+               std::uint32_t channels, std::uint32_t most) {
+    const std::uint32_t factor = (std::max(width, height) + most - 1) / most;
+    Picture result{std::max(width / factor, 1U), std::max(height / factor, 1U), ""};
+    for (std::size_t y = 0; y < result.height; ++y)
+        for (std::size_t x = 0; x < result.width; ++x)
+            for (std::size_t c = 0; c < 3; ++c) {
+                std::uint32_t sum = 0;
+                std::uint32_t count = 0;
+                for (std::size_t v = y * factor;
+                     v < std::min<std::size_t>((y + 1) * factor, height); ++v)
+                    for (std::size_t u = x * factor;
+                         u < std::min<std::size_t>((x + 1) * factor, width); ++u) {
+                        const std::size_t channel = channels == 1 ? 0 : c;
+                        sum +=
+                            static_cast<std::uint8_t>(pixels[(v * width + u) * channels + channel]);
+                        ++count;
+                    }
+                result.pixels += static_cast<char>(sum / std::max(count, 1U));
+            }
+    return result;
 }
 
 }  // namespace etlc::report
