@@ -1,4 +1,4 @@
-// What `etlc calibrate` says when it is done.
+// The report that `etlc calibrate` prints.
 #include <fmt/format.h>
 
 #include <algorithm>
