@@ -30,9 +30,9 @@ Json parse_description(const Kind& kind, const data::Archive& archive, const Ite
     }
     // Damage to the archive takes precedence: reading to the end compares the checksum.
     if (text.finish() != (*bytes)->size())
-        throw Fault{
-            {Code::malformed_archive, fmt::format("member {} has other than {} bytes",
-                                                  data::in_quotes(kind.member), (*bytes)->size())}};
+        throw Fault{{Code::malformed_archive,
+                     fmt::format("member {} does not have the {} bytes that the archive lists",
+                                 data::in_quotes(kind.member), (*bytes)->size())}};
     if (fault) throw Fault{*fault};
     return root;
 }
@@ -50,7 +50,7 @@ std::optional<Failure> read(const Kind& kind, const data::Archive* archive, cons
         } catch (const Fault& found) {
             fault = found;
         }
-        if (const auto twice = items.twice()) return twice;
+        if (const auto repeated = items.first_repeated()) return repeated;
         if (fault) return fault->failure;
         Reader::Shared shared{kind, items, archive};
         Reader reader(shared, root, "");

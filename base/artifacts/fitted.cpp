@@ -39,10 +39,9 @@ void members(Archive& archive, auto& entry, const std::string& array) {
     archive("declaration", entry.declaration);
     if constexpr (Archive::kReads)
         if (entry.name != entry.declaration && !is_name(entry.name))
-            archive.refuse(
-                fmt::format("{} is no name of a projection or target, nor the "
-                            "declaration of a metric",
-                            in_quotes(archive.place(""))));
+            archive.refuse(fmt::format(
+                "{} is neither the name of a projection or target nor the declaration of a metric",
+                in_quotes(archive.place(""))));
     archive("of", entry.of);
     archive("truth", entry.truth);
     archive("reads", entry.reads);
@@ -57,16 +56,16 @@ void members(Archive& archive, auto& entry, const std::string& array) {
             entry.offset, Presence::where_any);
     if constexpr (Archive::kReads)
         if (!entry.offset.empty() && entry.offset.size() != entry.columns)
-            archive.refuse(
-                fmt::format("array {} has {}, expected {}, as many as the columns of its matrix",
-                            in_quotes(archive.find("offset")->text),
-                            diag::counted(entry.offset.size(), "number"), entry.columns));
+            archive.refuse(fmt::format("array {} has {}, expected {}, one per column of its matrix",
+                                       in_quotes(archive.find("offset")->text),
+                                       diag::counted(entry.offset.size(), "number"),
+                                       entry.columns));
     archive("frames", entry.frames);
     if constexpr (Archive::kReads) {
         const auto* rows = archive.find("medoids");
         if (rows != nullptr && rows->kind == artifacts::Json::Kind::array &&
             rows->items.size() != entry.rows)
-            archive.refuse("medoids", fmt::format("one of {}, as many as rows",
+            archive.refuse("medoids", fmt::format("one of {}, one per row",
                                                   diag::counted(entry.rows, "frame")));
     }
     archive(

@@ -71,7 +71,7 @@ void Items::note_key(const std::string& key) {
     if (const auto hash = data::hash_of_text(key))
         keys_.add({*hash, keys_.size()});
     else if (!other_keys_.insert(key).second)
-        throw Fault{twice().value_or(stands_twice(code_, key))};  // the first one
+        throw Fault{first_repeated().value_or(repeated_key(code_, key))};  // the first one
 }
 
 bool Items::take_recording(const std::string& key, const Json& item) {
@@ -109,7 +109,7 @@ data::InputContent Items::content_of(const Json& json, const std::string& place)
     return result;
 }
 
-std::optional<Failure> Items::twice() const {
+std::optional<Failure> Items::first_repeated() const {
     std::optional<Key> before;
     std::optional<Key> first;  // the first repeated key
     keys_.for_each([&](const Key& key) {
@@ -117,7 +117,7 @@ std::optional<Failure> Items::twice() const {
         before = key;
     });
     if (!first) return std::nullopt;
-    return stands_twice(code_, data::hash_text(first->hash));
+    return repeated_key(code_, data::hash_text(first->hash));
 }
 
 }  // namespace etlc::artifacts

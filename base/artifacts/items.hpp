@@ -32,7 +32,7 @@ public:
     /// Returns the takers for parse_json(), which these items must outlive.
     ItemTakers takers();
     /// Returns the fault of the first repeated key in "recordings".
-    std::optional<diag::Failure> twice() const;
+    std::optional<diag::Failure> first_repeated() const;
 
     /// Return the values of the array at `place` ("monitors.reach.episodes") or of "recordings", or
     /// throw the first fault in it.

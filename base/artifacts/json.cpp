@@ -79,7 +79,7 @@ public:
         else if (object.seen.insert(name).second)
             object.json->keys.push_back(name);
         else
-            throw Fault{stands_twice(invalid_, name)};
+            throw Fault{repeated_key(invalid_, name)};
         path_.back() = std::move(name);
         return true;
     }
@@ -89,13 +89,13 @@ public:
         // The position counts the bytes read, the unexpected one included.
         const std::uint64_t at = position > 0 ? position - 1 : 0;
         const source::Position place = text_.place(at);
-        std::string what = "a number that no double holds";
+        std::string what = "number outside the range of a double";
         if (error.id != kNumberOverflow) {
             const std::string found = text_.character(at);
-            what = found.empty() ? "its end" : data::in_quotes(found);
+            what = found.empty() ? "end" : data::in_quotes(found);
         }
-        throw Fault{
-            {malformed_, fmt::format("is no JSON: unexpected {}", what), place.line, place.column}};
+        throw Fault{{malformed_, fmt::format("is not JSON: unexpected {}", what), place.line,
+                     place.column}};
     }
 
     Json take() { return std::move(root_); }
@@ -234,8 +234,8 @@ diag::Result<Json> parse_json(const std::string& text, std::uint64_t max_values,
     }
 }
 
-Failure stands_twice(Code code, const std::string& key) {
-    return {code, fmt::format("key {} stands twice in one object", data::in_quotes(key))};
+Failure repeated_key(Code code, const std::string& key) {
+    return {code, fmt::format("key {} occurs twice in one object", data::in_quotes(key))};
 }
 
 std::string describe(const Json& json) {

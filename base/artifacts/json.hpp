@@ -121,7 +121,7 @@ Json parse_json(Text& text, std::uint64_t max_values, diag::Code malformed, diag
 diag::Result<Json> parse_json(const std::string& text, std::uint64_t max_values, diag::Code code);
 
 /// Returns the fault of a repeated key.
-diag::Failure stands_twice(diag::Code code, const std::string& key);
+diag::Failure repeated_key(diag::Code code, const std::string& key);
 
 /// Describes a value for a message: "an array", "the text 'x'".
 std::string describe(const Json& json);

@@ -69,8 +69,8 @@ std::uint32_t Reader::format() const {
     for (std::uint32_t known = 1; known <= newest; ++known)
         if (found == std::to_string(known)) return known;
     throw Fault{{shared_.kind.unknown_format,
-                 fmt::format("'format' is {}, expected {}, {} this version reads", in_quotes(found),
-                             expected, one ? "the one" : "those")}};
+                 fmt::format("'format' is {}, expected {}, the format{} that this version reads",
+                             in_quotes(found), expected, one ? "" : "s")}};
 }
 
 void Reader::operator()(const std::string& key, std::string& text) {

@@ -77,7 +77,8 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
         sink.report(Code::nothing_to_calibrate, model.monitors.front().span,
                     "nothing in this spec is calibrated")
             .note(
-                "a calibrated one is written: predicate p = min l2(z, t) <= calibrated(conformal, "
+                "write a calibrated threshold as: predicate p = min l2(z, t) <= "
+                "calibrated(conformal, "
                 "alpha = 0.1);");
         return std::nullopt;
     }

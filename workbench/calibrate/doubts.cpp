@@ -80,15 +80,15 @@ void warn_of_doubts(const check::Predicate& predicate, const Evidence& evidence,
                          "ROC curve is {:.2f}, with a 95 % interval from {:.2f} to {:.2f}",
                          predicate.name, ranked->value, ranked->interval->low,
                          ranked->interval->high))
-            .note("0.5 is chance: look at the labels, the embedding and the targets");
+            .note("0.5 is chance: check the labels, the embedding and the targets");
         return;
     }
     const double part = false_part(predicate, evidence, fitted);
     if (part < kNearlyEvery) return;
-    warn(fmt::format("with the threshold {:.9g} '{}' is true of {:.0f} % of the frames of which it "
-                     "should be false",
+    warn(fmt::format("with the threshold {:.9g}, '{}' is true at {:.0f} % of the frames labelled "
+                     "false",
                      fitted.epsilon, predicate.name, std::floor(100 * part)))
-        .note("a weaker guarantee, more targets or other labels make it say more");
+        .note("a weaker guarantee, more targets or other labels may make it narrower");
 }
 
 }  // namespace etlc::calibrate

@@ -1,5 +1,7 @@
 #include "calibrate/fit.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -119,6 +121,19 @@ thresholds::Entry entry_of(const check::Threshold& threshold, std::string_view m
     entry.targets = std::move(provenance.targets);
     entry.reads = std::move(provenance.reads);
     return entry;
+}
+
+std::string describe_place(const Fitted& fitted, bool upper_bound, const std::string& each) {
+    const std::uint64_t last = fitted.k % 10;
+    const bool teen = fitted.k / 10 % 10 == 1;
+    const char* const ending = teen        ? "th"
+                               : last == 1 ? "st"
+                               : last == 2 ? "nd"
+                               : last == 3 ? "rd"
+                                           : "th";
+    return fmt::format("just {} the {}{} {} of {}, one per {}", upper_bound ? "above" : "below",
+                       fitted.k, ending, upper_bound ? "smallest" : "greatest",
+                       diag::counted(fitted.n, "score"), each);
 }
 
 void mirror(Fitted& fitted, bool upper_bound) {

@@ -53,6 +53,10 @@ Fit fit(const check::Predicate& predicate, const Evidence& evidence, const Count
 thresholds::Entry entry_of(const check::Threshold& threshold, std::string_view method,
                            const Fitted& fitted, check::Provenance provenance);
 
+/// Describes the place of a threshold: "just above the 19th smallest of 20 scores, one per
+/// demonstration", where `each` is a demonstration. Lower bounds lie below the greatest scores.
+std::string describe_place(const Fitted& fitted, bool upper_bound, const std::string& each);
+
 /// Restores the sign of a threshold and its scores, which are negated for >= and > so that smaller
 /// ones are better, and sorts the scores.
 void mirror(Fitted& fitted, bool upper_bound);

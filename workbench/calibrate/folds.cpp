@@ -34,7 +34,7 @@ struct HeldOut {
     std::string text(const std::string& name, std::uint32_t folds, const char* what) const {
         std::string text = fmt::format("    {}: ", name);
         if (least <= greatest)
-            text += fmt::format("{:.7g} to {:.7g}; held out, nothing is missed in {} of {}", least,
+            text += fmt::format("{:.7g} to {:.7g}; held out, {} of {} miss nothing", least,
                                 greatest, covered, counted(episodes, what));
         if (const std::uint64_t frames = 2 * hits + false_alarms + misses; frames > 0)
             text += fmt::format(", F1 of the frames {:.3f}",

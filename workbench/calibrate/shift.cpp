@@ -187,13 +187,12 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
                            const Totals& totals, const Fitted& fitted, std::size_t episodes) {
     std::string text = fmt::format(
         "\n{}: rho of {} less {:.9g}\n"
-        "    conformal, alpha = {}: beyond score {} of {}, from the {}, one of each episode whose "
-        "ground truth is {} at some step\n"
+        "    conformal, alpha = {}: {} whose ground truth is {} at some step\n"
         "    {}; given these {}, with probability >= 1 - {:.3f} to 1 - {:.3f} (5 % and 95 % "
-        "quantile, without ties)\n",
+        "quantiles, without ties)\n",
         monitor.name, check::shown(model, monitor.formula), fitted.epsilon,
-        monitor.calibration->threshold.alpha, fitted.k, fitted.n,
-        against_alarms(monitor) ? "smallest" : "greatest", truth_word(monitor),
+        monitor.calibration->threshold.alpha,
+        describe_place(fitted, against_alarms(monitor), "episode"), truth_word(monitor),
         check::text(check::claims(model, monitor)[0]), fitted.n,
         1 - check::coverage_quantile(fitted.n, fitted.k, 0.05),
         1 - check::coverage_quantile(fitted.n, fitted.k, 0.95));
@@ -201,9 +200,8 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
         text += fmt::format("    {} without such a step left out\n",
                             counted(episodes - totals.with_score, "episode"));
     if (totals.unknown > 0)
-        text +=
-            fmt::format("    {} at which a missing label leaves the ground truth open skipped\n",
-                        counted(totals.unknown, "step"));
+        text += fmt::format("    {} skipped, where a missing label leaves the ground truth open\n",
+                            counted(totals.unknown, "step"));
     return text;
 }
 

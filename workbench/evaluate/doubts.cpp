@@ -25,7 +25,7 @@ void warn_of_no_gain(const std::string& name, const Score& score, source::Span s
                     "frame",
                     name, *score.f1.value, *score.f1.value - *score.gain.value),
         span, sink)
-        .note("look at the threshold, which may be too wide, at the targets and at the labels");
+        .note("check the threshold, which may be too wide, the targets and the labels");
 }
 
 }  // namespace

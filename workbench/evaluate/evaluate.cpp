@@ -46,7 +46,7 @@ bool refuse_without_truth(const check::Model& model, const Subject& subject, dia
     const std::string shown = name.empty() ? "NAME" : name;
     sink.report(diag::Code::nothing_to_evaluate, model.monitors.front().span,
                 "no predicate of this spec has a truth to compare it with")
-        .note(fmt::format("say when it holds, 'truth {0} = ...;', or record it: an array "
+        .note(fmt::format("add 'truth {0} = ...;' to the spec, or record an array "
                           "'truth.{0}' of 0 and 1 in the episodes, which --map may name",
                           shown));
     return false;

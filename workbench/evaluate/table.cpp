@@ -85,12 +85,10 @@ void add(std::vector<Row>& rows, const std::string& name, const Score& score) {
 void add_remarks(std::string& text, const std::string& name, const Counts& counts,
                  const char* what) {
     if (counts.unlabelled > 0)
-        text += fmt::format("{}: {} {} left out, whose truth is unknown\n", name, counts.unlabelled,
-                            what);
+        text += fmt::format("{}: {} {} of unknown truth left out\n", name, counts.unlabelled, what);
     if (const std::uint64_t unsaid = counts.unsaid_positives + counts.unsaid_negatives; unsaid > 0)
-        text +=
-            fmt::format("{}: {} {} that a missing sample leaves open, counted as not agreeing\n",
-                        name, unsaid, what);
+        text += fmt::format("{}: {} {} left open by a missing sample, counted as disagreeing\n",
+                            name, unsaid, what);
 }
 
 std::string predicates_part(const Evaluation& evaluation) {
@@ -106,10 +104,10 @@ std::string predicates_part(const Evaluation& evaluation) {
         add_remarks(remarks, p.name, p.frames.counts, "frames");
         if (p.adaptive)
             remarks += fmt::format(
-                "{}: with the threshold that it starts with; labels would move it\n", p.name);
+                "{}: evaluated with its initial threshold, which labels would adapt\n", p.name);
         if (p.arrays > 0)
-            remarks += fmt::format("{}: in {} of the episodes labelled by an array of theirs\n",
-                                   p.name, p.arrays);
+            remarks += fmt::format("{}: {} of the episodes have an array of its labels\n", p.name,
+                                   p.arrays);
     }
     return "\n" + aligned(rows) + remarks;
 }
@@ -168,7 +166,7 @@ std::string left_out(const Evaluation& evaluation) {
         if (m.lacking.empty()) continue;
         std::string names;
         for (const std::string& name : m.lacking) names += (names.empty() ? "" : ", ") + name;
-        text += fmt::format("{}: not evaluable without a truth of {}\n", m.name, names);
+        text += fmt::format("{}: not evaluated, no labels for {}\n", m.name, names);
     }
     return text.empty() ? "" : "\n" + text;
 }
@@ -248,8 +246,8 @@ std::string differences_part(const SideBySide::Spec& spec, const std::string& fi
         const std::string name = fmt::format("{}, by {}", d.name, d.level);
         if (d.other_truths > 0) {
             remarks +=
-                fmt::format("{}: not compared, {} of the episodes {} another truth in {}\n", name,
-                            d.other_truths, d.other_truths == 1 ? "has" : "have", spec.path);
+                fmt::format("{}: not compared, {} of the episodes {} a different truth in {}\n",
+                            name, d.other_truths, d.other_truths == 1 ? "has" : "have", spec.path);
             continue;
         }
         Row& row = rows.emplace_back(Row{name});
@@ -258,8 +256,7 @@ std::string differences_part(const SideBySide::Spec& spec, const std::string& fi
     }
     if (spec.differences.empty())
         remarks =
-            "nothing to compare: no predicate or monitor of the two has the same name and a "
-            "truth\n";
+            "nothing to compare: the specs have no predicate or monitor with a truth in common\n";
     return "\n" + aligned(rows) + remarks;
 }
 

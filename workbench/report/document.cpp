@@ -54,7 +54,7 @@ std::string provenance(const check::Predicate& predicate) {
         return fmt::format("{}, chosen on {}; no guarantee", threshold.text,
                            diag::counted(threshold.n, "labelled frame"));
     const bool of_frames = threshold.origin == check::ThresholdOrigin::class_conditional;
-    return fmt::format("{}: beyond score {} of {}, one of each {}", threshold.text, threshold.k,
+    return fmt::format("{}: just beyond score {} of {}, one per {}", threshold.text, threshold.k,
                        threshold.n, of_frames ? "positive frame" : "demonstration");
 }
 

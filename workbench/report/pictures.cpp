@@ -89,7 +89,8 @@ std::vector<std::string> matching(std::string pattern, const std::string& episod
 }
 
 std::string not_one_a_step(std::uint64_t found, std::uint64_t steps) {
-    return fmt::format("found {}, expected {}, one a step", diag::counted(found, "picture"), steps);
+    return fmt::format("found {}, expected {}, one per step", diag::counted(found, "picture"),
+                       steps);
 }
 
 Failure of_file(const Failure& failure, const std::string& path) {
@@ -121,7 +122,7 @@ diag::Result<Pictures> from_files(const std::vector<std::string>& paths, std::ui
         result.steps.push_back(step);
         result.files.push_back(std::move(*file));
     }
-    if (result.steps.empty()) result.why = "one picture is larger than there is room for";
+    if (result.steps.empty()) result.why = "a single picture is larger than the space for pictures";
     return result;
 }
 
@@ -147,7 +148,7 @@ Pictures on_a_sheet(const std::vector<Picture>& pictures, const std::vector<std:
         for (std::size_t i = 0; i < steps.size(); i += stride) result.steps.push_back(steps[i]);
         return result;
     }
-    result.why = "one picture is larger than there is room for";
+    result.why = "a single picture is larger than the space for pictures";
     return result;
 }
 
@@ -216,13 +217,13 @@ diag::Result<std::vector<Picture>> small_pictures(data::ByteSource& source, cons
 diag::Result<Pictures> from_array(const std::string& key, const std::string& episode,
                                   std::uint64_t steps, std::uint64_t most_bytes) {
     if (!episode.ends_with(".npz"))
-        return Failure{Code::not_pictures, "pictures in arrays are read from .npz files alone"};
+        return Failure{Code::not_pictures, "arrays of pictures are read only from .npz files"};
     Pictures result;
     const auto archive = data::Archive::open({episode, {}});
     if (!archive) return archive.failure();
     const auto& keys = archive->keys();
     if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
-        result.why = fmt::format("there is no array {}", data::in_quotes(key));
+        result.why = fmt::format("has no array {}", data::in_quotes(key));
         return result;
     }
     const auto source = archive->member(key);

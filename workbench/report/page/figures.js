@@ -1,5 +1,4 @@
-// The top of the page: the figures of `etlc evaluate`, beside those of monitors that look at
-// nothing, and where thresholds come from.
+// The top of the page: figures of `etlc evaluate`, its baselines, and the origins of thresholds.
 
 function figureCell(of, key) {
   const interval = of[`${key}_interval`];

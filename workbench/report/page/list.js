@@ -1,6 +1,6 @@
-// The list of episodes, which sorts and filters; worst first.
+// The list of episodes, worst first, with sorting and filters.
 
-// A row of the data as workbench/report/document.cpp writes it, with names.
+// Names the members of a row that workbench/report/document.cpp writes.
 const episodes = data.rows.map(
   ([path, frames, outcomes, missing, judged, parts, buckets, series, pictures], place) => {
     const finite = outcomes.map((of) => of[1]).filter((value) => value !== null);
@@ -60,7 +60,7 @@ function drawMoreRows() {
   markSelected();
 }
 
-// Within the list: the page itself stays where it is.
+// Scrolls the list, not the page.
 function bringIntoSight(row) {
   const box = row.parentElement;
   const top = row.offsetTop;

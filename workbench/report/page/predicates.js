@@ -1,5 +1,5 @@
-// A card for each predicate: the distances inside and outside, the curves that all thresholds make,
-// and the scores that a calibrated threshold was taken from.
+// A card for each predicate: distances inside and outside, curves over all thresholds, and the
+// scores behind a calibrated threshold.
 
 const cardSize = { width: 340, height: 210 };
 const cardMargin = { left: 52, right: 12, top: 10, bottom: 40 };
@@ -20,7 +20,7 @@ function thresholdLine(g, x, height, threshold) {
     .attr("y1", 0).attr("y2", height);
 }
 
-// Parts of the frames of each class, so that a rare class is seen beside a frequent one.
+// Draws shares of each class, so that a rare class is visible beside a frequent one.
 function drawHistogram(card, predicate) {
   const { edges, inside, outside } = predicate.distribution;
   const { g, width, height } = cardDrawing(card, "Distances: where it truly holds, and elsewhere");
