@@ -1,17 +1,12 @@
 #!/usr/bin/env bash
-# ./demo.sh: installs what is missing, builds what the demo needs, then goes from two specs to
-# running monitors. All its output is below build/.
+# ./demo.sh: runs a generated monitor, installs what is missing, builds etlc, then goes from a spec
+# and recorded drives to a class, a page and thresholds with a guarantee. All it writes is below
+# build/.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
 cmake/install_packages.sh build
 . cmake/build.sh
-if [ ! -e build/release/build.ninja ] && [ ! -e build/release/Makefile ]; then
-    echo "Configuring and building etlc and its examples (the first time takes some minutes)"
-    configure release -DETLC_BUILD_TESTS=OFF
-fi
-build release demo
-
 PATH=$PWD/build/release:$PATH
 out=build/demo
 mkdir -p "$out"
@@ -24,56 +19,53 @@ title() { printf '\n%s== %s ==%s\n\n' "$bold" "$1" "$plain"; }
 # Shows a command, then runs it.
 show() { printf '%s$ %s%s\n' "$bold" "$*" "$plain"; "$@"; }
 
-title "The paper's Example 2: from four lines of specification to a monitor"
+title "A monitor: Example 2 of the paper"
 show cat examples/paper_example/example.etl
 echo
-show etlc examples/paper_example/example.etl -o "$out/example.hpp"
-show build/release/examples/paper_example/paper_example
+echo "etlc makes one C++ class of it, generated/example.hpp, which needs nothing but runtime/include:"
+show "${CXX:-c++}" -std=c++17 -O2 -I runtime/include -I generated examples/paper_example/main.cpp \
+    -o "$out/example"
+show "$out/example"
 
-title "A Dubins car seen by a camera: visit A, then B, stay clear of C"
-show cat examples/dubins/dubins.etl
+title "The compiler"
+if [ ! -e build/release/build.ninja ] && [ ! -e build/release/Makefile ]; then
+    echo "Building etlc, which takes about two minutes the first time."
+    configure release -DETLC_BUILD_TESTS=OFF
+fi
+build release demo
+show etlc examples/paper_example/example.etl -o "$out/example.hpp"
+show cmp "$out/example.hpp" generated/example.hpp
+
+title "A car seen by a camera: visit A, then B, stay clear of C"
+show grep -E '^(input|predicate|monitor)' examples/dubins/dubins.etl
 echo
 show etlc examples/dubins/dubins.etl -o "$out/dubins.hpp"
+echo "The head of $out/dubins.hpp says what the class costs:"
+sed -n '/monitor  *about/,/all together/p' "$out/dubins.hpp"
 echo
-echo "The head of $out/dubins.hpp, without most of the numbers:"
+drives=$out/hundred_drives
+echo "That class over 100 drives; the whole table is $out/drives.txt:"
+show build/release/examples/dubins/dubins "$drives" >"$out/drives.txt"
+sed -n '1,8p;/^monitor /,/^sequential/p' "$out/drives.txt"
 echo
-# Up to the private part of the class, with the first line of each table of numbers.
-awk '/^ private:/ { exit }
-     /^  -?[0-9]/ { if (rows++ == 1) print "  ..."; if (rows > 1) next }
-     /^}/ { rows = 0 }
-     { print }' "$out/dubins.hpp"
+show etlc report examples/dubins/dubins.etl --data "$drives" --frames camera -o "$out/dubins.html"
+echo "Open $out/dubins.html in a browser: every drive, the worst first, with distances and reasons."
 
-title "100 drives past that class: each verdict beside the truth"
-show build/release/examples/dubins/dubins "$out/hundred_drives"
+title "Thresholds with a guarantee, from 120 labelled drives"
+show grep -E '^(predicate|truth|monitor)' examples/dubins/union.etl
+echo
+build/release/examples/dubins/dubins_record "$out/drives" 1
+show etlc calibrate examples/dubins/union.etl --data "$out/drives/1/calibration" \
+    -o "$out/union.thresholds.json"
+echo
+echo "How good they are on 180 other drives:"
+show etlc evaluate examples/dubins/union.etl --thresholds "$out/union.thresholds.json" \
+    --data "$out/drives/1/test"
 
-title "The same drives as a page to look at, the worst first"
-show etlc report examples/dubins/dubins.etl --data "$out/hundred_drives" --frames camera \
-    -o "$out/dubins.html"
-echo "Open $out/dubins.html in a browser."
-
-title "The paper's experiment: thresholds from labelled drives, by both of its methods"
-drives=$out/drives
-record=build/release/examples/dubins/dubins_record
-show grep -E '^(predicate|truth|monitor|sliding)' examples/dubins/paper.etl
-echo
-show "$record" "$drives" 1
-show etlc calibrate examples/dubins/paper.etl --data "$drives/1/calibration" \
-    -o "$out/paper.thresholds.json"
-echo
-show etlc examples/dubins/paper.etl --thresholds "$out/paper.thresholds.json" -o "$out/paper.hpp"
-show "${CXX:-c++}" -std=c++17 -O2 -I runtime/include -I "$out" examples/dubins/watch.cpp \
-    -o "$out/watch"
-echo
-echo "The compiled class, on the 180 drives that the thresholds have not seen:"
-show "$out/watch" "$drives/1/test"
-echo
-show etlc evaluate examples/dubins/paper.etl --thresholds "$out/paper.thresholds.json" \
-    --data "$drives/1/test"
-
-title "The same over five seeds, beside the paper's table"
-show examples/dubins/experiment.sh build/release/etlc "$record" "$drives"
-
-title "A camera whose mount gives way: a threshold that stays, and one that follows labels"
-show grep -E '^predicate' examples/dubins/drift.etl
-echo
-show examples/dubins/drift.sh build/release/etlc "$record" "$drives"
+title "What to do next"
+cat <<'EOF'
+  docs/tutorial.md            from an idea to a monitor of your own, in ten minutes
+  docs/recordings.md          from images and videos to verdicts
+  examples/dubins/README.md   this car, and the paper's experiment over five seeds
+  build/release/etlc --help   the commands; docs/README.md lists all pages
+EOF

@@ -9,8 +9,14 @@ mark_as_advanced(ETLC_PRECOMPILE)
 # docs/contributing/compiler.md. A stage finds headers from its building on: base/source is
 # included as source/.
 add_library(etlc_options INTERFACE)
+set(shadow -Wshadow)
+if(CMAKE_UNITY_BUILD)
+  # Sources that are compiled as one see each other's unnamed namespaces: what is local may have
+  # the name of a constant in another file, and a struct may have members of such a namespace.
+  set(shadow "$<$<CXX_COMPILER_ID:GNU>:-Wshadow=local;-Wno-subobject-linkage>")
+endif()
 target_compile_options(etlc_options INTERFACE
-  -Wall -Wextra -Wno-missing-field-initializers -Wshadow -Wpedantic -Wconversion
+  -Wall -Wextra -Wno-missing-field-initializers ${shadow} -Wpedantic -Wconversion
   -Wno-sign-conversion
   # GCC 12 sees overlaps in `"text" + string` that are not there.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>

@@ -15,10 +15,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Codes = std::vector<std::string>;
 
-const Codes kStale{"E0652"};
+const Codes kStaleSpec{"E0652"};
 
 /// What may become of a spec. Where there is no `from` in it, it does not apply.
-const std::vector<Edit>& edits() {
+const std::vector<Edit>& spec_edits() {
     static const std::vector<Edit> all{
         {"spec t;", "spec t; // a remark\n"},
         {"rate 10 Hz", "rate 20 Hz"},
@@ -123,7 +123,7 @@ bool is_harmless(const Edit& edit) {
 TEST(ChangedSpecs, AreRefusedOrGiveTheSameNumbers) {
     Random random(31);
     const Files episodes(random_episodes(random, 24));
-    std::vector<int> applied(edits().size());
+    std::vector<int> applied(spec_edits().size());
     int accepted = 0;
     int refused = 0;
     for (const std::string& spec : specs()) {
@@ -131,8 +131,8 @@ TEST(ChangedSpecs, AreRefusedOrGiveTheSameNumbers) {
         ASSERT_FALSE(before.thresholds.empty()) << testing::PrintToString(before.codes) << spec;
         ASSERT_TRUE(checked(spec, before.thresholds).model)
             << checked(spec, before.thresholds).text;
-        for (std::size_t e = 0; e < edits().size(); ++e) {
-            const Edit& edit = edits()[e];
+        for (std::size_t e = 0; e < spec_edits().size(); ++e) {
+            const Edit& edit = spec_edits()[e];
             if (spec.find(edit.from) == std::string::npos) continue;
             ++applied[e];
             const std::string changed = replaced(spec, edit.from, edit.to);
@@ -140,7 +140,7 @@ TEST(ChangedSpecs, AreRefusedOrGiveTheSameNumbers) {
             const std::string what = edit.from + " -> " + edit.to + "\n" + spec;
             if (!now.model) {
                 ++refused;
-                EXPECT_EQ(now.codes, kStale) << what << now.text;
+                EXPECT_EQ(now.codes, kStaleSpec) << what << now.text;
                 EXPECT_FALSE(is_harmless(edit)) << what << now.text;
                 continue;
             }
@@ -150,8 +150,8 @@ TEST(ChangedSpecs, AreRefusedOrGiveTheSameNumbers) {
             EXPECT_EQ(numbers(again.thresholds), numbers(before.thresholds)) << what;
         }
     }
-    for (std::size_t e = 0; e < edits().size(); ++e)
-        EXPECT_GT(applied[e], 0) << edits()[e].from << " -> " << edits()[e].to;
+    for (std::size_t e = 0; e < spec_edits().size(); ++e)
+        EXPECT_GT(applied[e], 0) << spec_edits()[e].from << " -> " << spec_edits()[e].to;
     EXPECT_GT(refused, 300);
     EXPECT_GT(accepted, 20);
 }
@@ -179,7 +179,7 @@ struct WholeMonitor : testing::Test {
     void expect_refused(const std::string& spec, const std::string& from, const std::string& to,
                         const std::string& note) {
         const Checked now = after(spec, from, to);
-        EXPECT_EQ(now.codes, kStale) << from << " -> " << to;
+        EXPECT_EQ(now.codes, kStaleSpec) << from << " -> " << to;
         EXPECT_NE(now.text.find(note), std::string::npos) << now.text;
         EXPECT_NE(now.text.find("calibrate again with 'etlc calibrate'"), std::string::npos);
     }
@@ -222,7 +222,7 @@ TEST_F(WholeMonitor, AnEntryThatDoesNotSayWhatItReadIsRefused) {
     Json file = Json::parse(calibrated(kSmall, episodes.paths()).thresholds);
     file["monitors"]["m"].erase("reads");
     const Checked now = checked(kSmall, file.dump());
-    EXPECT_EQ(now.codes, kStale);
+    EXPECT_EQ(now.codes, kStaleSpec);
     EXPECT_NE(now.text.find("it does not say all that it was calibrated for"), std::string::npos)
         << now.text;
 }
@@ -237,7 +237,7 @@ TEST(ChangedSpecs, APredicatesEntryOfAnEarlierVersionIsCompared) {
     EXPECT_TRUE(checked(spec, file.dump()).model);
     for (const Edit& edit : {Edit{"min l2", "max l2"}, Edit{"y > limit", "y >= limit"},
                              Edit{"g = [[0, 0]", "g = [[0, 1]"}, Edit{" hold 1", ""}})
-        EXPECT_EQ(checked(replaced(spec, edit.from, edit.to), file.dump()).codes, kStale)
+        EXPECT_EQ(checked(replaced(spec, edit.from, edit.to), file.dump()).codes, kStaleSpec)
             << edit.from;
 }
 

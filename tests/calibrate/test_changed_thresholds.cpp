@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::string kSpec =
+const std::string kTwoPredicates =
     "spec t; input x, y : f32; input z : f32[1] hold 1; target g = [[0]]; target h = [[3], [5]];\n"
     "predicate a = x <= calibrated(conformal, alpha = 0.2); truth a = y > 0.5;\n"
     "predicate b = min l2(z, g) < calibrated(conformal, alpha = 0.3); truth b = min l2(z, h) > "
@@ -32,7 +32,7 @@ const std::string kSpec =
     "monitor u = F a calibrated(conformal, alpha = 0.2, against = missed_alarm);\n"
     "monitor v = F (e && b) calibrated(conformal, alpha = 0.3, against = missed_success);";
 
-std::vector<std::string> random_episodes(Random& random, int count) {
+std::vector<std::string> two_predicate_episodes(Random& random, int count) {
     std::vector<std::string> episodes;
     for (int i = 0; i < count; ++i) {
         std::string text = "x,y,z[0]\n";
@@ -54,7 +54,7 @@ std::string believed(const std::string& json) {
     check::Options options;
     options.thresholds_path = path.path();
     diag::Sink sink;
-    const source::File file("t.etl", kSpec);
+    const source::File file("t.etl", kTwoPredicates);
     const auto model = check::check(parse::parse(file, sink), file, options, sink);
     if (!model) return "";
     std::string text;
@@ -141,11 +141,11 @@ std::vector<Json> changes(const Json& value) {
 
 TEST(ChangedThresholds, AreRefusedOrChangeNothing) {
     Random random(99);
-    const Files first(random_episodes(random, 14));
-    const Files second(random_episodes(random, 14));
-    const Calibrated predicates = calibrated(kSpec, first.paths());
+    const Files first(two_predicate_episodes(random, 14));
+    const Files second(two_predicate_episodes(random, 14));
+    const Calibrated predicates = calibrated(kTwoPredicates, first.paths());
     ASSERT_FALSE(predicates.thresholds.empty()) << testing::PrintToString(predicates.codes);
-    const Calibrated both = calibrated(kSpec, second.paths(), predicates.thresholds);
+    const Calibrated both = calibrated(kTwoPredicates, second.paths(), predicates.thresholds);
     ASSERT_FALSE(both.thresholds.empty()) << testing::PrintToString(both.codes);
     const std::string original = believed(both.thresholds);
     ASSERT_FALSE(original.empty());
@@ -174,10 +174,10 @@ TEST(ChangedThresholds, AreRefusedOrChangeNothing) {
 /// together by hand.
 TEST(ChangedThresholds, MergedFilesWithAnEpisodeInBothAreRefused) {
     Random random(98);
-    const Files first(random_episodes(random, 14));
-    const Files second(random_episodes(random, 14));
-    const Calibrated both =
-        calibrated(kSpec, second.paths(), calibrated(kSpec, first.paths()).thresholds);
+    const Files first(two_predicate_episodes(random, 14));
+    const Files second(two_predicate_episodes(random, 14));
+    const Calibrated both = calibrated(kTwoPredicates, second.paths(),
+                                       calibrated(kTwoPredicates, first.paths()).thresholds);
     Json merged = Json::parse(both.thresholds);
     ASSERT_FALSE(believed(merged.dump()).empty());
     merged["episodes"].push_back(merged["monitors"]["u"]["episodes"][3]);

@@ -16,7 +16,7 @@
 namespace etlc::tests {
 namespace {
 
-constexpr int kDraws = 120;
+constexpr int kClaimDraws = 120;
 constexpr int kFresh = 8;  ///< episodes a draw
 
 /// x is near 0 where the label holds; s comes to lie on the threshold of the comparisons with it.
@@ -51,7 +51,7 @@ std::vector<std::string> drawn(Random& random, int count) {
 
 /// Of every monitor with a claim: the fresh episodes, and those in which some verdict was what the
 /// claim excludes.
-struct Kept {
+struct KeptClaims {
     check::Claim claim;
     int episodes = 0;
     int broken = 0;
@@ -72,7 +72,7 @@ bool breaks(const check::Claim& claim, const etlmon::Verdict& said, const etlmon
 }
 
 void count(const driver::Compiled& monitors, const driver::Compiled& truths, Random& random,
-           std::map<std::string, Kept>& kept) {
+           std::map<std::string, KeptClaims>& kept) {
     plan::Evaluator said(monitors.plan);
     plan::Evaluator is(truths.plan);
     const Drawn episode(random);
@@ -85,7 +85,7 @@ void count(const driver::Compiled& monitors, const driver::Compiled& truths, Ran
         for (std::size_t m = 0; m < verdicts.size(); ++m) {
             const check::Monitor& monitor =
                 monitors.model->monitors[monitors.plan.monitors[m].index];
-            Kept& of = kept[monitor.name];
+            KeptClaims& of = kept[monitor.name];
             of.claim = check::claims(*monitors.model, monitor, monitors.plan.values)[0];
             if (breaks(of.claim, verdicts[m], truth[m])) broken.insert(monitor.name);
         }
@@ -97,11 +97,11 @@ void count(const driver::Compiled& monitors, const driver::Compiled& truths, Ran
 }
 
 /// Calibrates again for every draw. Draws that show too little to calibrate from are left out.
-std::map<std::string, Kept> draws(const std::string& spec, bool of_predicates, bool of_monitors,
-                                  check::Values values) {
-    std::map<std::string, Kept> kept;
+std::map<std::string, KeptClaims> draws(const std::string& spec, bool of_predicates,
+                                        bool of_monitors, check::Values values) {
+    std::map<std::string, KeptClaims> kept;
     Random random(2027);
-    for (int draw = 0; draw < kDraws; ++draw) {
+    for (int draw = 0; draw < kClaimDraws; ++draw) {
         std::string thresholds;
         const Files first(drawn(random, 10));
         if (of_predicates) {
@@ -131,9 +131,9 @@ std::map<std::string, Kept> draws(const std::string& spec, bool of_predicates, b
     return kept;
 }
 
-void expect_kept(const std::map<std::string, Kept>& all, const std::string& which) {
+void expect_kept(const std::map<std::string, KeptClaims>& all, const std::string& which) {
     for (const auto& [name, kept] : all) {
-        EXPECT_GT(kept.episodes, kDraws * kFresh / 2) << which;
+        EXPECT_GT(kept.episodes, kClaimDraws * kFresh / 2) << which;
         const double bound =
             kept.claim.bound.empty() || kept.claim.kind == check::Claim::Kind::exact
                 ? 0

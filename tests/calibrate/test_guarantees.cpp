@@ -107,11 +107,11 @@ TEST(Claims, MixedConjunctsSpeakForThemselves) {
 
 // ---- simulation ---------------------------------------------------------------------------------
 
-constexpr int kSteps = 8;
+constexpr int kEpisodeSteps = 8;
 constexpr int kDemonstrations = 12;
-constexpr int kDraws = 2000;
+constexpr int kGuaranteeDraws = 2000;
 
-struct Episode {
+struct ScoredEpisode {
     std::vector<std::vector<plan::Sample>> samples;  ///< x, y, s
     std::vector<bool> a, b;
 };
@@ -123,10 +123,10 @@ float noisy(Random& random, bool label) {
     return static_cast<float>((label ? 0.0 : 1.0) + 0.8 * sum);
 }
 
-Episode random_episode(Random& random) {
-    Episode episode;
+ScoredEpisode random_scored_episode(Random& random) {
+    ScoredEpisode episode;
     const double share = random.uniform();  // episodes differ, so frames are not exchangeable
-    for (int t = 0; t < kSteps; ++t) {
+    for (int t = 0; t < kEpisodeSteps; ++t) {
         episode.a.push_back(random.chance(share));
         episode.b.push_back(random.chance(0.2));
         const float s = random.chance(0.3) ? 1.0F : 0.0F;
@@ -138,9 +138,9 @@ Episode random_episode(Random& random) {
 }
 
 /// Per predicate.
-std::vector<calibrate::Scores> score(const Episode& episode) {
+std::vector<calibrate::Scores> score(const ScoredEpisode& episode) {
     std::vector<calibrate::Scores> result(2);
-    for (int t = 0; t < kSteps; ++t)
+    for (int t = 0; t < kEpisodeSteps; ++t)
         for (std::size_t p = 0; p < 2; ++p) {
             if (!(p == 0 ? episode.a : episode.b)[static_cast<std::size_t>(t)]) continue;
             calibrate::Scores& scores = result[p];
@@ -183,13 +183,13 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
     std::vector<int> missed_success(model.monitors.size());
     std::vector<int> missed_alarm(model.monitors.size());
     int draws = 0;
-    for (int draw = 0; draw < kDraws; ++draw) {
+    for (int draw = 0; draw < kGuaranteeDraws; ++draw) {
         calibrate::Evidence evidence[2];
         for (int i = 0; i < kDemonstrations; ++i) {
-            const std::vector<calibrate::Scores> scores = score(random_episode(random));
+            const std::vector<calibrate::Scores> scores = score(random_scored_episode(random));
             for (const Index p : {0U, 1U}) evidence[p].add(scores[p]);
         }
-        const Episode test = random_episode(random);
+        const ScoredEpisode test = random_scored_episode(random);
         bool fitted = true;
         for (const Index p : {0U, 1U}) {
             const auto fit = calibrate::fit(model.predicates[p], evidence[p]);
@@ -204,7 +204,7 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
         truths.evaluator.reset();
         std::vector<bool> success(model.monitors.size());
         std::vector<bool> alarm(model.monitors.size());
-        for (std::size_t t = 0; t < kSteps; ++t) {
+        for (std::size_t t = 0; t < kEpisodeSteps; ++t) {
             std::vector<plan::Sample> samples = test.samples[t];
             const auto& said = monitors.evaluator.step(samples);
             samples.push_back({true, {test.a[t] ? 1.0F : 0.0F}});
@@ -220,7 +220,7 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
             missed_alarm[m] += alarm[m] ? 1 : 0;
         }
     }
-    ASSERT_GT(draws, kDraws / 2);
+    ASSERT_GT(draws, kGuaranteeDraws / 2);
     int vacuous = 0;
     for (std::size_t m = 0; m < model.monitors.size(); ++m) {
         const check::Claim claim = check::claims(model, model.monitors[m])[0];

@@ -14,7 +14,7 @@ namespace etlc::tests {
 namespace {
 
 /// Whatever a model may hold is in it. `m` reads all of it, `p` what its threshold is taken from.
-const std::string kSpec =
+const std::string kReadSpec =
     "spec t; rate 10 Hz;\n"
     "input z : f32[2] hold 1; input w : i8[2] scale 0.5; input x : f32 in [-9, 9]; input y : f32;\n"
     "input b : bool missing false; input c : bool; input u, v : f32;\n"
@@ -32,7 +32,7 @@ const std::string kSpec =
 
 check::Model model_of_everything() {
     diag::Sink sink;
-    const source::File file("t.etl", kSpec);
+    const source::File file("t.etl", kReadSpec);
     check::Options options;
     options.allow_uncalibrated = true;
     options.allow_uncalibrated_monitors = true;

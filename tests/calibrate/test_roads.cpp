@@ -15,21 +15,21 @@ namespace {
 using Codes = std::vector<std::string>;
 
 constexpr int kEpisodes = 12;
-constexpr int kSteps = 5;
+constexpr int kRoadSteps = 5;
 constexpr int kElements = 3;
 
 /// A frame as it was recorded, before any input narrows it.
-struct Frame {
+struct RoadFrame {
     std::vector<double> z;
     double px = 0, py = 0;
     bool label = false;
 };
-using Episode = std::vector<Frame>;
+using Road = std::vector<RoadFrame>;
 
-Episode random_episode(Random& random) {
-    Episode episode;
-    for (int t = 0; t < kSteps; ++t) {
-        Frame frame;
+Road random_road(Random& random) {
+    Road episode;
+    for (int t = 0; t < kRoadSteps; ++t) {
+        RoadFrame frame;
         frame.label = random.chance(0.5);
         const double centre = frame.label ? 0.2 : 1;
         for (int i = 0; i < kElements; ++i)
@@ -41,9 +41,9 @@ Episode random_episode(Random& random) {
     return episode;
 }
 
-std::vector<Episode> random_episodes(Random& random) {
-    std::vector<Episode> episodes;
-    for (int i = 0; i < kEpisodes; ++i) episodes.push_back(random_episode(random));
+std::vector<Road> random_roads(Random& random) {
+    std::vector<Road> episodes;
+    for (int i = 0; i < kEpisodes; ++i) episodes.push_back(random_road(random));
     return episodes;
 }
 
@@ -52,24 +52,24 @@ std::vector<Episode> random_episodes(Random& random) {
 struct Form {
     std::string type;  ///< of z
     double grain = 0;  ///< int8: z is recorded as multiples of it
-    std::vector<double> (*row)(const Frame&, double grain);  ///< of the target set
+    std::vector<double> (*row)(const RoadFrame&, double grain);  ///< of the target set
 };
 
-std::vector<double> as_it_is(const Frame& frame, double) {
+std::vector<double> as_it_is(const RoadFrame& frame, double) {
     return frame.z;
 }
-std::vector<double> of_twice_the_length(const Frame& frame, double) {
+std::vector<double> of_twice_the_length(const RoadFrame& frame, double) {
     std::vector<double> row;
     for (const double x : frame.z) row.push_back(2 * static_cast<double>(static_cast<float>(x)));
     return row;
 }
 /// The embedding that was recorded as integers, before that.
-std::vector<double> unrounded(const Frame& frame, double grain) {
+std::vector<double> unrounded(const RoadFrame& frame, double grain) {
     std::vector<double> row;
     for (const double x : frame.z) row.push_back((std::round(x / grain) + 0.3) * grain);
     return row;
 }
-std::vector<double> position(const Frame& frame, double) {
+std::vector<double> position(const RoadFrame& frame, double) {
     return {frame.px, frame.py};
 }
 
@@ -126,10 +126,10 @@ std::vector<Road> roads() {
     return all;
 }
 
-std::string csv(const Episode& episode, const Road& road) {
+std::string csv(const Road& episode, const Road& road) {
     std::string text = "z[0],z[1],z[2],px,py,truth.a\n";
     const double grain = road.form->grain;
-    for (const Frame& frame : episode) {
+    for (const RoadFrame& frame : episode) {
         for (const double x : frame.z)
             text += fmt::format("{},", grain > 0 ? std::round(x / grain) : x);
         text += fmt::format("{},{},{}\n", frame.px, frame.py, frame.label ? 1 : 0);
@@ -143,10 +143,10 @@ class World {
 public:
     World(const Road& road, std::uint64_t seed) : road_(road) {
         Random random(seed);
-        first_ = random_episodes(random);
-        second_ = random_episodes(random);
+        first_ = random_roads(random);
+        second_ = random_roads(random);
         for (int i = 0; i < 3; ++i)
-            rows_.push_back(road.form->row(random_episode(random)[0], road.form->grain));
+            rows_.push_back(road.form->row(random_road(random)[0], road.form->grain));
     }
 
     void leak_first() { rows_[1] = road_.form->row(first_[2][3], road_.form->grain); }
@@ -181,10 +181,10 @@ public:
     std::string thresholds;
 
 private:
-    Calibrated calibrate(const std::vector<Episode>& episodes, const std::string& before) const {
+    Calibrated calibrate(const std::vector<Road>& episodes, const std::string& before) const {
         const TemporaryPath targets("g.npy", npy_rows());
         Files files;
-        for (const Episode& episode : episodes) files.add(csv(episode, road_));
+        for (const Road& episode : episodes) files.add(csv(episode, road_));
         return calibrated(spec(targets.path()), files.paths(), before);
     }
 
@@ -204,8 +204,8 @@ private:
     }
 
     const Road& road_;
-    std::vector<Episode> first_;
-    std::vector<Episode> second_;
+    std::vector<Road> first_;
+    std::vector<Road> second_;
     std::vector<std::vector<double>> rows_;
 };
 

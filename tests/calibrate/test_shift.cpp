@@ -20,8 +20,8 @@ namespace {
 
 using calibrate::Index;
 
-constexpr int kSteps = 6;
-constexpr int kDraws = 2000;
+constexpr int kShiftSteps = 6;
+constexpr int kShiftDraws = 2000;
 
 /// Literal thresholds: the shift alone is calibrated. It reads a, which is noisy, and the label px.
 std::string spec_text(const std::string& against) {
@@ -53,14 +53,14 @@ struct Planned {
     Planned(const Planned&) = delete;
 };
 
-struct Episode {
+struct ShiftedEpisode {
     std::vector<float> x;
     std::vector<bool> label;
 };
 
-Episode random_episode(Random& random) {
-    Episode episode;
-    for (int t = 0; t < kSteps; ++t) {
+ShiftedEpisode random_episode(Random& random) {
+    ShiftedEpisode episode;
+    for (int t = 0; t < kShiftSteps; ++t) {
         episode.label.push_back(random.chance(0.4));
         episode.x.push_back(
             static_cast<float>((episode.label.back() ? 0.0 : 1.0) + 2 * (random.uniform() - 0.5)));
@@ -72,11 +72,11 @@ struct Runs {
     std::vector<etlmon::Verdict> said, truth;
 };
 
-Runs run(plan::Evaluator& said, plan::Evaluator& truth, const Episode& episode) {
+Runs run(plan::Evaluator& said, plan::Evaluator& truth, const ShiftedEpisode& episode) {
     Runs runs;
     said.reset();
     truth.reset();
-    for (std::size_t t = 0; t < kSteps; ++t) {
+    for (std::size_t t = 0; t < kShiftSteps; ++t) {
         const plan::Sample x{true, {episode.x[t]}};
         const plan::Sample px{true, {episode.label[t] ? 1.0F : 0.0F}};
         runs.said.push_back(said.step({x, px})[0]);
@@ -105,14 +105,14 @@ TEST(Shift, CoversDrawnEpisodes) {
         plan::Evaluator truth(truths.plan);
         Random random(77);
         int covered = 0;
-        for (int draw = 0; draw < kDraws; ++draw) {
+        for (int draw = 0; draw < kShiftDraws; ++draw) {
             std::vector<double> scores;
             while (scores.size() < 9)
                 if (const auto one = score(run(said, truth, random_episode(random)), alarms))
                     scores.push_back(*one);
             const auto fit = std::get<calibrate::Fitted>(calibrate::fit_rank(scores, "0.2"));
             ASSERT_EQ(fit.k, 8U);
-            const Episode test = random_episode(random);
+            const ShiftedEpisode test = random_episode(random);
             const Planned shifted(model_of(against, alarms ? fit.epsilon : -fit.epsilon));
             plan::Evaluator calibrated(shifted.plan);
             const Runs before = run(said, truth, test);
@@ -131,7 +131,8 @@ TEST(Shift, CoversDrawnEpisodes) {
             const auto own = score(before, alarms);
             ASSERT_FALSE(missed && (!own || *own < static_cast<double>(fit.epsilon)));
         }
-        EXPECT_GE(static_cast<double>(covered) / kDraws, 0.8 - 3 * std::sqrt(0.2 * 0.8 / kDraws))
+        EXPECT_GE(static_cast<double>(covered) / kShiftDraws,
+                  0.8 - 3 * std::sqrt(0.2 * 0.8 / kShiftDraws))
             << against;
     }
 }
@@ -150,9 +151,9 @@ TEST(Shift, IsBeyondTheScoreAtTheRank) {
         std::vector<std::unique_ptr<TemporaryPath>> files;
         calibrate::Request request;
         for (int i = 0; i < 15; ++i) {
-            const Episode episode = random_episode(random);
+            const ShiftedEpisode episode = random_episode(random);
             std::string text = "x,px\n";
-            for (std::size_t t = 0; t < kSteps; ++t)
+            for (std::size_t t = 0; t < kShiftSteps; ++t)
                 text += fmt::format("{},{}\n", episode.x[t], episode.label[t] ? 1 : 0);
             files.push_back(std::make_unique<TemporaryPath>(fmt::format("shift{}.csv", i), text));
             request.episodes.push_back(files.back()->path());

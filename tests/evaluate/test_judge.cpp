@@ -12,7 +12,7 @@ using evaluate::Evaluation;
 using evaluate::MonitorScore;
 
 /// Columns x (p says x <= 0.5) and truth.p, from two words of y and n; "?" is missing.
-std::string episode(const std::string& said, const std::string& is) {
+std::string judged_episode(const std::string& said, const std::string& is) {
     std::string text = "x,truth.p\n";
     for (std::size_t i = 0; i < said.size(); ++i) {
         text += said[i] == '?' ? "" : said[i] == 'y' ? "0" : "1";
@@ -24,7 +24,7 @@ std::string episode(const std::string& said, const std::string& is) {
 const std::string kNow = "spec t; input x : f32; predicate p = x <= 0.5; sliding monitor now = p;";
 
 evaluate::Detection detection(const std::string& said, const std::string& is) {
-    return evaluated(kNow, {episode(said, is)}).monitors.at(0).detection;
+    return evaluated(kNow, {judged_episode(said, is)}).monitors.at(0).detection;
 }
 
 TEST(Detection, IsTheTimeFromTurnToTurn) {
@@ -45,7 +45,7 @@ TEST(Detection, MayNeverBe) {
 }
 
 TEST(Judge, CountsWhatAMissingSampleLeavesOpen) {
-    const Evaluation found = evaluated(kNow, {episode("yn?ny?", "yyynn?")});
+    const Evaluation found = evaluated(kNow, {judged_episode("yn?ny?", "yyynn?")});
     EXPECT_EQ(found.frames, 6U);
     const Counts expected{1, 1, 1, 1, 1, 0, 1};
     EXPECT_EQ(found.predicates.at(0).frames.counts, expected);
@@ -57,22 +57,22 @@ TEST(Judge, CountsWhatAMissingSampleLeavesOpen) {
 }
 
 TEST(Judge, TheComparisonDecidesAtTheThreshold) {
-    const std::string episode = "x,truth.p\n0.5,1\n";
+    const std::string judged_episode = "x,truth.p\n0.5,1\n";
     for (const auto& [comparison, holds] : {std::pair("<=", true), std::pair("<", false),
                                             std::pair(">=", true), std::pair(">", false)}) {
         const Evaluation found = evaluated("spec t; input x : f32; predicate p = x " +
                                                std::string(comparison) + " 0.5; monitor m = F p;",
-                                           {episode});
+                                           {judged_episode});
         EXPECT_EQ(found.predicates.at(0).frames.counts.true_positives, holds ? 1U : 0U)
             << comparison;
     }
 }
 
 TEST(Judge, RanksByTheSideOfTheThreshold) {
-    const std::string episode = "x,truth.p\n0,1\n1,1\n2,0\n3,0\n";
+    const std::string judged_episode = "x,truth.p\n0,1\n1,1\n2,0\n3,0\n";
     const std::string spec = "spec t; input x : f32; monitor m = F p; predicate p = x ";
-    EXPECT_EQ(evaluated(spec + "<= 9;", {episode}).predicates.at(0).auroc.value, 1.0);
-    EXPECT_EQ(evaluated(spec + ">= 9;", {episode}).predicates.at(0).auroc.value, 0.0);
+    EXPECT_EQ(evaluated(spec + "<= 9;", {judged_episode}).predicates.at(0).auroc.value, 1.0);
+    EXPECT_EQ(evaluated(spec + ">= 9;", {judged_episode}).predicates.at(0).auroc.value, 0.0);
 }
 
 TEST(Ordering, IsMeasuredWhereEveryStageWasVisited) {
@@ -133,14 +133,15 @@ TEST(Evaluate, NamesEveryEpisodeThatCannotBeRead) {
 }
 
 TEST(Evaluate, AnEpisodeWithoutStepsIsAMistake) {
-    EXPECT_EQ(mistakes(kNow, {episode("", ""), episode("y", "y")}),
+    EXPECT_EQ(mistakes(kNow, {judged_episode("", ""), judged_episode("y", "y")}),
               (std::vector<std::string>{"0000.csv: holds no step, expected at least one"}));
 }
 
 TEST(Evaluate, CountsEpisodesThatRepeatAnother) {
-    EXPECT_EQ(
-        evaluated(kNow, {episode("yn", "yn"), episode("yn", "nn"), episode("ny", "yn")}).repeated,
-        1U);
+    EXPECT_EQ(evaluated(kNow, {judged_episode("yn", "yn"), judged_episode("yn", "nn"),
+                               judged_episode("ny", "yn")})
+                  .repeated,
+              1U);
 }
 
 TEST(Evaluate, CountsEpisodesWithATargetAmongTheFrames) {

@@ -13,10 +13,8 @@
 namespace etlc::fit {
 namespace {
 
-using Eigen::Index;
-
 /// The same numbers at every call.
-Matrix random_matrix(Index rows, Index columns) {
+Matrix random_matrix(Eigen::Index rows, Eigen::Index columns) {
     std::srand(7);
     return Matrix::Random(rows, columns);
 }
@@ -26,14 +24,15 @@ double error(const Matrix& found, const Matrix& expected) {
 }
 
 TEST(Products, AreSummedInTheOrderOfTheColumns) {
-    for (const Index rows : {1, 7, 8, 13, 40}) {
+    for (const Eigen::Index rows : {1, 7, 8, 13, 40}) {
         const Matrix columns = random_matrix(rows, 29);
         Matrix found = Matrix::Zero(rows, rows);
         add_products(columns, 0.5, found);
-        for (Index i = 0; i < rows; ++i)
-            for (Index j = 0; j <= i; ++j) {
+        for (Eigen::Index i = 0; i < rows; ++i)
+            for (Eigen::Index j = 0; j <= i; ++j) {
                 double sum = 0;
-                for (Index k = 0; k < columns.cols(); ++k) sum += columns(i, k) * columns(j, k);
+                for (Eigen::Index k = 0; k < columns.cols(); ++k)
+                    sum += columns(i, k) * columns(j, k);
                 EXPECT_EQ(found(i, j), 0.5 * sum) << rows << " rows, " << i << ", " << j;
             }
     }
@@ -50,7 +49,7 @@ TEST(Cholesky, SolvesAndInverts) {
     EXPECT_FALSE(Cholesky::of(narrow * narrow.transpose())) << "60 directions of 100";
 }
 
-void expect_eigenpairs(const Matrix& symmetric, Index count, const std::string& what) {
+void expect_eigenpairs(const Matrix& symmetric, Eigen::Index count, const std::string& what) {
     const Eigenpairs found = greatest_eigenpairs(symmetric, count);
     const Vector all = Eigen::SelfAdjointEigenSolver<Matrix>(symmetric).eigenvalues();
     EXPECT_LT(error(found.values, all.reverse().head(count)), 1e-12) << what;
@@ -87,10 +86,10 @@ Matrix within(const Matrix& frames, const std::vector<std::int8_t>& classes) {
     for (const int c : {0, 1}) {
         Vector mean = Vector::Zero(frames.rows());
         double n = 0;
-        for (Index i = 0; i < frames.cols(); ++i)
+        for (Eigen::Index i = 0; i < frames.cols(); ++i)
             if (classes[static_cast<std::size_t>(i)] == c) mean += frames.col(i), n += 1;
         if (n == 0) continue;
-        for (Index i = 0; i < frames.cols(); ++i)
+        for (Eigen::Index i = 0; i < frames.cols(); ++i)
             if (classes[static_cast<std::size_t>(i)] == c)
                 result += (frames.col(i) - mean / n) * (frames.col(i) - mean / n).transpose();
     }
@@ -102,17 +101,17 @@ Matrix within(const Matrix& frames, const std::vector<std::int8_t>& classes) {
 TEST(Moments, OfPartsMergedAreThoseOfAllFrames) {
     const Matrix frames = random_matrix(6, 1500).cast<float>().cast<double>();
     std::vector<std::int8_t> known, partly;
-    for (Index i = 0; i < frames.cols(); ++i) {
+    for (Eigen::Index i = 0; i < frames.cols(); ++i) {
         known.push_back(frames(0, i) > 0.3 ? 1 : 0);
         partly.push_back(i % 5 == 0 ? Blocks::kNone : static_cast<std::int8_t>(i % 2));
     }
     std::vector<Moments> all{Moments(6), Moments(6)};
-    for (const auto& [begin, end] : {std::pair<Index, Index>{0, 700}, {700, 1500}}) {
+    for (const auto& [begin, end] : {std::pair<Eigen::Index, Eigen::Index>{0, 700}, {700, 1500}}) {
         Blocks blocks(6, {true, true});
-        for (Index i = begin; i < end; ++i) {
+        for (Eigen::Index i = begin; i < end; ++i) {
             const auto at = static_cast<std::size_t>(i);
             std::vector<float> point(6);
-            for (Index d = 0; d < 6; ++d)
+            for (Eigen::Index d = 0; d < 6; ++d)
                 point[static_cast<std::size_t>(d)] = static_cast<float>(frames(d, i));
             blocks.add(point, {known[at], partly[at]});
         }
@@ -141,17 +140,17 @@ TEST(Moments, ClassesThatDoNotVaryHaveNoVarianceWithin) {
 
 TEST(Clusters, AreThoseThatLieApart) {
     Matrix points = random_matrix(5, 120) * 0.1;
-    for (Index i = 0; i < points.cols(); ++i) points(i % 3, i) += 10;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) points(i % 3, i) += 10;
     const Points all(points);
     Members every_other;
-    for (Index i = 0; i < points.cols(); i += 2) every_other.push_back(i);
+    for (Eigen::Index i = 0; i < points.cols(); i += 2) every_other.push_back(i);
     const auto centres = k_means(all, every_other, 3);
     ASSERT_TRUE(centres);
-    for (Index c = 0; c < 3; ++c) {
-        Index cluster = 0;
+    for (Eigen::Index c = 0; c < 3; ++c) {
+        Eigen::Index cluster = 0;
         centres->col(c).maxCoeff(&cluster);
         Vector mean = Vector::Zero(5);
-        for (const Index i : every_other)
+        for (const Eigen::Index i : every_other)
             if (i % 3 == cluster) mean += points.col(i) / 20;
         EXPECT_LT(error(centres->col(c), mean), 1e-12);
     }

@@ -16,7 +16,7 @@
 namespace etlc::tests {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
 /// "predicate p0 = min l1(v, near) <= 1.25;" with a range of at least gamma around 1.25, no end of
 /// it below 0 where 1.25 is not.
@@ -97,7 +97,7 @@ Labels random_labels(const check::Model& model, const reference::Trace& trace, s
     Random random(seed);
     const auto telemetry = reference::evaluate(model, trace).telemetry;
     const auto distance = [&](std::size_t step, std::size_t predicate) {
-        if (random.chance(0.1)) return random.chance(0.5) ? kInfinity : -kInfinity;
+        if (random.chance(0.1)) return random.chance(0.5) ? kFloatInfinity : -kFloatInfinity;
         if (random.chance(0.1)) return std::numeric_limits<float>::quiet_NaN();
         if (step == 0 || random.chance(0.3)) return static_cast<float>(random.grid(-4, 8, 0.25));
         return static_cast<float>(

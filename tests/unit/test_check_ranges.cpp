@@ -12,7 +12,7 @@
 namespace etlc::check {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kInf = std::numeric_limits<float>::infinity();
 
 /// float32 arithmetic, an operation at a time.
 float value_of(const Expr& e, const std::vector<float>& inputs) {
@@ -133,10 +133,10 @@ TEST(Ranges, ByHand) {
     expect_range("-x", -3, 2);
     expect_range("x * x", -6, 9);  // interval arithmetic does not know that both are the same
     expect_range("x / y", -2, 3);
-    expect_range("y / x", -kInfinity, kInfinity);
-    expect_range("1 / n", -kInfinity, kInfinity);
+    expect_range("y / x", -kInf, kInf);
+    expect_range("1 / n", -kInf, kInf);
     expect_range("n * 0", 0, 0);
-    expect_range("n * x", -kInfinity, kInfinity);
+    expect_range("n * x", -kInf, kInf);
     expect_range("y / (n + 1)", 0, 4);
     expect_range("abs(x)", 0, 3);
     expect_range("sqrt(y)", 1, 2);
@@ -144,19 +144,19 @@ TEST(Ranges, ByHand) {
                  std::nextafter(std::sqrt(3.0F), 2.0F));  // 1.73205078F lies below the root
     expect_range("min(x, y)", -2, 3);
     expect_range("max(x, y, 2)", 2, 4);
-    expect_range("u", -kInfinity, kInfinity);
-    expect_range("abs(u)", 0, kInfinity);
+    expect_range("u", -kInf, kInf);
+    expect_range("abs(u)", 0, kInf);
 }
 
 TEST(Ranges, OfDistances) {
     for (const char* metric : {"l2", "l2sq", "l1", "linf", "mahalanobis([1, 2])"})
-        expect_range(std::string(metric) + "(z, t1)", 0, kInfinity);
+        expect_range(std::string(metric) + "(z, t1)", 0, kInf);
     for (const char* aggregation : {"min", "max", "mean", "kth(2)"})
         expect_range(std::string(aggregation) + " cosine(z, t2)", 0, 2);
     expect_range("angular(z, t1)", 0, 3.14159274F);
     EXPECT_GT(static_cast<double>(3.14159274F), 3.14159265358979323846);
     expect_range("cosine(z, t1) - min cosine(z, t2)", -2, 2);
-    expect_range("l2(z, t1) - min l2(z, t2)", -kInfinity, kInfinity);
+    expect_range("l2(z, t1) - min l2(z, t2)", -kInf, kInf);
 }
 
 TEST(Ranges, OutwardWhereInexact) {
@@ -170,7 +170,7 @@ TEST(Ranges, OutwardWhereInexact) {
     EXPECT_EQ(third.low, std::nextafter(1.0F / 3.0F, 0.0F));
     EXPECT_EQ(third.high, 1.0F / 3.0F);
     const Range huge = range_of("x * 1e30", "input x : f32 in [1, 1e30];");
-    EXPECT_EQ(huge.high, kInfinity);
+    EXPECT_EQ(huge.high, kInf);
 }
 
 TEST(Ranges, OfRobustness) {

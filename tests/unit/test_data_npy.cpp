@@ -20,14 +20,14 @@ using tests::npy_raw;
 
 const std::string kFolder = ETLC_SOURCE_DIR "/tests/unit/data/";
 
-struct Sound {
+struct SoundArray {
     std::string file;
     Element element;
     double offset;  ///< element (i, j) is (4 i + j + offset) * scale
     double scale;
 };
 
-class SoundNpy : public ::testing::TestWithParam<Sound> {};
+class SoundNpy : public ::testing::TestWithParam<SoundArray> {};
 
 TEST_P(SoundNpy, ReadsAsNumpyWroteIt) {
     const auto array = read_npy(kFolder + GetParam().file + ".npy");
@@ -43,14 +43,15 @@ TEST_P(SoundNpy, ReadsAsNumpyWroteIt) {
 INSTANTIATE_TEST_SUITE_P(
     Npy, SoundNpy,
     ::testing::Values(
-        Sound{"f2_c", Element::f16, -2, 0.5}, Sound{"f2_fortran", Element::f16, -2, 0.5},
-        Sound{"f4_c", Element::f32, -2, 0.5}, Sound{"f4_fortran", Element::f32, -2, 0.5},
-        Sound{"f8_c", Element::f64, -2, 0.5}, Sound{"f8_fortran", Element::f64, -2, 0.5},
-        Sound{"i1", Element::i8, -2, 1}, Sound{"i2", Element::i16, -2, 1},
-        Sound{"i4", Element::i32, -2, 1}, Sound{"i8", Element::i64, -2, 1},
-        Sound{"u1", Element::u8, 0, 1}, Sound{"u2", Element::u16, 0, 1},
-        Sound{"u4", Element::u32, 0, 1}, Sound{"u8", Element::u64, 0, 1},
-        Sound{"version2", Element::f32, -2, 0.5}, Sound{"version3", Element::f32, -2, 0.5}),
+        SoundArray{"f2_c", Element::f16, -2, 0.5}, SoundArray{"f2_fortran", Element::f16, -2, 0.5},
+        SoundArray{"f4_c", Element::f32, -2, 0.5}, SoundArray{"f4_fortran", Element::f32, -2, 0.5},
+        SoundArray{"f8_c", Element::f64, -2, 0.5}, SoundArray{"f8_fortran", Element::f64, -2, 0.5},
+        SoundArray{"i1", Element::i8, -2, 1}, SoundArray{"i2", Element::i16, -2, 1},
+        SoundArray{"i4", Element::i32, -2, 1}, SoundArray{"i8", Element::i64, -2, 1},
+        SoundArray{"u1", Element::u8, 0, 1}, SoundArray{"u2", Element::u16, 0, 1},
+        SoundArray{"u4", Element::u32, 0, 1}, SoundArray{"u8", Element::u64, 0, 1},
+        SoundArray{"version2", Element::f32, -2, 0.5},
+        SoundArray{"version3", Element::f32, -2, 0.5}),
     [](const auto& one) { return one.param.file; });
 
 TEST(Npy, BoolReadsAsZeroAndOne) {
@@ -139,7 +140,7 @@ TEST(Npy, HeaderMayBeWrittenOtherwise) {
     }
 }
 
-struct Broken {
+struct BrokenArray {
     std::string what;
     std::string bytes;
     Code code;
@@ -149,7 +150,7 @@ struct Broken {
 const std::string kExpectedElements =
     ", expected little-endian float16, float32, float64, integers or bool";
 
-std::vector<Broken> broken() {
+std::vector<BrokenArray> broken_arrays() {
     const std::string two = floats({1, 2});
     const auto header = [&](const std::string& dictionary) { return npy_raw(dictionary, two); };
     const auto elements = [&](const std::string& descr) { return npy(descr, "(2,)", two); };
@@ -241,7 +242,7 @@ std::vector<Broken> broken() {
 }
 
 TEST(Npy, EveryFaultHasItsMessage) {
-    for (const Broken& one : broken()) {
+    for (const BrokenArray& one : broken_arrays()) {
         const auto array = parse_npy(one.bytes);
         ASSERT_FALSE(array) << one.what;
         EXPECT_EQ(array.failure().code, one.code) << one.what;

@@ -14,12 +14,12 @@ using tests::npy;
 using tests::patched;
 using tests::zip_of;
 
-const std::string kFolder = ETLC_SOURCE_DIR "/tests/unit/data/";
+const std::string kArchives = ETLC_SOURCE_DIR "/tests/unit/data/";
 
 TEST(Npz, StoredAndDeflatedGiveTheSame) {
     for (const char* file : {"stored.npz", "deflated.npz"}) {
         for (const char* key : {"goal", "half", "turned"}) {
-            const auto array = read_npz(kFolder + file, key);
+            const auto array = read_npz(kArchives + file, key);
             ASSERT_TRUE(array) << array.failure().message;
             EXPECT_EQ(array->shape_text(), "(3, 4)");
             for (int k = 0; k < 12; ++k)
@@ -29,8 +29,8 @@ TEST(Npz, StoredAndDeflatedGiveTheSame) {
 }
 
 TEST(Npz, TheOnlyArrayNeedsNoKey) {
-    ASSERT_TRUE(read_npz(kFolder + "single.npz", ""));
-    const auto which = read_npz(kFolder + "stored.npz", "");
+    ASSERT_TRUE(read_npz(kArchives + "single.npz", ""));
+    const auto which = read_npz(kArchives + "stored.npz", "");
     ASSERT_FALSE(which);
     EXPECT_EQ(which.failure().code, Code::no_such_array);
     EXPECT_EQ(which.failure().message,
@@ -44,7 +44,7 @@ std::string archive(bool deflated = true) {
     return zip_of({{"z.npy", npy("<f4", "(2,)", kTwo), deflated}});
 }
 
-struct Broken {
+struct BrokenArchive {
     std::string what;
     std::string bytes;
     std::string key;
@@ -52,7 +52,7 @@ struct Broken {
     std::string message;
 };
 
-std::vector<Broken> broken() {
+std::vector<BrokenArchive> broken_archives() {
     const std::string array = npy("<f4", "(2,)", kTwo);
     const std::string stored = archive(false);
     const std::string two_z =
@@ -103,7 +103,7 @@ std::vector<Broken> broken() {
 }
 
 TEST(Npz, EveryFaultHasItsMessage) {
-    for (const Broken& one : broken()) {
+    for (const BrokenArchive& one : broken_archives()) {
         const auto array = parse_npz(one.bytes, one.key);
         ASSERT_FALSE(array) << one.what;
         EXPECT_EQ(array.failure().code, one.code) << one.what;
@@ -183,7 +183,7 @@ TEST(Npz, AnArchiveInAMemberIsNotTakenForTheArchive) {
 }
 
 TEST(Npz, OtherCompressionMethodsOfPythonAreRefused) {
-    const auto array = read_npz(kFolder + "bzip2.npz", "goal");
+    const auto array = read_npz(kArchives + "bzip2.npz", "goal");
     ASSERT_FALSE(array);
     EXPECT_EQ(array.failure().message,
               "array 'goal': is packed by zip method 12, expected 0 (stored) or 8 (deflated)");

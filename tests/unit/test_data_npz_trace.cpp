@@ -16,7 +16,7 @@ using tests::floats;
 using tests::npy;
 using tests::zip_of;
 
-const std::string kFolder = ETLC_SOURCE_DIR "/tests/unit/data/";
+const std::string kTraces = ETLC_SOURCE_DIR "/tests/unit/data/";
 
 TEST(NpzTrace, StepsOfEveryKind) {
     const std::vector<Channel> channels{
@@ -24,7 +24,7 @@ TEST(NpzTrace, StepsOfEveryKind) {
         {"gripper", Kind::scalar, 1}, {"column", Kind::scalar, 1},   {"held", Kind::boolean, 1},
         {"gripper", Kind::vector, 1}, {"held_int", Kind::boolean, 1}};
     for (const char* file : {"trace_stored.npz", "trace_deflated.npz"}) {
-        auto trace = open_trace(kFolder + file, channels);
+        auto trace = open_trace(kTraces + file, channels);
         ASSERT_TRUE(trace) << trace.failure().message;
         EXPECT_EQ((*trace)->length(), 7U);
         Sample sample;
@@ -47,7 +47,7 @@ TEST(NpzTrace, StepsOfEveryKind) {
 }
 
 TEST(NpzTrace, AnOptionalArrayMayBeAbsent) {
-    auto trace = open_trace(kFolder + "trace_deflated.npz", {{"truth.at_a", Kind::boolean, 1, true},
+    auto trace = open_trace(kTraces + "trace_deflated.npz", {{"truth.at_a", Kind::boolean, 1, true},
                                                              {"gripper", Kind::scalar, 1},
                                                              {"held", Kind::boolean, 1, true}});
     ASSERT_TRUE(trace) << trace.failure().message;
@@ -63,13 +63,13 @@ TEST(NpzTrace, AnOptionalArrayMayBeAbsent) {
         EXPECT_EQ(sample.values[2][0], t % 2);
     }
     const auto nothing =
-        open_trace(kFolder + "trace_deflated.npz", {{"truth.at_a", Kind::boolean, 1, true}});
+        open_trace(kTraces + "trace_deflated.npz", {{"truth.at_a", Kind::boolean, 1, true}});
     ASSERT_FALSE(nothing);  // how many steps it has, nobody knows
     EXPECT_EQ(nothing.failure().code, Code::trace_shape);
 }
 
 TEST(NpzTrace, NotFiniteIsNaN) {
-    auto trace = open_trace(kFolder + "trace_deflated.npz", {{"gap", Kind::scalar, 1}});
+    auto trace = open_trace(kTraces + "trace_deflated.npz", {{"gap", Kind::scalar, 1}});
     ASSERT_TRUE(trace);
     Sample sample;
     for (int t = 0; t < 7; ++t) {
@@ -78,7 +78,7 @@ TEST(NpzTrace, NotFiniteIsNaN) {
     }
 }
 
-struct Broken {
+struct BrokenTrace {
     std::string what;
     std::vector<tests::Member> members;
     std::vector<Channel> channels;
@@ -90,7 +90,7 @@ const std::vector<Channel> kScalar{{"g", Kind::scalar, 1}};
 const std::vector<Channel> kVector{{"z", Kind::vector, 2}};
 const std::vector<Channel> kBoolean{{"b", Kind::boolean, 1}};
 
-std::vector<Broken> broken() {
+std::vector<BrokenTrace> broken_traces() {
     const auto g = [](const std::string& descr, const std::string& shape, const std::string& data) {
         return std::vector<tests::Member>{{"g.npy", npy(descr, shape, data)}};
     };
@@ -177,7 +177,7 @@ std::optional<diag::Failure> first_failure(const ArchivePlace& place,
 }
 
 TEST(NpzTrace, EveryFaultHasItsMessage) {
-    for (const Broken& one : broken()) {
+    for (const BrokenTrace& one : broken_traces()) {
         const std::string bytes =
             zip_of(one.members.empty() ? std::vector<tests::Member>{{"x", "x"}} : one.members);
         const auto failure = first_failure({"run.npz", bytes, true}, one.channels);
@@ -237,7 +237,7 @@ TEST(NpzTrace, WithoutATemporaryFolderFortranOrderSaysSo) {
     const std::string before = std::getenv("TMPDIR") != nullptr ? std::getenv("TMPDIR") : "";
     ::setenv("TMPDIR", "/no/such/folder", 1);
     const auto failure =
-        first_failure({kFolder + "trace_stored.npz", {}, false}, {{"z_turned", Kind::vector, 3}});
+        first_failure({kTraces + "trace_stored.npz", {}, false}, {{"z_turned", Kind::vector, 3}});
     before.empty() ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", before.c_str(), 1);
     ASSERT_TRUE(failure);
     EXPECT_EQ(failure->code, Code::unreadable_trace);

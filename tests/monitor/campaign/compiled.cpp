@@ -17,8 +17,8 @@ namespace {
 
 constexpr int kMonitorsPerClass = 20;
 constexpr int kClassesPerProgram = 4;
-constexpr int kShrinkingTries = 150;  // each is a run of the compiler
-constexpr plan::Limits kRoomy{64U << 20U, 64U << 20U, 256U << 20U};
+constexpr int kCompiledTries = 150;  // each is a run of the compiler
+constexpr plan::Limits kCampaignLimits{64U << 20U, 64U << 20U, 256U << 20U};
 /// Every program is made once with each: what flags may change is not what a verdict is.
 const std::vector<Build>& builds() {
     static const std::vector<Build> all{{"Gcc", "g++", "-O1"},
@@ -64,7 +64,7 @@ Request request_for(const check::Model& model, const Subject& subject, std::uint
 std::optional<std::string> mismatch_of(const check::Model& model, check::Values values,
                                        const reference::Trace& trace, Observed observed,
                                        WhyTally& whys) {
-    observed.dependencies = PlanRunner(model, kRoomy, values).dependencies();
+    observed.dependencies = PlanRunner(model, kCampaignLimits, values).dependencies();
     const Comparison comparison{.on_demand = values == check::Values::boolean};
     const auto verdicts =
         first_mismatch(model, expected_run(model, trace, observed, values), observed, comparison);
@@ -102,7 +102,7 @@ void compare(const GeneratedProgram& program, const std::vector<check::Values>& 
             failed[requests[n].spec] = true;
             const std::string what = fmt::format("compiled, {}: {}", build.name, *mismatch);
             tally.findings.push_back(shrink({std::string(model.file.text()), trace, what},
-                                            trial_on(of, build), kShrinkingTries));
+                                            trial_on(of, build), kCompiledTries));
         }
     }
 }

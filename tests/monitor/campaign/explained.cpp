@@ -22,8 +22,8 @@ using reference::Said;
 using reference::SampleSet;
 using reference::Status;
 
-constexpr int kTracesPerFormula = 3;
-constexpr int kShrinkingTries = 3000;
+constexpr int kTracesPerExplained = 3;
+constexpr int kExplainedTries = 3000;
 constexpr std::size_t kLongest = 40;
 
 std::string words(Said said) {
@@ -328,14 +328,14 @@ void try_explanations(const Effort& effort, Tally& tally) {
     for (std::uint64_t n = 0; tally.explained < effort.explained && !tally.enough(); ++n) {
         const Subject tried = subject(effort.seed, kBeyondCompiled + n, 1);
         const auto model = load(tried.spec());
-        for (int t = 0; model && t < kTracesPerFormula; ++t) {
+        for (int t = 0; model && t < kTracesPerExplained; ++t) {
             const reference::Trace trace =
                 subject_trace(*model, tried, t, std::min(effort.longest, kLongest));
             const std::uint64_t seed = tried.seed + static_cast<std::uint64_t>(t);
             const auto mismatch = mismatch_of(*model, trace, tried.values, seed, &tally);
             if (!mismatch) continue;
             tally.findings.push_back(shrink({tried.spec(), trace, *mismatch},
-                                            trial_on(tried.values, seed), kShrinkingTries));
+                                            trial_on(tried.values, seed), kExplainedTries));
             break;
         }
     }
