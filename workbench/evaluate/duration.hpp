@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "evaluate/counts.hpp"
+#include "evaluate/figures.hpp"
 
 namespace etlc::evaluate {
 

@@ -10,8 +10,8 @@
 
 #include "episodes/ranking/auroc.hpp"
 #include "episodes/replay.hpp"
-#include "evaluate/counts.hpp"
 #include "evaluate/duration.hpp"
+#include "evaluate/figures.hpp"
 #include "evaluate/subject.hpp"
 
 namespace etlc::evaluate {

@@ -19,7 +19,6 @@
 #include "diag/diag.hpp"
 #include "episodes/ranking/frames_by_score.hpp"
 #include "episodes/shared/sharing.hpp"
-#include "evaluate/bootstrap.hpp"
 #include "evaluate/episode_scores.hpp"
 #include "evaluate/subject.hpp"
 #include "pipeline/compile.hpp"

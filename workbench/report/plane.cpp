@@ -1,5 +1,3 @@
-#include "report/plane.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -7,6 +5,7 @@
 #include "episodes/replay.hpp"
 #include "fit/algebra/eigenvectors.hpp"
 #include "plan/plan.hpp"
+#include "report/tracks.hpp"
 
 namespace etlc::report {
 

@@ -23,7 +23,7 @@ function thresholdLine(g, x, height, threshold) {
 // Draws shares of each class, so that a rare class is visible beside a frequent one.
 function drawHistogram(card, predicate) {
   const { edges, inside, outside } = predicate.distribution;
-  const { g, width, height } = cardDrawing(card, "Distances: where it truly holds, and elsewhere");
+  const { g, width, height } = cardDrawing(card, "Distances of the frames labelled true and false");
   const x = scale(d3.extent([...edges, predicate.threshold]), [0, width]);
   const parts = [["outside", outside], ["inside", inside]].map(([name, counts]) => {
     const all = d3.sum(counts);
@@ -37,11 +37,11 @@ function drawHistogram(card, predicate) {
   }
   thresholdLine(g, x, height, predicate.threshold);
   xAxis(g, x, height, predicate.expression);
-  yAxis(g, y, "part of the frames", 4);
+  yAxis(g, y, "share of the frames", 4);
   const key = element("p", { class: "key" });
   for (const { name, all } of [parts[1], parts[0]])
     key.append(element("span", { class: `swatch ${name}` }),
-      `${name === "inside" ? "truly so" : "not so"}: ${counted(all, "frame")} `);
+      `${name === "inside" ? "true" : "false"}: ${counted(all, "frame")} `);
   key.append(element("span", { class: "swatch threshold" }),
     `threshold ${measured(predicate.threshold)}`);
   card.lastChild.append(key);

@@ -200,7 +200,7 @@ class Timelines {
       this.marks.append("rect").attr("class", "sample").attr("x", this.x(mark.first - 0.5))
         .attr("width", Math.max(this.x(mark.last + 0.5) - this.x(mark.first - 0.5), 2))
         .attr("y", lane.top + laneSize.title).attr("height", lane.chart)
-        .append("title").text(`${why.status} rests on this`);
+        .append("title").text(`${why.status} depends on this`);
     }
     const lane = why.critical && laneOf(why.critical);
     if (!lane) return;
