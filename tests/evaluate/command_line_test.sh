@@ -57,7 +57,7 @@ sed 's/<= 0.5;/<= calibrated(adaptive, alpha = 0.5, gamma = 0.1, lo = 0, hi = 4)
     >adaptive.etl
 "$etlc" calibrate adaptive.etl --data episodes/[012].csv >calibrated.txt
 "$etlc" evaluate adaptive.etl --data episodes/[345].csv >adaptive.txt
-grep -q '^near: with the threshold that it starts with; labels would move it$' adaptive.txt ||
+grep -q '^near: evaluated with its initial threshold, which labels would adapt$' adaptive.txt ||
     fail "$(cat adaptive.txt)"
 
 status=0

@@ -7,8 +7,7 @@
 #include <random>
 
 #include "episodes/random.hpp"
-#include "evaluate/bootstrap.hpp"
-#include "evaluate/counts.hpp"
+#include "evaluate/figures.hpp"
 
 namespace etlc::evaluate {
 namespace {

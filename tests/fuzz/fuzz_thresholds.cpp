@@ -6,10 +6,10 @@
 
 #include "check/guarantees/consistency.hpp"
 #include "data/arrays/npz_writer.hpp"
-#include "embedded/embedded.hpp"
-#include "fitted/fitted.hpp"
+#include "artifacts/embedded.hpp"
+#include "artifacts/fitted.hpp"
 #include "fuzz_target.hpp"
-#include "thresholds/thresholds.hpp"
+#include "artifacts/thresholds.hpp"
 
 namespace {
 

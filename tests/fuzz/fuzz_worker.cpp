@@ -15,7 +15,7 @@
 #include "data/frames/protocol.hpp"
 #include "embed/encoder.hpp"
 #include "embed/worker/onnx.hpp"
-#include "embedded/embedded.hpp"
+#include "artifacts/embedded.hpp"
 #include "fuzz_target.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 #include "check/guarantees/provenance.hpp"
 #include "loading.hpp"
 #include "random.hpp"
-#include "thresholds/thresholds.hpp"
+#include "artifacts/thresholds.hpp"
 
 namespace etlc::tests {
 namespace {

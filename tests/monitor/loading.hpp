@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "thresholds/thresholds.hpp"
+#include "artifacts/thresholds.hpp"
 
 namespace etlc::tests {
 

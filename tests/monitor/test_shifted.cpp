@@ -18,7 +18,7 @@
 #include "random.hpp"
 #include "random_spec.hpp"
 #include "random_trace.hpp"
-#include "thresholds/thresholds.hpp"
+#include "artifacts/thresholds.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // Tests the file of fits: it reads back to the same bits, numpy can read it, and every fault is
 // reported with its key, the value found and the value expected.
-#include "fitted/fitted.hpp"
+#include "artifacts/fitted.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -147,13 +147,14 @@ TEST(Fitted, FaultsNameTheKeyWhatIsThereAndWhatIsExpected) {
         {R"("offset": "Q-offset")", R"("offset": "anchors")",
          "array 'anchors' has shape (2, 3), expected dimension"},
         {R"("array": "Q")", R"("array": "metric-1")",
-         "array 'Q-offset' has 3 numbers, expected 1, as many as the columns of its matrix"},
+         "array 'Q-offset' has 3 numbers, expected 1, one per column of its matrix"},
         {R"("array": "metric-1")", R"("array": "infinite")",
          "array 'infinite' holds inf at element 1, expected finite numbers"},
         {R"("anchors": {)", R"("a b": {)",
-         "'entries.a b' is no name of a projection or target, nor the declaration of a metric"},
+         "'entries.a b' is neither the name of a projection or target nor the declaration of a "
+         "metric"},
         {R"("step": 12 },)", R"("step": 12 }, {},)",
-         "'entries.anchors.medoids' is an array, expected one of 2 frames, as many as rows"},
+         "'entries.anchors.medoids' is an array, expected one of 2 frames, one per row"},
         {R"("0123456789abcdef", "step": 80)", R"("0123", "step": 80)",
          "'entries.anchors.medoids[1].episode' is the text '0123', expected a content hash of 16 "
          "hex digits"},

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "check/encoders/marks.hpp"
+#include "check/encoders/encoders.hpp"
 #include "data/files/file.hpp"
 
 namespace etlc::episodes {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "artifacts/embedded.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
-#include "embedded/embedded.hpp"
 #include "episodes/ranking/auroc.hpp"
 #include "episodes/recording.hpp"
 

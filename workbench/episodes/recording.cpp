@@ -8,10 +8,10 @@
 #include <set>
 #include <utility>
 
+#include "artifacts/embedded.hpp"
 #include "check/encoders/encoders.hpp"
 #include "data/datasets/trace.hpp"
 #include "data/text/quote.hpp"
-#include "embedded/embedded.hpp"
 #include "episodes/data_warnings.hpp"
 
 namespace etlc::episodes {

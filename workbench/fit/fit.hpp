@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "artifacts/fitted.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
 #include "fit/readings.hpp"
 #include "fit/separation.hpp"
 #include "fit/solve.hpp"
-#include "fitted/fitted.hpp"
 
 namespace etlc::fit {
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "artifacts/fitted.hpp"
+#include "artifacts/thresholds.hpp"
 #include "diag/diag.hpp"
 #include "episodes/recording.hpp"
-#include "fitted/fitted.hpp"
-#include "thresholds/thresholds.hpp"
 
 namespace etlc::episodes {
 
