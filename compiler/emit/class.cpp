@@ -44,7 +44,7 @@ std::vector<Member> own_members(const Context& context) {
     result.insert(result.end(), lets.begin(), lets.end());
     if (context.on_demand)
         result.push_back(
-            {"Verdicts", "answers", "the last ones; final ones stay", "answers = Verdicts();", ""});
+            {"Verdicts", "answers_", "the last ones; final ones stay", "answers_ = Verdicts();", ""});
     for (const auto& [m, name] : context.names.position_member)
         result.push_back({"uint32_t", name,
                           fmt::format("steps since {} began; saturates", plan.monitors[m].name),
@@ -60,20 +60,20 @@ std::vector<Member> own_members(const Context& context) {
     }
     if (plan.counts_steps)
         result.push_back(
-            {"uint32_t", "position", "index of the step; saturates", "position = 0;", ""});
+            {"uint32_t", "position_", "index of the step; saturates", "position_ = 0;", ""});
     if (plan.has_sliding)
-        result.push_back({"uint32_t", "finishes", "calls of finish()", "finishes = 0;", ""});
-    result.push_back({"uint32_t", "incomplete", "steps on which something was unknown; saturates",
-                      "incomplete = 0;", ""});
+        result.push_back({"uint32_t", "finishes_", "calls of finish()", "finishes_ = 0;", ""});
+    result.push_back({"uint32_t", "incomplete_", "steps on which something was unknown; saturates",
+                      "incomplete_ = 0;", ""});
     if (context.explains && !context.sampled.places.empty()) {
-        result.push_back({"uint32_t", "measured", "index of the step for measure(); saturates",
-                          "measured = 0;", ""});
-        result.push_back({fmt::format("etlmon::Deciding<{}>", plan.monitors.size()), "deciding",
-                          "the values that decide the verdicts", "deciding.reset();", ""});
+        result.push_back({"uint32_t", "measured_", "index of the step for measure(); saturates",
+                          "measured_ = 0;", ""});
+        result.push_back({fmt::format("etlmon::Deciding<{}>", plan.monitors.size()), "deciding_",
+                          "the values that decide the verdicts", "deciding_.reset();", ""});
     }
     if (plan.recorder)
-        result.push_back({"Recorder", "recorder", "the last steps, and incidents",
-                          "recorder.end_episode();", ""});
+        result.push_back({"Recorder", "recorder_", "the last steps, and incidents",
+                          "recorder_.end_episode();", ""});
     return result;
 }
 
@@ -89,7 +89,7 @@ bool asks_what_exists(const plan::Plan& plan) {
 void print_exists(Printer& out, const Context& context) {
     print_doc(out, "Whether the trace has the position `lag` steps before this one.");
     out.open("bool exists(uint32_t lag) const noexcept {");
-    out.line("return position >= lag{};", context.plan.has_sliding ? " && finishes <= lag" : "");
+    out.line("return position_ >= lag{};", context.plan.has_sliding ? " && finishes_ <= lag" : "");
     out.close();
     out.line();
 }
@@ -183,7 +183,7 @@ void print_constructors(Printer& out, const Context& context) {
                                "are not ready, every predicate on them is unknown at every step.",
                                context.targets_file));
     out.open(
-        "constexpr explicit Monitor(const Targets& targets) noexcept : rows(targets.rows()) {");
+        "constexpr explicit Monitor(const Targets& targets) noexcept : rows_(targets.rows()) {");
     out.line("reset();");
     out.close();
     print_doc(out,
@@ -196,7 +196,7 @@ void print_constructors(Printer& out, const Context& context) {
     out.line("return Targets(bytes, size).ready();");
     out.close();
     print_doc(out, "Whether this monitor has its targets.");
-    out.line("bool ready() const noexcept { return rows != nullptr; }");
+    out.line("bool ready() const noexcept { return rows_ != nullptr; }");
     out.line();
 }
 
@@ -206,7 +206,7 @@ void print_finish(Printer& out, const Context& context) {
               "monitors, cut at the end; a monitor that has reported its last is undecided from "
               "then on. Prefix monitors repeat their verdict.");
     out.open("Verdicts finish() noexcept {");
-    print_wrapped(out, counted("finishes"));
+    print_wrapped(out, counted("finishes_"));
     out.line(context.on_demand ? "return advance(Inputs());" : "return judge(Atoms());");
     out.close();
     out.line();
@@ -270,7 +270,7 @@ void print_interface(Printer& out, const Context& context, const std::vector<Mem
     print_doc(out,
               fmt::format("Steps on which some predicate or bool input {}was unknown; saturates.",
                           context.on_demand ? "that was asked for " : ""));
-    out.line("uint32_t missing_steps() const noexcept { return incomplete; }");
+    out.line("uint32_t missing_steps() const noexcept { return incomplete_; }");
     out.line();
     print_recorder_interface(out, context);
 }
@@ -334,9 +334,9 @@ std::vector<Member> members(const Context& context) {
         return !context.spelling.bytes || !is_bytes(context, member);
     });
     if (context.stores_targets())
-        all.insert(all.begin(), {"const float*", "rows", "in " + context.targets_file, ""});
+        all.insert(all.begin(), {"const float*", "rows_", "in " + context.targets_file, ""});
     if (context.retargetable())
-        all.insert(all.begin(), {"const float*", "numbers", "the parameters; null: none yet", ""});
+        all.insert(all.begin(), {"const float*", "numbers_", "the parameters; null: none yet", ""});
     return all;
 }
 

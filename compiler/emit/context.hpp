@@ -47,7 +47,7 @@ struct Context {
     std::uint64_t shape = 0;                       ///< of such a class; 0 while it is found out
     /// All numbers of the spec lie in parameters that the monitor is given.
     bool retargetable() const { return model.retargetable; }
-    /// Where one of these lies: "numbers + targets::goal", "numbers[thresholds::near]".
+    /// Where one of these lies: "numbers_ + targets::goal", "numbers_[thresholds::near]".
     std::string parameter(plan::Parameter::Kind kind, check::Index index) const;
     std::string parameter(const check::Expr& number) const;
     /// Some target sets lie beside the header: the monitor has to be given them.
@@ -86,7 +86,7 @@ struct Context {
     std::string place(source::Span span) const;
 };
 
-/// "position >= 2 && position <= 5", empty where the window is always open.
+/// "position_ >= 2 && position_ <= 5", empty where the window is always open.
 std::string open_condition(ir::Interval interval, std::string_view position);
 /// "max_of(a, b, c)"; of one argument, that argument. Where some are lazy,
 /// "max_of(max_of(a, b), c)".
@@ -182,6 +182,10 @@ std::vector<Member> members(const Context& context);
 void print_restarts(Printer& out, const Context& context, const std::vector<Member>& all);
 /// Those of readings and streams: the plan says what they are.
 std::vector<Member> temporal_members(const Context& context);
+/// "pending: b U[0, 23] c, ..., b U[0, 0] c": registers that are an array, from the first to the
+/// last; `more`: there are others between them.
+std::string comment_of_array(const Context& context, const plan::Member& first,
+                             const plan::Member& last, bool more);
 std::vector<Member> threshold_members(const Context& context);
 
 // The parameters of a retargetable class; nothing else prints anything then.

@@ -79,6 +79,8 @@ std::set<std::string> runtime_headers(const Context& context) {
     for (const Names::OfReading& reading : context.names.readings) {
         if (!reading.guards.empty()) headers.insert("temporal/machine");
         if (!reading.count.empty()) headers.insert("temporal/pending");
+        if (std::count(reading.elements.begin(), reading.elements.end(), 0) > 0)
+            headers.insert("temporal/registers");
     }
     return headers;
 }

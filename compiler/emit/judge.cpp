@@ -20,7 +20,7 @@ std::string robustness(const Context& context, const std::string& value) {
 /// The verdict, from values that know their sample: the one that decides it is kept.
 std::string deciding(const plan::Monitor& monitor, std::string_view kind, std::size_t m,
                      const std::string& value) {
-    return fmt::format("deciding.{}({}, {}{})", kind, m, value,
+    return fmt::format("deciding_.{}({}, {}{})", kind, m, value,
                        monitor.shifted ? ", " + float_literal(monitor.shift) : "");
 }
 
@@ -42,7 +42,7 @@ std::string sliding_verdict(const Context& context, std::size_t m) {
     const std::string value = context.value(monitor.stream);
     const std::string exists = fmt::format("exists({}) ? ", monitor.horizon);
     if (is_deciding(context))
-        return fmt::format("{}{} : deciding.undecided({})", exists,
+        return fmt::format("{}{} : deciding_.undecided({})", exists,
                            deciding(monitor, "sliding", m, value), m);
     return fmt::format("{}etlmon::sliding_verdict({}) : {}()", exists,
                        shifted(monitor, robustness(context, value)), context.spelling.verdict);
@@ -76,7 +76,7 @@ void print_readings(Printer& out, const Context& context) {
         !context.on_demand;  // prefixes do not grow while finish() reports the last positions
     if (ends) {
         out.gap();
-        out.open("if (finishes == 0) {");
+        out.open("if (finishes_ == 0) {");
     }
     for (std::uint32_t r = 0; r < plan.readings.size(); ++r) {
         out.gap();
@@ -101,10 +101,10 @@ void print_open_verdicts(Printer& out, const Context& context) {
         const plan::Monitor& monitor = context.plan.monitors[m];
         if (monitor.sliding)
             print_wrapped(
-                out, fmt::format("answers.{} = {};", monitor.name, sliding_verdict(context, m)));
+                out, fmt::format("answers_.{} = {};", monitor.name, sliding_verdict(context, m)));
         else
             print_wrapped(
-                out, fmt::format("{}answers.{} = etlmon::prefix_verdict({});", if_open(context, m),
+                out, fmt::format("{}answers_.{} = etlmon::prefix_verdict({});", if_open(context, m),
                                  monitor.name, context.names.readings[monitor.reading].local));
     }
 }
@@ -132,9 +132,9 @@ void print_advance(Printer& out, const Context& context) {
     for (const auto& [m, open] : context.names.open_local) {
         const bool repeats = plan.monitors[m].restarts == check::Restarts::when_final;
         const std::string undecided =
-            repeats ? "" : fmt::format("!answers.{}.final()", plan.monitors[m].name);
+            repeats ? "" : fmt::format("!answers_.{}.final()", plan.monitors[m].name);
         print_wrapped(out, fmt::format("const bool {} = {}{}{};", open,
-                                       plan.has_sliding ? "finishes == 0" : "",
+                                       plan.has_sliding ? "finishes_ == 0" : "",
                                        plan.has_sliding && !repeats ? " && " : "", undecided));
     }
     out.gap();
@@ -143,11 +143,11 @@ void print_advance(Printer& out, const Context& context) {
     out.gap();
     print_open_verdicts(out, context);
     print_lets(out, context);
-    print_wrapped(out, "if (missing && incomplete != UINT32_MAX) ++incomplete;");
-    print_progress(out, context, "answers");
-    print_record(out, context, "answers");
-    if (plan.counts_steps) print_wrapped(out, counted("position"));
-    out.line("return answers;");
+    print_wrapped(out, "if (missing && incomplete_ != UINT32_MAX) ++incomplete_;");
+    print_progress(out, context, "answers_");
+    print_record(out, context, "answers_");
+    if (plan.counts_steps) print_wrapped(out, counted("position_"));
+    out.line("return answers_;");
     out.close();
 }
 
@@ -171,7 +171,7 @@ void print_judge(Printer& out, const Context& context) {
     print_lets(out, context);
     print_progress(out, context, "verdicts");
     print_record(out, context, "verdicts");
-    if (plan.counts_steps) print_wrapped(out, counted("position"));
+    if (plan.counts_steps) print_wrapped(out, counted("position_"));
     out.line("return verdicts;");
     out.close();
 }

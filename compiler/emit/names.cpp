@@ -16,8 +16,6 @@ namespace etlc::emit {
 
 namespace {
 
-constexpr std::size_t kLongestPartName = 24;
-
 /// A data member that is named after the spec.
 std::string member(Scope& scope, const std::string& name) {
     return scope.claim(name, "_");
@@ -154,10 +152,10 @@ private:
             names_.distance_local[d] = local(measure_, distance_name(model_.distances[d]));
     }
 
-    /// Of a retargetable class without the weights, which may change.
+    /// "min_l2_z_goal"; "to_goal" where that is too long or, in a retargetable class, may change.
     std::string distance_name(const check::Distance& distance) const {
-        return model_.retargetable ? "to_" + model_.targets[distance.target].name
-                                   : identifier(distance.text, "distance");
+        const std::string to_target = "to_" + model_.targets[distance.target].name;
+        return model_.retargetable ? to_target : identifier(distance.text, to_target);
     }
 
     /// "nearest_P_T", T the target set.
@@ -261,7 +259,7 @@ private:
     /// A part of a monitor's formula: its own words where they are few.
     std::string part_name(std::uint32_t r) const {
         const std::string words = identifier(graph_.short_text(plan_.readings[r].node), "");
-        if (!words.empty() && words.size() <= kLongestPartName) return words;
+        if (!words.empty()) return words;
         return monitor_of_[r] == nullptr ? "part" : monitor_of_[r]->name + "_part";
     }
 
@@ -286,12 +284,27 @@ private:
         if (reading.kind == plan::Reading::Kind::pending) {
             name_pending(reading.pending, name, names);
         } else {
-            for (const plan::Member& kept : plan::members_of(reading))
-                names.members.push_back(member(members_, name + kept.suffix));
+            name_registers(plan::members_of(reading), name, names);
             for (const std::string& suffix : reading.straight.locals)
                 names.locals.push_back(local(judge_, name + suffix));
         }
         if (plan::table_of(reading) != nullptr) name_table(name, names);
+    }
+
+    /// Several of one suffix are an array.
+    void name_registers(const std::vector<plan::Member>& kept, const std::string& name,
+                        Names::OfReading& names) {
+        std::map<std::string, std::vector<std::size_t>> by_suffix;
+        for (std::size_t i = 0; i < kept.size(); ++i) by_suffix[kept[i].suffix].push_back(i);
+        names.members.resize(kept.size());
+        names.elements.resize(kept.size(), plan::kNone);
+        for (const auto& [suffix, indices] : by_suffix) {
+            const std::string claimed = member(members_, name + suffix);
+            for (std::uint32_t n = 0; n < indices.size(); ++n) {
+                names.members[indices[n]] = claimed;
+                if (indices.size() > 1) names.elements[indices[n]] = n;
+            }
+        }
     }
 
     void name_table(const std::string& name, Names::OfReading& names) {
@@ -304,11 +317,10 @@ private:
                       Names::OfReading& names) {
         for (const plan::Pending::Part& part : pending.parts) {
             const std::string words = identifier(graph_.short_text(part.node), "");
-            const bool few = !words.empty() && words.size() <= kLongestPartName;
-            names.parts.push_back(local(judge_, few ? words + "_last" : name + "_last"));
+            names.parts.push_back(local(judge_, (words.empty() ? name : words) + "_last"));
             if (part.leaf == plan::kNone) continue;
             names.members.push_back(
-                member(members_, fmt::format("{}_last_{}", name, few ? words : "value")));
+                member(members_, fmt::format("{}_last_{}", name, words.empty() ? "value" : words)));
         }
         names.count = local(judge_, name + "_count");
         names.members.push_back(member(members_, name));
@@ -376,7 +388,8 @@ private:
     Scope measure_scope_;
     Scope& measure_;  ///< a Boolean monitor is one function: all its locals differ
     Scope atoms_;
-    Scope members_;
+    Scope members_{{"answers_", "deciding_", "finishes_", "incomplete_", "measured_", "numbers_",
+                    "position_", "recorder_", "rows_"}};  // those of every class
     Scope constants_;
     Scope projections_;
 };

@@ -6,11 +6,11 @@
 // - a name of the spec stands alone only as a field of Inputs, Verdicts or Atoms and in the
 //   namespace targets, where nothing else is declared; in names of the spec every underscore stands
 //   between two other characters;
-// - members that are named after the spec end in an underscore; locals are a name or words of a
-//   formula with an underscore and more behind it; functions are distance_P, threshold_P and the
-//   like, which no local is called;
-// - what the class calls something of its own has no underscore: position, now, kStateBytes. (What
-//   has one is of no such form: missing_steps(), uint32_t, macros.)
+// - data members end in an underscore, and those named after the spec differ from the class's own;
+//   locals are a name or words of a formula with an underscore and more behind it; functions are
+//   distance_P, threshold_P and the like, which no local is called;
+// - other names of the class have no underscore: now, missing, kStateBytes. (What has one is of no
+//   such form: missing_steps(), uint32_t, macros.)
 #pragma once
 
 #include <map>
@@ -59,6 +59,9 @@ struct Names {
     struct OfReading {
         std::string local;
         std::vector<std::string> members;  ///< as plan::members_of lists them
+        /// Of straight-line code, likewise: the index in the array that has this name; kNone: the
+        /// member is no array.
+        std::vector<std::uint32_t> elements;
         std::vector<std::string> locals;   ///< of straight-line code, likewise
         std::string guards, weak, strong;  ///< locals of a machine as a table; else empty
         std::vector<std::string> parts;    ///< locals of what is pending: at the last positions

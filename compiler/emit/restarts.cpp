@@ -15,8 +15,8 @@ void print_restarts(Printer& out, const Context& context, const std::vector<Memb
             if (member.begins_with == m) out.line(member.reset);
         // What a repeating one has answered is returned before it is asked again.
         if (context.on_demand && monitor.restarts == check::Restarts::on_request)
-            out.line("answers.{} = {}();", monitor.name, context.spelling.verdict);
-        if (context.plan.recorder) out.line("recorder.restart({});", m);
+            out.line("answers_.{} = {}();", monitor.name, context.spelling.verdict);
+        if (context.plan.recorder) out.line("recorder_.restart({});", m);
         out.close();
         const auto alarms = context.names.alarms_member.find(m);
         if (alarms != context.names.alarms_member.end()) {
@@ -37,7 +37,7 @@ void print_next_cycle(Printer& out, const Context& context, std::size_t m,
                       const std::string& verdict) {
     const auto open = context.names.open_local.find(m);
     const std::string while_open = open != context.names.open_local.end() ? open->second + " && "
-                                   : context.plan.has_sliding             ? "finishes == 0 && "
+                                   : context.plan.has_sliding             ? "finishes_ == 0 && "
                                                                           : "";
     out.gap();
     print_comment(out, "//",

@@ -10,17 +10,19 @@ namespace {
 
 using check::Index;
 using plan::Parameter;
-using Kind = Parameter::Kind;
 
 /// The namespace that names its place, and the name there.
 std::pair<std::string_view, std::string> name_of(const Context& context, const Parameter& one) {
     switch (one.kind) {
-        case Kind::threshold: return {"thresholds", context.names.predicate_atom.at(one.index)};
-        case Kind::number: return {"constants", context.names.number_constant.at(one.number)};
-        case Kind::rows: return {"targets", context.names.target_array.at(one.index)};
-        case Kind::weights: return {"targets", context.names.weight_array.at(one.index)};
-        case Kind::matrix: return {"projections", context.names.matrix_array.at(one.index)};
-        case Kind::offset: break;
+        case Parameter::Kind::threshold:
+            return {"thresholds", context.names.predicate_atom.at(one.index)};
+        case Parameter::Kind::number:
+            return {"constants", context.names.number_constant.at(one.number)};
+        case Parameter::Kind::rows: return {"targets", context.names.target_array.at(one.index)};
+        case Parameter::Kind::weights: return {"targets", context.names.weight_array.at(one.index)};
+        case Parameter::Kind::matrix:
+            return {"projections", context.names.matrix_array.at(one.index)};
+        case Parameter::Kind::offset: break;
     }
     return {"projections", context.names.offset_array.at(one.index)};
 }
@@ -36,14 +38,15 @@ std::string words_for(const Context& context, const Parameter& one) {
     const std::string rows = fmt::format("{} of {}", diag::counted(one.count / one.width, "row"),
                                          diag::counted(one.width, "element"));
     switch (one.kind) {
-        case Kind::threshold: return "";
-        case Kind::number: return "in the expression of " + model.predicates[one.index].name;
-        case Kind::rows:
+        case Parameter::Kind::threshold: return "";
+        case Parameter::Kind::number:
+            return "in the expression of " + model.predicates[one.index].name;
+        case Parameter::Kind::rows:
             return rows +
                    (plan::rows_as_given(model.distances[one.index]) ? "" : ", scaled to length 1");
-        case Kind::weights: return rows + ", of mahalanobis";
-        case Kind::matrix: return rows;
-        case Kind::offset: break;
+        case Parameter::Kind::weights: return rows + ", of mahalanobis";
+        case Parameter::Kind::matrix: return rows;
+        case Parameter::Kind::offset: break;
     }
     return fmt::format("what {} subtracts first", model.projections[one.index].name);
 }
@@ -101,19 +104,21 @@ void print_layout(Printer& out, const Context& context) {
 
 }  // namespace
 
-std::string Context::parameter(Kind kind, Index index) const {
+std::string Context::parameter(Parameter::Kind kind, Index index) const {
     for (const Parameter& one : parameters) {
-        const bool is_same_array = kind == Kind::rows && one.kind == Kind::rows &&
+        const bool is_same_array = kind == Parameter::Kind::rows &&
+                                   one.kind == Parameter::Kind::rows &&
                                    names.target_array.at(one.index) == names.target_array.at(index);
         if (one.kind == kind && (one.index == index || is_same_array))
-            return kind == Kind::threshold ? fmt::format("numbers[{}]", place_of(*this, one))
-                                           : "numbers + " + place_of(*this, one);
+            return kind == Parameter::Kind::threshold
+                       ? fmt::format("numbers_[{}]", place_of(*this, one))
+                       : "numbers_ + " + place_of(*this, one);
     }
     return "";
 }
 
 std::string Context::parameter(const check::Expr& number) const {
-    return fmt::format("numbers[constants::{}]", names.number_constant.at(&number));
+    return fmt::format("numbers_[constants::{}]", names.number_constant.at(&number));
 }
 
 std::string about_parameters(const plan::Plan& plan, bool is_calibrated) {
@@ -146,15 +151,15 @@ void print_retarget_interface(Printer& out, const Context& context) {
     print_doc(out,
               "Without parameters: every predicate and bool input is unknown at every step, until "
               "retarget() gives some.");
-    out.line("constexpr Monitor() noexcept : numbers(nullptr) { reset(); }");
+    out.line("constexpr Monitor() noexcept : numbers_(nullptr) { reset(); }");
     print_doc(out, "With these, where they are ready.");
     out.line(
-        "constexpr explicit Monitor(const Params& params) noexcept : numbers(params.numbers()) { "
+        "constexpr explicit Monitor(const Params& params) noexcept : numbers_(params.numbers()) { "
         "reset(); }");
     print_doc(out, "Whether this monitor has parameters.");
-    out.line("bool ready() const noexcept { return numbers != nullptr; }");
+    out.line("bool ready() const noexcept { return numbers_ != nullptr; }");
     print_doc(out, "What they were made from.");
-    out.line("etlmon::MadeFrom origin() const noexcept { return etlmon::made_from(numbers); }");
+    out.line("etlmon::MadeFrom origin() const noexcept { return etlmon::made_from(numbers_); }");
     out.line();
     print_doc(out,
               "Between steps: other parameters from the next one on. Where they are not ready "
@@ -162,7 +167,7 @@ void print_retarget_interface(Printer& out, const Context& context) {
               "that were measured count as what was measured then. Past::forgotten: reset().");
     out.open("etlmon::ParamsState retarget(const Params& params, etlmon::Past past) noexcept {");
     print_wrapped(out, "if (!params.ready()) return params.state();");
-    out.line("numbers = params.numbers();");
+    out.line("numbers_ = params.numbers();");
     print_wrapped(out, "if (past == etlmon::Past::forgotten) reset();");
     out.line("return params.state();");
     out.close();
@@ -182,7 +187,7 @@ void print_unknown_atoms(Printer& out, const Context& context) {
     out.line("Atoms now;");
     for (const auto* atoms : {&context.names.predicate_atom, &context.names.flag_atom})
         for (const auto& [index, name] : *atoms) out.line("now.{} = unseen();", name);
-    print_wrapped(out, "if (incomplete != UINT32_MAX) ++incomplete;");
+    print_wrapped(out, "if (incomplete_ != UINT32_MAX) ++incomplete_;");
     out.line("return now;");
     out.close();
     out.line();

@@ -59,15 +59,15 @@ std::string guard_of(std::string_view name) {
     return guard;
 }
 
-/// What a condition of `#if` comes to in portable text, where ETLMON_PORTABLE is defined and
-/// gnu.hpp is not included; nothing where the compiler has to say.
+/// What a condition of `#if` comes to in portable text, where ETLMON_PORTABLE and ETLMON_STANDALONE
+/// are defined and gnu.hpp is not included; nothing where the compiler has to say.
 std::optional<bool> portable_value(std::string_view condition) {
     const auto has = [&](std::string_view part) {
         return condition.find(part) != std::string_view::npos;
     };
     if (has("!defined(ETLMON_GNU)") || has("!defined(ETLMON_VECTORS)")) return true;
     if (has("!defined(ETLMON_PORTABLE)") || has("defined(ETLMON_VECTORS)")) return false;
-    if (has("defined(ETLMON_PORTABLE)")) return true;
+    if (has("defined(ETLMON_PORTABLE)") || has("defined(ETLMON_STANDALONE)")) return true;
     return std::nullopt;
 }
 

@@ -45,11 +45,11 @@ std::string wide_call(const Context& context, Index d, const std::string& z) {
                            weights_argument(context, d));
     const auto search = context.names.search_member.find(d);
     if (search != context.names.search_member.end())
-        return fmt::format("{}.nearest<etlmon::{}>({}, rows + targets::{})", search->second,
+        return fmt::format("{}.nearest<etlmon::{}>({}, rows_ + targets::{})", search->second,
                            plan::metric_name(context.model.distances[d]), z,
                            context.names.target_array.at(d));
     if (plan::stored_set(context.plan, d) != nullptr)
-        return fmt::format("etlmon::measure_stored<{}>({}, rows + targets::{}{})",
+        return fmt::format("etlmon::measure_stored<{}>({}, rows_ + targets::{}{})",
                            kernel_parameters(context, d), z, context.names.target_array.at(d),
                            weights_argument(context, d));
     return fmt::format("etlmon::measure<{}, targets::{}>({}{})", kernel_parameters(context, d),
@@ -145,13 +145,13 @@ namespace {
 
 /// The matrix, and the offset where there is one.
 std::string numbers_of(const Context& context, Index projection, bool stored) {
-    using Kind = plan::Parameter::Kind;
     const auto offset = context.names.offset_array.find(projection);
     const bool has_offset = offset != context.names.offset_array.end();
     if (context.retargetable())
-        return context.parameter(Kind::matrix, projection) +
-               (has_offset ? ", " + context.parameter(Kind::offset, projection) : "");
-    return fmt::format("{}projections::{}{}", stored ? "rows + " : "",
+        return context.parameter(plan::Parameter::Kind::matrix, projection) +
+               (has_offset ? ", " + context.parameter(plan::Parameter::Kind::offset, projection)
+                           : "");
+    return fmt::format("{}projections::{}{}", stored ? "rows_ + " : "",
                        context.names.matrix_array.at(projection),
                        has_offset ? ", projections::" + offset->second : "");
 }

@@ -259,7 +259,7 @@ void print_measure(Printer& out, const Context& context) {
     MeasurePrinter(out, context).print();
     out.line();
     print_step_measured(out, context);
-    print_wrapped(out, "if (missing && incomplete != UINT32_MAX) ++incomplete;");
+    print_wrapped(out, "if (missing && incomplete_ != UINT32_MAX) ++incomplete_;");
     out.line("return now;");
     out.close();
 }

@@ -47,7 +47,7 @@ void print_lets(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
     if (plan.lets.empty()) return;
     out.gap();
-    if (plan.has_sliding) out.open("if (finishes == 0) {");
+    if (plan.has_sliding) out.open("if (finishes_ == 0) {");
     for (std::size_t l = 0; l < plan.lets.size(); ++l)
         print_with_comment(
             out,

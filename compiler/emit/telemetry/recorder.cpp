@@ -66,20 +66,20 @@ void print_recorder_interface(Printer& out, const Context& context) {
                                "not change from then on.",
                                steps(recorder.before), steps(recorder.after),
                                steps(recorder.before + 1 + recorder.after)));
-    out.line("uint32_t incidents() const noexcept { return recorder.complete(); }");
+    out.line("uint32_t incidents() const noexcept { return recorder_.complete(); }");
     print_doc(out, "Alarms that began while there was no room for another incident; saturates.");
-    out.line("uint32_t lost_incidents() const noexcept { return recorder.lost(); }");
+    out.line("uint32_t lost_incidents() const noexcept { return recorder_.lost(); }");
     print_doc(out, "Completes those that wait for steps, with the steps that there are.");
-    out.line("void close_incidents() noexcept { recorder.close(); }");
+    out.line("void close_incidents() noexcept { recorder_.close(); }");
     print_doc(out, "Makes room for new ones.");
-    out.line("void forget_incidents() noexcept { recorder.forget(); }");
+    out.line("void forget_incidents() noexcept { recorder_.forget(); }");
     print_doc(out,
               "Calls sink(const uint8_t* bytes, size_t size) for all bytes of incident n, for "
               "a file that `etlc incident` reads; false where there is no such incident.");
     out.line("template <class Sink>");
     out.open("bool write_incident(uint32_t n, Sink&& sink) const {");
     print_wrapped(out,
-                  "return recorder.write(n, {kSpecHash, kDataHash, kThresholdsHash, "
+                  "return recorder_.write(n, {kSpecHash, kDataHash, kThresholdsHash, "
                   "kColumnsHash}, sink);");
     out.close();
     out.line();
@@ -125,7 +125,7 @@ void print_record(Printer& out, const Context& context, const std::string& verdi
         statuses.push_back(fmt::format("{}.{}.status", verdicts, monitor.name));
     print_wrapped(out,
                   fmt::format("const uint32_t statuses[] = {{{}}};", fmt::join(statuses, ", ")));
-    out.line("recorder.record({}, statuses);", row_of(context));
+    out.line("recorder_.record({}, statuses);", row_of(context));
 }
 
 }  // namespace etlc::emit

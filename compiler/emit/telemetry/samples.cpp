@@ -41,12 +41,12 @@ void print_rank(Printer& out, const Context& context) {
     if (!is_used(context)) return;
     print_comment(out, "//",
                   "of this step's samples; of equal values the earlier one is farther from 0");
-    print_wrapped(out, fmt::format("const uint32_t rank = etlmon::Ranks<{}>::first(measured);",
+    print_wrapped(out, fmt::format("const uint32_t rank = etlmon::Ranks<{}>::first(measured_);",
                                    context.sampled.codes));
 }
 
 void print_step_measured(Printer& out, const Context& context) {
-    if (is_used(context)) print_wrapped(out, counted("measured"));
+    if (is_used(context)) print_wrapped(out, counted("measured_"));
 }
 
 std::string sourced(const Context& context, Index predicate, const std::string& value,
@@ -95,7 +95,7 @@ void print_why_of(Printer& out, const Context& context) {
                  kind(context, places[i]), threshold(context, places[i]), places[i].first,
                  places[i].rows, i + 1 < places.size() ? "," : "");
     out.close("};");
-    out.line("return etlmon::sample_of<{}>(deciding[m], places);", context.sampled.codes);
+    out.line("return etlmon::sample_of<{}>(deciding_[m], places);", context.sampled.codes);
     out.close();
     out.line();
 }

@@ -10,7 +10,7 @@
 
 namespace etlc::emit {
 
-inline constexpr std::size_t kLongestName = 36;
+inline constexpr std::size_t kLongestName = 24;
 
 /// "F (at_a && held)" is eventually_at_a_and_held; too long ones give `otherwise`.
 std::string identifier(std::string_view text, const std::string& otherwise);

@@ -36,7 +36,9 @@ std::set<std::string> macros_in(std::string_view code) {
             const std::size_t begin = at;
             while (at < code.size() && in_word(code[at])) ++at;
             const std::string_view word = code.substr(begin, at - begin);
-            if (check::macro_elsewhere(word)) found.emplace(word);
+            const bool is_capital =
+                word.size() == 1 && std::isupper(static_cast<unsigned char>(word[0])) != 0;
+            if (is_capital || check::macro_elsewhere(word)) found.emplace(word);
         } else {
             ++at;
         }

@@ -1,7 +1,6 @@
 // The registers of a small state machine, updated by straight-line code.
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "plan/decide/machine.hpp"
@@ -31,16 +30,15 @@ struct Update {
     std::vector<Product> products;
 };
 
-/// Updates in this order.
+/// Updates in this order. Those of `first` read only old values, but for each other's results, and
+/// are stored last; each of `in_place` is stored at once, as no later one reads the old value.
 ///
 /// Where every way into S followed by the guard h is also a way into T, those ways are one: min(S
 /// after its update, h). So F (a && F b) is S = max(S, a); T = max(T, min(S, b)): a chain where the
 /// transitions alone give a triangle.
 struct Updates {
-    std::vector<Update> list;
-    /// No update reads the old value of a register that an earlier one has written: no copies are
-    /// needed.
-    bool in_place = false;
+    std::vector<Update> first;
+    std::vector<Update> in_place;
 };
 
 /// One way into a state: from a register (or from what is always true) through literals.
@@ -61,8 +59,8 @@ Literals unite(const Literals& a, const Literals& b) {
     return result;
 }
 
-/// An order of count > 0 states that puts `first` before `second` for each pair; empty where there
-/// is none.
+/// An order that puts `first` before `second` for each pair; without the states of circles and
+/// those behind them.
 std::vector<std::uint32_t> sorted(std::size_t count,
                                   const std::set<std::pair<std::uint32_t, std::uint32_t>>& before) {
     std::vector<std::size_t> waiting_for(count, 0);
@@ -73,7 +71,6 @@ std::vector<std::uint32_t> sorted(std::size_t count,
     for (std::size_t i = 0; i < order.size(); ++i)
         for (const auto& [first, second] : before)
             if (first == order[i] && --waiting_for[second] == 0) order.push_back(second);
-    if (order.size() != count) order.clear();
     return order;
 }
 
@@ -125,25 +122,49 @@ private:
         if (std::count_if(ways_[target].begin(), ways_[target].end(), covered) < 2) return;
         Pairs order = fresh_;
         order.emplace(way.source, target);
-        if (sorted(ways_.size(), order).empty()) return;
+        if (sorted(ways_.size(), order).size() < ways_.size()) return;
         fresh_ = std::move(order);
         std::erase_if(ways_[target], covered);
         updated_[target].push_back(way);
     }
 
+    /// As few updates in `first` as it takes: one more of each circle of updates that read each
+    /// other's old values.
     Updates program() const {
-        Pairs in_place = fresh_;
-        for (std::uint32_t target = 0; target < ways_.size(); ++target)
-            for (const Way& way : ways_[target])
-                if (way.source != kNone && way.source != target)
-                    in_place.emplace(target, way.source);
-        std::vector<std::uint32_t> order = sorted(ways_.size(), in_place);
-        Updates result{{}, !order.empty()};
-        if (order.empty()) order = sorted(ways_.size(), fresh_);
+        std::set<std::uint32_t> first;
+        std::vector<std::uint32_t> order = sorted(ways_.size(), order_without(first));
+        while (order.size() < ways_.size()) {
+            const std::set<std::uint32_t> placed(order.begin(), order.end());
+            std::uint32_t state = 0;
+            while (first.count(state) != 0 || placed.count(state) != 0) ++state;
+            add_with_read(state, first);
+            order = sorted(ways_.size(), order_without(first));
+        }
+        Updates result;
         for (std::uint32_t state : order)
             if (!machine_.states[state].always_true)
-                result.list.push_back({state, products(state)});
+                (first.count(state) != 0 ? result.first : result.in_place)
+                    .push_back({state, products(state)});
         return result;
+    }
+
+    /// Which updates come before which: those whose results others read, those that read old values
+    /// before these are written.
+    Pairs order_without(const std::set<std::uint32_t>& first) const {
+        Pairs result = fresh_;
+        for (std::uint32_t target = 0; target < ways_.size(); ++target)
+            for (const Way& way : ways_[target])
+                if (way.source != kNone && way.source != target && first.count(target) == 0 &&
+                    first.count(way.source) == 0)
+                    result.emplace(target, way.source);
+        return result;
+    }
+
+    /// Adds the state, and those whose new values its update reads.
+    void add_with_read(std::uint32_t state, std::set<std::uint32_t>& first) const {
+        first.insert(state);
+        for (const auto& [read, reader] : fresh_)
+            if (reader == state && first.count(read) == 0) add_with_read(read, first);
     }
 
     /// The ways into a state, those through the same literals together.
@@ -182,20 +203,18 @@ public:
         : machine_(machine), streams_(streams) {}
 
     Straight write(const Updates& updates) {
-        keep_registers(updates.in_place);
-        for (const Update& update : updates.list) {
-            std::vector<Term> products;
-            for (const Product& product : update.products)
-                products.push_back(value(product, updates.in_place));
-            code_.assignments.push_back(
-                {.target = updates.in_place ? Term::Kind::reg : Term::Kind::local,
-                 .index = register_of(update.state),
-                 .value = Term::extreme(true, std::move(products))});
+        keep_registers();
+        for (const Update& update : updates.first) {
+            const std::size_t local = code_.locals.size();
+            assign(Term::Kind::local, local, update);
+            local_of_.emplace(update.state, local);
+            code_.locals.emplace_back("_next");
         }
-        if (!updates.in_place)
-            for (const Update& update : updates.list)
-                code_.assignments.push_back({.index = register_of(update.state),
-                                             .value = Term::local(register_of(update.state))});
+        for (const Update& update : updates.in_place)
+            assign(Term::Kind::reg, register_of(update.state), update);
+        for (const Update& update : updates.first)
+            code_.assignments.push_back({.index = register_of(update.state),
+                                         .value = Term::local(local_of_.at(update.state))});
         read();
         return std::move(code_);
     }
@@ -207,26 +226,40 @@ private:
     }
 
     /// A register a state that is not always true.
-    void keep_registers(bool in_place) {
-        int owing = 0;  // states kept so far that owe something
+    void keep_registers() {
         for (std::size_t q = 0; q < machine_.states.size(); ++q) {
             if (machine_.states[q].always_true) continue;
-            const std::vector<NodeId>& owed = machine_.automaton.states[q];
-            if (!owed.empty()) ++owing;
-            Member kept{.first = neutral(q != 0),
-                        .suffix = owed.empty() ? "_met" : fmt::format("_owing_{}", owing),
-                        .before = owed.empty() ? "nothing is owed any more" : "owed: ",
-                        .formulas = owed};
-            if (!in_place) code_.locals.push_back(kept.suffix);
-            code_.registers.push_back(std::move(kept));
+            // In G f the whole formula stays pending whatever else is.
+            const std::vector<NodeId>& whole = machine_.automaton.states[0];
+            std::vector<NodeId> pending = machine_.automaton.states[q];
+            const bool also = q != 0 && contains(pending, whole);
+            if (also) std::erase(pending, whole[0]);
+            code_.registers.push_back({.first = neutral(q != 0),
+                                       .suffix = pending.empty() ? "_met"
+                                                 : q == 0        ? "_whole"
+                                                                 : "_pending",
+                                       .before = pending.empty() ? "nothing is pending"
+                                                 : also          ? "also pending: "
+                                                                 : "pending: ",
+                                       .formulas = pending});
         }
     }
 
-    Term value(const Product& product, bool in_place) const {
+    void assign(Term::Kind target, std::size_t index, const Update& update) {
+        std::vector<Term> products;
+        for (const Product& product : update.products) products.push_back(value(product));
+        code_.assignments.push_back({.target = target,
+                                     .index = static_cast<std::uint32_t>(index),
+                                     .value = Term::extreme(true, std::move(products))});
+    }
+
+    Term value(const Product& product) const {
         std::vector<Term> sources;
         for (const Source& source : product.sources) {
-            const std::uint32_t index = register_of(source.state);
-            sources.push_back(source.updated && !in_place ? Term::local(index) : Term::reg(index));
+            const auto local = local_of_.find(source.state);
+            sources.push_back(source.updated && local != local_of_.end()
+                                  ? Term::local(local->second)
+                                  : Term::reg(register_of(source.state)));
         }
         std::vector<Term> factors;
         if (!sources.empty()) factors.push_back(Term::extreme(true, std::move(sources)));
@@ -275,6 +308,7 @@ private:
 
     const Machine& machine_;
     const StreamBuilder& streams_;
+    std::map<std::uint32_t, std::size_t> local_of_;  ///< per state that is updated first
     Straight code_;
 };
 

@@ -70,17 +70,11 @@ ETLMON_INLINE void copy_bytes(void* to, const void* from, size_t bytes) noexcept
 #if !defined(ETLMON_GNU)
 /// The same value, of which the optimiser knows nothing: read back from memory that it must not
 /// look through.
-template <class T>
-ETLMON_INLINE T opaque(T x) noexcept {
-  const volatile T kept = x;
+template <class Type>
+ETLMON_INLINE Type opaque(Type x) noexcept {
+  const volatile Type kept = x;
   return kept;
 }
-/// The same value. Where gnu.hpp is included, a hint how to keep it, for speed.
-template <class T>
-ETLMON_INLINE T in_register(T x) noexcept {
-  return x;
-}
-ETLMON_INLINE void keep_apart(uint32_t&, uint32_t&, uint32_t&, uint32_t&) noexcept {}
 #endif
 
 /// The bits of a float that arithmetic made. Where NaN and infinity are assumed away, the compiler
@@ -121,16 +115,6 @@ ETLMON_INLINE constexpr int32_t ordered(uint32_t bits) noexcept {
 /// finite.
 ETLMON_INLINE float rounded(float x) noexcept { return opaque(x); }
 
-/// The bits of a sum that a loop made. It has to be a float until here: g++ for RISC-V would else
-/// keep it in an integer register from the start, and move it to and fro with every addition.
-ETLMON_INLINE uint32_t observe_sum(const float& x) noexcept {
-#if !defined(ETLMON_GNU) || defined(__riscv_flen)
-  return observe(opaque(x));
-#else
-  return observe(x);
-#endif
-}
-
 #if !defined(ETLMON_GNU)
 /// Two floats as two that nothing is known of, not even whether they are the same: under
 /// -ffast-math x - x is 0 and x / x is 1, whatever x is.
@@ -148,15 +132,6 @@ ETLMON_INLINE float square_root(float x) noexcept {
 #endif
 }
 #endif
-
-/// atan of a finite float; the library's.
-ETLMON_INLINE float arc_tangent(float x) noexcept {
-#if defined(__GNUC__)
-  return __builtin_atanf(x);
-#else
-  return atanf(x);
-#endif
-}
 
 }  // namespace detail
 

@@ -16,6 +16,33 @@
 #include <etlmon needs C++17: compile with -std=c++17 or later>
 #endif
 
+#define ETLMON_JOIN(a, b, c, d, e, f) ETLMON_JOIN_TOKENS(a, b, c, d, e, f)
+#define ETLMON_JOIN_TOKENS(a, b, c, d, e, f) a##b##c##d##e##f
+
+#if defined(ETLMON_STANDALONE)
+// ---- A short name, for a runtime that is pasted into a header: v0_2, or v0_2_avx2_fast. Units
+// with other vector instructions, or with -ffast-math, get another name.
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#define ETLMON_BUILD_MATH _fast
+#else
+#define ETLMON_BUILD_MATH
+#endif
+#if defined(__AVX512F__)
+#define ETLMON_BUILD_MACHINE _avx512
+#elif defined(__FMA__)
+#define ETLMON_BUILD_MACHINE _fma
+#elif defined(__AVX2__)
+#define ETLMON_BUILD_MACHINE _avx2
+#elif defined(__AVX__)
+#define ETLMON_BUILD_MACHINE _avx
+#else
+#define ETLMON_BUILD_MACHINE
+#endif
+#define ETLMON_BUILD                                                                  \
+  ETLMON_JOIN(v, ETLMON_VERSION_MAJOR, _, ETLMON_VERSION_MINOR, ETLMON_BUILD_MACHINE, \
+              ETLMON_BUILD_MATH)
+
+#else
 // 1 where a macro stands for 1, or for version 1.0 of an extension of RISC-V, else 0; four of them
 // in one digit.
 #define ETLMON_IS(macro) ETLMON_IS_VALUE(macro)
@@ -44,9 +71,6 @@
 #define ETLMON_DIGIT_1101 d
 #define ETLMON_DIGIT_1110 e
 #define ETLMON_DIGIT_1111 f
-#define ETLMON_JOIN(a, b, c, d, e, f) ETLMON_JOIN_TOKENS(a, b, c, d, e, f)
-#define ETLMON_JOIN_TOKENS(a, b, c, d, e, f) a##b##c##d##e##f
-
 // ---- What instructions the unit may use: a level of x86-64 by its name, anything else in digits.
 #if defined(__x86_64__) || defined(__i386__)
 #define ETLMON_BUILD_DIGITS                                                     \
@@ -153,6 +177,7 @@
   ETLMON_JOIN(ETLMON_JOIN(v, ETLMON_VERSION_MAJOR, _, ETLMON_VERSION_MINOR, , ),                  \
               ETLMON_BUILD_COMPILER, ETLMON_BUILD_MACHINE, ETLMON_BUILD_SPEED, ETLMON_BUILD_MATH, \
               ETLMON_BUILD_KERNELS)
+#endif
 
 // ---- How its functions are compiled.
 #if defined(__GNUC__)

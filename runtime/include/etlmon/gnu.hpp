@@ -56,8 +56,8 @@ ETLMON_INLINE void part(float& x, float& y) noexcept {
 /// The same value in a register of its own, for speed: g++ jumps around a constant; a pointer then
 /// moves along by itself, which small machines do while they load, and is not computed from another
 /// one for every element.
-template <class T>
-ETLMON_INLINE T in_register(T x) noexcept {
+template <class Type>
+ETLMON_INLINE Type in_register(Type x) noexcept {
   __asm__("" : "+r"(x));
   return x;
 }

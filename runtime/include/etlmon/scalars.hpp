@@ -12,12 +12,12 @@ inline namespace ETLMON_BUILD {
 
 namespace detail {
 
-template <class A, class B>
+template <class First, class Second>
 struct Same {
   static constexpr bool value = false;
 };
-template <class A>
-struct Same<A, A> {
+template <class First>
+struct Same<First, First> {
   static constexpr bool value = true;
 };
 template <bool Condition>
@@ -33,8 +33,8 @@ struct If<true> {
 class Flag {
  public:
   constexpr Flag() noexcept = default;
-  template <class B, typename detail::If<detail::Same<B, bool>::value>::type = 0>
-  constexpr Flag(B on) noexcept : state_(on ? kOn : kOff) {}
+  template <class Bool, typename detail::If<detail::Same<Bool, bool>::value>::type = 0>
+  constexpr Flag(Bool on) noexcept : state_(on ? kOn : kOff) {}
 
   constexpr bool present() const noexcept { return state_ != kNone; }
   constexpr bool value() const noexcept { return state_ == kOn; }  ///< false where it is missing

@@ -16,80 +16,80 @@ inline namespace ETLMON_BUILD {
 
 namespace detail {
 
-template <class A>
-const A& some() noexcept;
+template <class Array>
+const Array& some() noexcept;
 
 // How many elements a container type always has: std::array by the size() of a constant, std::span
 // by its extent.
-template <class A, size_t N = A{}.size()>
+template <class Array, size_t Size = Array{}.size()>
 constexpr size_t fixed_size(int, int) noexcept {
-  return N;
+  return Size;
 }
-template <class A, size_t N = A::extent>
+template <class Array, size_t Size = Array::extent>
 constexpr size_t fixed_size(int, long) noexcept {
-  return N;
+  return Size;
 }
 
 // Whether it is D.
-template <class A, size_t D, typename If<fixed_size<A>(0, 0) == D>::type = 0>
+template <class Array, size_t Dim, typename If<fixed_size<Array>(0, 0) == Dim>::type = 0>
 constexpr bool holds(int) noexcept {
   return true;
 }
-template <class A, size_t D>
+template <class Array, size_t Dim>
 constexpr bool holds(long) noexcept {
   return false;
 }
 
-template <class T>
-void reads(const T*) noexcept;
-template <class T, class A>
-using ReadsAs = decltype(reads<T>(some<A>().data()));
+template <class Element>
+void reads(const Element*) noexcept;
+template <class Element, class Array>
+using ReadsAs = decltype(reads<Element>(some<Array>().data()));
 
 }  // namespace detail
 
 /// A view of D contiguous elements: float, uint16_t (the IEEE bits of a float16) or int8_t.
 /// Default: missing.
-template <class T, size_t D>
+template <class Element, size_t Dim>
 class Vector {
  public:
   constexpr Vector() noexcept = default;
-  constexpr Vector(const T (&elements)[D]) noexcept : data_(elements) {}
+  constexpr Vector(const Element (&elements)[Dim]) noexcept : data_(elements) {}
 
   /// std::array<T, D>, std::span<T, D> and their like: data() and a size known to the compiler,
   /// which must be D.
-  template <class A, class = detail::ReadsAs<T, A>,
-            typename detail::If<detail::holds<A, D>(0)>::type = 0>
-  constexpr Vector(const A& elements) noexcept : data_(elements.data()) {}
+  template <class Array, class = detail::ReadsAs<Element, Array>,
+            typename detail::If<detail::holds<Array, Dim>(0)>::type = 0>
+  constexpr Vector(const Array& elements) noexcept : data_(elements.data()) {}
   // What compilers quote where a std::vector, or another number of elements, is given.
   // clang-format off
-  template <class A, class = detail::ReadsAs<T, A>,
-            typename detail::If<!detail::holds<A, D>(0)>::type = 0>
-  Vector(const A&) = delete;  // not D elements by its type: Vector::unchecked(x.data()) if it has D
-  template <size_t N, typename detail::If<N != D>::type = 0>
-  Vector(const T (&)[N]) = delete;  // not D elements
+  template <class Array, class = detail::ReadsAs<Element, Array>,
+            typename detail::If<!detail::holds<Array, Dim>(0)>::type = 0>
+  Vector(const Array&) = delete;  // not D elements by its type: Vector::unchecked(x.data()) if it has D
+  template <size_t Size, typename detail::If<Size != Dim>::type = 0>
+  Vector(const Element (&)[Size]) = delete;  // not D elements
   // clang-format on
   /// A temporary array would be gone before step() reads it.
-  template <class A, class = detail::ReadsAs<T, A>, class = decltype(A{}.size())>
-  Vector(const A&&) = delete;
+  template <class Array, class = detail::ReadsAs<Element, Array>, class = decltype(Array{}.size())>
+  Vector(const Array&&) = delete;
 
   /// D elements at `elements`, which nothing checks; nullptr is a missing sample.
-  static constexpr Vector unchecked(const T* elements) noexcept {
+  static constexpr Vector unchecked(const Element* elements) noexcept {
     Vector view;
     view.data_ = elements;
     return view;
   }
 
   constexpr bool present() const noexcept { return data_ != nullptr; }
-  constexpr const T* data() const noexcept { return data_; }
+  constexpr const Element* data() const noexcept { return data_; }
 
  private:
-  const T* data_ = nullptr;
+  const Element* data_ = nullptr;
 };
 
 /// D scalars as an embedding; each kMissing where it is missing.
-template <size_t D>
+template <size_t Dim>
 struct Point {
-  float elements[D];
+  float elements[Dim];
 };
 
 namespace detail {
@@ -128,9 +128,9 @@ ETLMON_INLINE bool finite(const uint16_t* x, size_t n) noexcept {
 ETLMON_INLINE constexpr bool finite(const int8_t*, size_t) noexcept { return true; }
 
 /// The embedding is there and all of it is finite.
-template <class T, size_t D>
-ETLMON_INLINE bool present(const Vector<T, D>& x) noexcept {
-  return x.present() && finite(x.data(), D);
+template <class Element, size_t Dim>
+ETLMON_INLINE bool present(const Vector<Element, Dim>& x) noexcept {
+  return x.present() && finite(x.data(), Dim);
 }
 
 }  // namespace ETLMON_BUILD

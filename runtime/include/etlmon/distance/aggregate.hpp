@@ -6,7 +6,7 @@
 // bounded (Kth: n moves), no heap.
 #pragma once
 
-#include "etlmon/bits.hpp"
+#include "etlmon/distance/storage.hpp"
 
 namespace etlmon {
 inline namespace ETLMON_BUILD {
@@ -99,16 +99,18 @@ struct Mean {
 };
 
 /// The n-th smallest distance, from 1; n known to the compiler.
-template <uint32_t N>
+template <uint32_t Nth>
 struct Kth {
   static constexpr bool kNearest = false;
   static constexpr bool kOfDistances = false;
-  static_assert(N >= 1, "the n-th smallest counts from 1");
-  ETLMON_INLINE void add(uint32_t bits) noexcept { detail::keep_smallest(values, N, count, bits); }
-  ETLMON_INLINE uint32_t result(const detail::Nearest&) const noexcept {
-    return detail::observe(values[N - 1]);
+  static_assert(Nth >= 1, "the n-th smallest counts from 1");
+  ETLMON_INLINE void add(uint32_t bits) noexcept {
+    detail::keep_smallest(values, Nth, count, bits);
   }
-  float values[N] = {};
+  ETLMON_INLINE uint32_t result(const detail::Nearest&) const noexcept {
+    return detail::observe(values[Nth - 1]);
+  }
+  float values[Nth] = {};
   uint32_t count = 0;
 };
 

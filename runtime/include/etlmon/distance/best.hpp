@@ -32,11 +32,11 @@ namespace baseline {
 #undef ETLMON_WIDE
 #undef ETLMON_TARGET
 
-template <class Metric, class Aggregation, class Size, bool InColumns, class G>
-ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, Size size,
+template <class Metric, class Aggregation, class Size, bool InColumns, class Elements>
+ETLMON_INLINE Measured best_of(const float* z, Elements targets, const float* weights, Size size,
                                Aggregation aggregation) noexcept {
-  return unpacked(baseline::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size,
-                                                                         aggregation));
+  return unpacked(baseline::run<Metric, Aggregation, Size, InColumns, Elements>(z, targets, weights,
+                                                                                size, aggregation));
 }
 
 /// 1 / |z|, or 0: inverse_length in run.inc.
@@ -56,9 +56,9 @@ inline namespace ETLMON_BUILD {
 namespace detail {
 
 /// The kernel on rows, or columns, of T; on int8 with their scale.
-template <class Metric, class Aggregation, class Size, bool InColumns, class T>
-ETLMON_INLINE Measured best(const float* z, const T* targets, const float* weights, Size size,
-                            Aggregation aggregation) noexcept {
+template <class Metric, class Aggregation, class Size, bool InColumns, class Elements>
+ETLMON_INLINE Measured best(const float* z, const Elements* targets, const float* weights,
+                            Size size, Aggregation aggregation) noexcept {
   return best_of<Metric, Aggregation, Size, InColumns>(z, targets, weights, size, aggregation);
 }
 template <class Metric, class Aggregation, class Size, bool InColumns>

@@ -26,22 +26,31 @@ constexpr uint32_t kLeastSquare = 0x17800000u;
 constexpr uint32_t kGreatestSquare = 0x71800000u;
 constexpr uint32_t kGreatest = 0x7f7fffffu;  ///< FLT_MAX
 
+/// atan of a finite float; the library's.
+ETLMON_INLINE float arc_tangent(float x) noexcept {
+#if defined(__GNUC__)
+  return __builtin_atanf(x);
+#else
+  return atanf(x);
+#endif
+}
+
 struct NoPoint {};
 
 /// One running sum, or two.
-template <class V>
+template <class Vec>
 struct Sum {
-  V sum;
+  Vec sum;
 };
-template <class V>
+template <class Vec>
 struct TwoSums {
-  V apart, along;
+  Vec apart, along;
 };
 
 /// A distance that is a plain sum over elements needs no more than its term.
 struct Additive {
-  template <class V>
-  using Partial = Sum<V>;
+  template <class Vec>
+  using Partial = Sum<Vec>;
   using Point = NoPoint;
   /// Reads one weight per element.
   static constexpr bool kWeighted = false;
@@ -128,8 +137,8 @@ struct Angular : detail::Additive {
   static constexpr bool kDirection = true;
   static constexpr bool kSum = false;
   static constexpr float kHighest = 3.14159274f;  // the float32 nearest to pi lies above it
-  template <class V>
-  using Partial = detail::TwoSums<V>;
+  template <class Vec>
+  using Partial = detail::TwoSums<Vec>;
   /// tan^2 of half the angle. Below 2^-60, |u + g|^2 is 0 but for rounding, and the angle pi.
   ETLMON_INLINE static float row(const detail::TwoSums<float>& p) noexcept {
     constexpr float kLeast = 8.67361738e-19f;

@@ -32,8 +32,8 @@ struct Enclosed {
 
   /// Whether some comparison with a number of the cuts might come out otherwise for the float32
   /// rows. A least normal number is kept clear of them, so that no difference is flushed to zero.
-  template <size_t N>
-  ETLMON_INLINE bool doubtful(const Cut (&cuts)[N]) const noexcept {
+  template <size_t Count>
+  ETLMON_INLINE bool doubtful(const Cut (&cuts)[Count]) const noexcept {
     if (!is_finite(measured.delta) || !is_finite(high)) return true;
     const Key least = key_of(detail::rounded(low - 2.0f * FLT_MIN));
     const Key greatest = key_of(detail::rounded(high + 2.0f * FLT_MIN));
@@ -62,9 +62,9 @@ struct RoundingError {
   }
 };
 
-template <class A, class B>
+template <class First, class Second>
 constexpr bool is() noexcept {
-  return Same<A, B>::value;
+  return Same<First, Second>::value;
 }
 
 /// The distances that rounding_error() and change() speak of.

@@ -15,57 +15,59 @@ inline namespace ETLMON_BUILD {
 
 namespace detail {
 /// The rows of A times z; nullptr where one of them is not finite.
-ETLMON_INLINE const float* products(const float* z, const float* matrix, uint32_t R, uint32_t D,
-                                    float* y) noexcept {
+ETLMON_INLINE const float* products(const float* z, const float* matrix, uint32_t Rows,
+                                    uint32_t Dim, float* y) noexcept {
   // With -ffast-math g++ warns of rows of 16 elements in a smaller matrix, in a branch that sizes
   // rule out.
-  best_row_values<Product>(unforeseen(z), unforeseen(matrix), nullptr, 0, R, Sizes{R, D}, y);
-  return finite(y, R) ? y : nullptr;
+  best_row_values<Product>(unforeseen(z), unforeseen(matrix), nullptr, 0, Rows, Sizes{Rows, Dim},
+                           y);
+  return finite(y, Rows) ? y : nullptr;
 }
 
-ETLMON_INLINE void subtract(const float* z, const float* offset, uint32_t D,
+ETLMON_INLINE void subtract(const float* z, const float* offset, uint32_t Dim,
                             float* centred) noexcept {
-  for (uint32_t i = 0; i < D; ++i) centred[i] = z[i] - offset[i];
+  for (uint32_t i = 0; i < Dim; ++i) centred[i] = z[i] - offset[i];
 }
 }  // namespace detail
 
 /// A z, in `y`, which it returns; nullptr where it is unknown or z is null.
-template <uint32_t R, uint32_t D>
-ETLMON_INLINE const float* project(const float* z, const float* matrix, float (&y)[R]) noexcept {
-  return z == nullptr ? nullptr : detail::products(z, matrix, R, D, y);
+template <uint32_t Rows, uint32_t Dim>
+ETLMON_INLINE const float* project(const float* z, const float* matrix, float (&y)[Rows]) noexcept {
+  return z == nullptr ? nullptr : detail::products(z, matrix, Rows, Dim, y);
 }
 
 /// A (z - m), likewise.
-template <uint32_t R, uint32_t D>
+template <uint32_t Rows, uint32_t Dim>
 ETLMON_INLINE const float* project(const float* z, const float* matrix, const float* offset,
-                                   float (&y)[R]) noexcept {
+                                   float (&y)[Rows]) noexcept {
   if (z == nullptr) return nullptr;
-  float centred[D];
-  detail::subtract(z, offset, D, centred);
-  return detail::products(centred, matrix, R, D, y);
+  float centred[Dim];
+  detail::subtract(z, offset, Dim, centred);
+  return detail::products(centred, matrix, Rows, Dim, y);
 }
 
 /// The same for a sample of this step.
-template <uint32_t R, uint32_t D>
-ETLMON_INLINE const float* project(Vector<float, D> z, const float* matrix,
-                                   float (&y)[R]) noexcept {
-  return project<R, D>(z.data(), matrix, y);
+template <uint32_t Rows, uint32_t Dim>
+ETLMON_INLINE const float* project(Vector<float, Dim> z, const float* matrix,
+                                   float (&y)[Rows]) noexcept {
+  return project<Rows, Dim>(z.data(), matrix, y);
 }
-template <uint32_t R, uint32_t D>
-ETLMON_INLINE const float* project(Vector<float, D> z, const float* matrix, const float* offset,
-                                   float (&y)[R]) noexcept {
-  return project<R, D>(z.data(), matrix, offset, y);
+template <uint32_t Rows, uint32_t Dim>
+ETLMON_INLINE const float* project(Vector<float, Dim> z, const float* matrix, const float* offset,
+                                   float (&y)[Rows]) noexcept {
+  return project<Rows, Dim>(z.data(), matrix, offset, y);
 }
 
 /// The same for scalars of this step, each NaN where it is missing.
-template <uint32_t R, uint32_t D>
-ETLMON_INLINE const float* project(const Point<D>& z, const float* matrix, float (&y)[R]) noexcept {
-  return project<R, D>(z.elements, matrix, y);
+template <uint32_t Rows, uint32_t Dim>
+ETLMON_INLINE const float* project(const Point<Dim>& z, const float* matrix,
+                                   float (&y)[Rows]) noexcept {
+  return project<Rows, Dim>(z.elements, matrix, y);
 }
-template <uint32_t R, uint32_t D>
-ETLMON_INLINE const float* project(const Point<D>& z, const float* matrix, const float* offset,
-                                   float (&y)[R]) noexcept {
-  return project<R, D>(z.elements, matrix, offset, y);
+template <uint32_t Rows, uint32_t Dim>
+ETLMON_INLINE const float* project(const Point<Dim>& z, const float* matrix, const float* offset,
+                                   float (&y)[Rows]) noexcept {
+  return project<Rows, Dim>(z.elements, matrix, offset, y);
 }
 
 }  // namespace ETLMON_BUILD

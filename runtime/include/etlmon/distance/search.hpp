@@ -43,23 +43,23 @@ ETLMON_INLINE Measured best_search(const float* z, const float* rows, SearchView
 #endif
 
 /// What is remembered of one set between steps.
-template <uint32_t K, uint32_t D>
+template <uint32_t Rows, uint32_t Dim>
 class Search {
  public:
   constexpr void reset() noexcept {
     nearest_ = 0;
-    measured_ = detail::blocks_of(K);
+    measured_ = detail::blocks_of(Rows);
   }
   /// `rows`: K rows of D elements, each at a multiple of 64 bytes; the same ones since reset().
   template <class Metric>
   Measured nearest(const float* z, const float* rows) noexcept {
-    return detail::best_search<Metric, detail::Padded<K, D>>(
+    return detail::best_search<Metric, detail::Padded<Rows, Dim>>(
         z, rows, {anchor_, least_, &nearest_, &measured_});
   }
 
  private:
-  float anchor_[D];
-  uint32_t least_[detail::blocks_of(K)];
+  float anchor_[Dim];
+  uint32_t least_[detail::blocks_of(Rows)];
   uint32_t nearest_;
   uint32_t measured_;
 };

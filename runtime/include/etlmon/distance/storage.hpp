@@ -35,6 +35,15 @@ ETLMON_INLINE uint32_t widened_bits(uint16_t half) noexcept {
 
 namespace detail {
 
+#if !defined(ETLMON_GNU)
+/// The same value. Where gnu.hpp is included, a hint how to keep it, for speed.
+template <class Type>
+ETLMON_INLINE Type in_register(Type x) noexcept {
+  return x;
+}
+ETLMON_INLINE void keep_apart(uint32_t&, uint32_t&, uint32_t&, uint32_t&) noexcept {}
+#endif
+
 /// Rows of int8, each worth `scale` times itself: what a pointer is to other rows.
 struct ScaledRows {
   const int8_t* values;
@@ -67,13 +76,13 @@ ETLMON_INLINE float element(ScaledRows rows, size_t i) noexcept {
 }
 
 /// One row of a set in columns.
-template <class G>
+template <class Elements>
 struct Strided {
-  G first;
+  Elements first;
   size_t stride;
 };
-template <class G>
-ETLMON_INLINE float element(const Strided<G>& row, size_t i) noexcept {
+template <class Elements>
+ETLMON_INLINE float element(const Strided<Elements>& row, size_t i) noexcept {
   return element(row.first, i * row.stride);
 }
 

@@ -16,25 +16,35 @@ namespace etlmon {
 inline namespace ETLMON_BUILD {
 namespace detail {
 
+/// The bits of a sum that a loop made. It has to be a float until here: g++ for RISC-V would else
+/// keep it in an integer register from the start, and move it to and fro with every addition.
+ETLMON_INLINE uint32_t observe_sum(const float& x) noexcept {
+#if !defined(ETLMON_GNU) || defined(__riscv_flen)
+  return observe(opaque(x));
+#else
+  return observe(x);
+#endif
+}
+
 /// K rows of D elements, one after the other, `stride` elements apart.
-template <bool InColumns, class G>
+template <bool InColumns, class Elements>
 struct Set {
-  G values;
+  Elements values;
   uint32_t rows, dimension, stride;
 
   struct Buffer {};
-  ETLMON_INLINE G row(uint32_t k, Buffer&) const noexcept {
+  ETLMON_INLINE Elements row(uint32_t k, Buffer&) const noexcept {
     return values + static_cast<size_t>(k) * stride;
   }
 };
 
 /// The same in columns.
-template <class G>
-struct Set<true, G> {
-  G values;
+template <class Elements>
+struct Set<true, Elements> {
+  Elements values;
   uint32_t rows, dimension, stride;
 
-  ETLMON_INLINE Strided<G> elements_of(uint32_t k) const noexcept {
+  ETLMON_INLINE Strided<Elements> elements_of(uint32_t k) const noexcept {
     const Place place = place_in_columns(k, rows, dimension);
     return {values + place.first, place.stride};
   }
@@ -44,13 +54,13 @@ struct Set<true, G> {
   };
   /// Row k, gathered in `to`, for those who read it by vectors.
   ETLMON_INLINE const float* row(uint32_t k, Buffer& to) const noexcept {
-    const Strided<G> from = elements_of(k);
+    const Strided<Elements> from = elements_of(k);
     for (uint32_t i = 0; i < dimension; ++i) to.elements[i] = element(from, i);
     return to.elements;
   }
 #else
   struct Buffer {};
-  ETLMON_INLINE Strided<G> row(uint32_t k, Buffer&) const noexcept { return elements_of(k); }
+  ETLMON_INLINE Strided<Elements> row(uint32_t k, Buffer&) const noexcept { return elements_of(k); }
 #endif
 };
 
@@ -112,31 +122,32 @@ ETLMON_COLD inline MeasuredBits unless_unknown(const float* z, uint32_t dimensio
 
 /// The measurement where its values cannot be trusted: a row that equals z decides, or else the
 /// scaled form. Unknown where z is missing or an element of it is not finite.
-template <class Metric, class Aggregation, class Size, bool InColumns, class G>
-ETLMON_COLD MeasuredBits measure_again(const float* z, G targets, const float* weights, Size size,
-                                       Aggregation aggregation) noexcept;
+template <class Metric, class Aggregation, class Size, bool InColumns, class Elements>
+ETLMON_COLD MeasuredBits measure_again(const float* z, Elements targets, const float* weights,
+                                       Size size, Aggregation aggregation) noexcept;
 
 /// Whether a row that is nearest at 0 equals z, so that its 0 is exact.
-template <bool Short, bool InColumns, class G>
-ETLMON_COLD bool is_equal(const float* z, const Set<InColumns, G>& set, uint32_t row) noexcept;
+template <bool Short, bool InColumns, class Elements>
+ETLMON_COLD bool is_equal(const float* z, const Set<InColumns, Elements>& set,
+                          uint32_t row) noexcept;
 
 /// What the values say together. `aggregation`: as it was before it saw any.
-template <bool InColumns, class Metric, class Aggregation, class Size, class G>
+template <bool InColumns, class Metric, class Aggregation, class Size, class Elements>
 ETLMON_INLINE MeasuredBits conclude(const Tally<Metric, Aggregation>& tally, const float* z,
-                                    G targets, const float* weights, Size size,
+                                    Elements targets, const float* weights, Size size,
                                     Aggregation aggregation) noexcept {
   const uint32_t result = tally.result(size.rows());
   bool sound = tally.sound(result);
   if constexpr (Metric::kRescales && !Aggregation::kNearest) {
     if (!sound && tally.sound_if_equal(result)) {
-      sound = is_equal<Size::is_short(), InColumns, G>(
+      sound = is_equal<Size::is_short(), InColumns, Elements>(
           z, {targets, size.rows(), size.dimension(), size.stride()}, tally.nearest.row);
     }
   }
   if constexpr (Metric::kRescales || Aggregation::kOfDistances) {
     if (!sound)
-      return measure_again<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size,
-                                                                    aggregation);
+      return measure_again<Metric, Aggregation, Size, InColumns, Elements>(z, targets, weights,
+                                                                           size, aggregation);
   }
   const float delta =
       Aggregation::kOfDistances ? from_bits(result) : Metric::finish(from_bits(result));

@@ -77,10 +77,11 @@ class Targets {
 };
 
 /// measure() for rows that each begin at a multiple of 64 bytes; the same bits.
-template <class Metric, class Aggregation, uint32_t K, uint32_t D>
+template <class Metric, class Aggregation, uint32_t Rows, uint32_t Dim>
 ETLMON_INLINE Measured measure_stored(const float* z, const float* rows,
                                       const float* weights = nullptr) noexcept {
-  return detail::best<Metric, Aggregation, detail::Padded<K, D>, false>(z, rows, weights, {}, {});
+  return detail::best<Metric, Aggregation, detail::Padded<Rows, Dim>, false>(z, rows, weights, {},
+                                                                             {});
 }
 
 }  // namespace ETLMON_BUILD

@@ -15,13 +15,13 @@ inline namespace ETLMON_BUILD {
 namespace detail {
 
 #if defined(ETLMON_VECTORS)
-template <class G>
-ETLMON_INLINE void widen(G from, float* to, uint32_t n) noexcept {
+template <class Elements>
+ETLMON_INLINE void widen(Elements from, float* to, uint32_t n) noexcept {
   best_widen(from, to, n);
 }
 #else
-template <class G>
-ETLMON_INLINE void widen(G from, float* to, uint32_t n) noexcept {
+template <class Elements>
+ETLMON_INLINE void widen(Elements from, float* to, uint32_t n) noexcept {
   for (uint32_t i = 0; i < n; ++i) to[i] = element(from, i);
 }
 #endif

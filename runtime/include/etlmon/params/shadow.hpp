@@ -34,8 +34,8 @@ class Shadow {
 
   /// Begins a trial of these, with new counts: the candidate is a copy of the monitor that answers,
   /// and takes them. Where they are refused nothing changes.
-  template <class P>
-  ParamsState try_out(const P& params, Past past) noexcept {
+  template <class Params>
+  ParamsState try_out(const Params& params, Past past) noexcept {
     if (!params.ready()) return params.state();
     candidate_ = active_;
     candidate_.retarget(params, past);

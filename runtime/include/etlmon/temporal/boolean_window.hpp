@@ -15,24 +15,26 @@ inline namespace ETLMON_BUILD {
 namespace detail {
 
 /// Steps since something last happened, at most N: then it is out of the window.
-template <uint32_t N>
+template <uint32_t Length>
 class Age {
  public:
-  constexpr void reset() noexcept { steps_ = N; }
-  void next(bool happened) noexcept { steps_ = happened ? 0 : steps_ + (steps_ < N ? 1u : 0u); }
+  constexpr void reset() noexcept { steps_ = Length; }
+  void next(bool happened) noexcept {
+    steps_ = happened ? 0 : steps_ + (steps_ < Length ? 1u : 0u);
+  }
   /// It no longer counts.
-  constexpr void forget() noexcept { steps_ = N; }
-  bool within() const noexcept { return steps_ < N; }
+  constexpr void forget() noexcept { steps_ = Length; }
+  bool within() const noexcept { return steps_ < Length; }
 
  private:
   uint32_t steps_;
 };
 
 /// What fails where W holds: both sides and the answer are negated.
-template <class W>
+template <class Wrapped>
 class Dual {
  public:
-  using Element = typename W::Element;
+  using Element = typename Wrapped::Element;
 
   constexpr void reset() noexcept { failed_.reset(); }
   Element push(Span<Truth> now) noexcept {
@@ -40,14 +42,14 @@ class Dual {
   }
 
  private:
-  W failed_;
+  Wrapped failed_;
 };
 
 }  // namespace detail
 
 /// Or over the last N: some step was true.
-template <uint32_t N>
-class Window<Greatest<Truth>, N> {
+template <uint32_t Length>
+class Window<Greatest<Truth>, Length> {
  public:
   constexpr void reset() noexcept {
     low_.reset();
@@ -61,24 +63,24 @@ class Window<Greatest<Truth>, N> {
   }
 
  private:
-  detail::Age<N> low_;   ///< of the last step that was surely true
-  detail::Age<N> high_;  ///< of the last one that perhaps was
+  detail::Age<Length> low_;   ///< of the last step that was surely true
+  detail::Age<Length> high_;  ///< of the last one that perhaps was
 };
 
 /// And over the last N.
-template <uint32_t N>
-class Window<Least<Truth>, N> {
+template <uint32_t Length>
+class Window<Least<Truth>, Length> {
  public:
   constexpr void reset() noexcept { failed_.reset(); }
   Truth push(Truth now) noexcept { return negate(failed_.push(negate(now))); }
 
  private:
-  Window<Greatest<Truth>, N> failed_;
+  Window<Greatest<Truth>, Length> failed_;
 };
 
 /// f S g over the last N: the newest g counts, while f has held since.
-template <uint32_t N>
-class Window<Since<Truth>, N> {
+template <uint32_t Length>
+class Window<Since<Truth>, Length> {
  public:
   struct Element {
     Truth value;
@@ -98,29 +100,29 @@ class Window<Since<Truth>, N> {
   }
 
  private:
-  detail::Age<N> low_;
-  detail::Age<N> high_;
+  detail::Age<Length> low_;
+  detail::Age<Length> high_;
 };
 
 /// The dual of Since.
-template <uint32_t N>
-class Window<Trigger<Truth>, N> : public detail::Dual<Window<Since<Truth>, N>> {};
+template <uint32_t Length>
+class Window<Trigger<Truth>, Length> : public detail::Dual<Window<Since<Truth>, Length>> {};
 
 /// f U g at the oldest of the last N. The first position from there on where g holds, or where
 /// neither f nor g does, decides; before it f holds and g does not. Each decision is about a run of
 /// positions up to its own, so it is enough to keep where the answer turns. The ends of a truth are
 /// bits here, 1 the low one and 2 the high one; and nothing branches on them: signs of distances
 /// are what no processor predicts.
-template <uint32_t N>
-class Window<Until<Truth>, N> {
-  static_assert(N >= 1 && N <= 0x7fffffffu, "a window holds at least this step");
+template <uint32_t Length>
+class Window<Until<Truth>, Length> {
+  static_assert(Length >= 1 && Length <= 0x7fffffffu, "a window holds at least this step");
 
  public:
-  using Element = typename Window<Since<Truth>, N>::Element;
+  using Element = typename Window<Since<Truth>, Length>::Element;
 
   constexpr void reset() noexcept {
     cursor_ = 0;
-    open_ = N - 1;
+    open_ = Length - 1;
     more_open_ = 0;
     decided_ = answer_ = 0;
     for (uint8_t& turns : turns_) turns = 0;
@@ -131,7 +133,7 @@ class Window<Until<Truth>, N> {
     const uint32_t decides = g | (ends(now.guard) ^ 3u), turns = decides & (g ^ decided_);
     decided_ = static_cast<uint8_t>(decided_ ^ turns);
     turns_[slot] = 0;
-    cursor_ = slot + 1 == N ? 0 : slot + 1;
+    cursor_ = slot + 1 == Length ? 0 : slot + 1;
 
     uint32_t leaving = 0;  // ends that nothing has decided about the oldest position
     if (more_open_ == 0 && (decides == 0 || decides == 3)) {
@@ -151,12 +153,12 @@ class Window<Until<Truth>, N> {
   /// The slot of the first of `open` positions, of which the last is in `slot`.
   static uint32_t first_open(uint32_t slot, uint32_t open) noexcept {
     const uint32_t first = slot + 1 - open;
-    return first + (N & (0u - (first >> 31)));
+    return first + (Length & (0u - (first >> 31)));
   }
 
   /// One more is open, or none any more; 1 where the oldest leaves the window open.
   static uint32_t close(uint32_t& open, uint32_t decides) noexcept {
-    const uint32_t left = (open + 1) & ((decides & 1u) - 1u), leaves = left == N ? 1u : 0u;
+    const uint32_t left = (open + 1) & ((decides & 1u) - 1u), leaves = left == Length ? 1u : 0u;
     open = left - leaves;
     return leaves;
   }
@@ -173,22 +175,22 @@ class Window<Until<Truth>, N> {
     return leaving;
   }
 
-  uint32_t cursor_;     ///< slot of the next position; it is the oldest one's
-  uint32_t more_open_;  ///< so many more are open for the high end, modulo 2^32
-  uint8_t turns_[N];    ///< ends whose answer is not that of the slot before
-  uint8_t decided_;     ///< the last decisions
-  uint8_t answer_;      ///< at the oldest position; while that is open, at the one before
-  uint32_t open_;       ///< positions, the newest ones, about which nothing has decided the low end
+  uint32_t cursor_;        ///< slot of the next position; it is the oldest one's
+  uint32_t more_open_;     ///< so many more are open for the high end, modulo 2^32
+  uint8_t turns_[Length];  ///< ends whose answer is not that of the slot before
+  uint8_t decided_;        ///< the last decisions
+  uint8_t answer_;         ///< at the oldest position; while that is open, at the one before
+  uint32_t open_;  ///< positions, the newest ones, about which nothing has decided the low end
 };
 
 /// The dual of Until.
-template <uint32_t N>
-class Window<Release<Truth>, N> : public detail::Dual<Window<Until<Truth>, N>> {};
+template <uint32_t Length>
+class Window<Release<Truth>, Length> : public detail::Dual<Window<Until<Truth>, Length>> {};
 
 /// A delay of truth values, sixteen to a word.
-template <uint32_t N>
-class Delay<Truth, N> {
-  static_assert(N >= 1, "a delay by nothing is the value itself");
+template <uint32_t Length>
+class Delay<Truth, Length> {
+  static_assert(Length >= 1, "a delay by nothing is the value itself");
 
  public:
   constexpr void reset(Truth fill) noexcept {
@@ -203,13 +205,13 @@ class Delay<Truth, N> {
     const uint32_t past = pairs >> shift;
     pairs =
         (pairs & ~(3u << shift)) | (value.low ? 1u << shift : 0u) | (value.high ? 2u << shift : 0u);
-    cursor_ = cursor_ + 1 == N ? 0 : cursor_ + 1;
+    cursor_ = cursor_ + 1 == Length ? 0 : cursor_ + 1;
     return {(past & 1u) != 0, (past & 2u) != 0};
   }
 
  private:
   uint32_t cursor_;
-  uint32_t pairs_[(N + 15) / 16];  ///< low in the even bits, high in the odd ones
+  uint32_t pairs_[(Length + 15) / 16];  ///< low in the even bits, high in the odd ones
 };
 
 }  // namespace ETLMON_BUILD

@@ -43,19 +43,19 @@ Lazy(Find) -> Lazy<Find>;
 namespace detail {
 
 /// What a combination keeps of an operand: a reference to a variable, a temporary itself.
-template <class A>
+template <class Operand>
 struct Kept {
-  using Type = const A;
+  using Type = const Operand;
 };
-template <class A>
-struct Kept<A&> {
-  using Type = const A&;
+template <class Operand>
+struct Kept<Operand&> {
+  using Type = const Operand&;
 };
 
-template <class A, class B>
+template <class Left, class Right>
 struct Both {
-  typename Kept<A>::Type first;
-  typename Kept<B>::Type second;
+  typename Kept<Left>::Type first;
+  typename Kept<Right>::Type second;
   operator Truth() const noexcept {
     const Truth known = first;
     if (!known.high) return kNo;
@@ -63,10 +63,10 @@ struct Both {
   }
 };
 
-template <class A, class B>
+template <class Left, class Right>
 struct Either {
-  typename Kept<A>::Type first;
-  typename Kept<B>::Type second;
+  typename Kept<Left>::Type first;
+  typename Kept<Right>::Type second;
   operator Truth() const noexcept {
     const Truth known = first;
     if (known.low) return kYes;
@@ -74,13 +74,13 @@ struct Either {
   }
 };
 
-template <class A>
+template <class Operand>
 struct Negation {
-  typename Kept<A>::Type of;
+  typename Kept<Operand>::Type of;
   operator Truth() const noexcept { return negate(static_cast<Truth>(of)); }
 };
 
-template <class A>
+template <class Operand>
 struct IsLazy {
   static constexpr bool value = false;
 };
@@ -88,22 +88,22 @@ template <class Find>
 struct IsLazy<Lazy<Find>> {
   static constexpr bool value = true;
 };
-template <class A, class B>
-struct IsLazy<Both<A, B>> {
+template <class Left, class Right>
+struct IsLazy<Both<Left, Right>> {
   static constexpr bool value = true;
 };
-template <class A, class B>
-struct IsLazy<Either<A, B>> {
+template <class Left, class Right>
+struct IsLazy<Either<Left, Right>> {
   static constexpr bool value = true;
 };
-template <class A>
-struct IsLazy<Negation<A>> {
+template <class Operand>
+struct IsLazy<Negation<Operand>> {
   static constexpr bool value = true;
 };
-template <class A>
-struct IsLazy<A&> : IsLazy<A> {};
-template <class A>
-struct IsLazy<const A> : IsLazy<A> {};
+template <class Operand>
+struct IsLazy<Operand&> : IsLazy<Operand> {};
+template <class Operand>
+struct IsLazy<const Operand> : IsLazy<Operand> {};
 
 template <bool>
 struct Where {};
@@ -115,18 +115,20 @@ struct Where<true> {
 }  // namespace detail
 
 /// `a`, then `b` unless a decides; the same for more.
-template <class A, class B,
-          typename detail::Where<detail::IsLazy<A>::value || detail::IsLazy<B>::value>::Type = 0>
-ETLMON_INLINE detail::Both<A, B> min_of(A&& a, B&& b) noexcept {
+template <
+    class Left, class Right,
+    typename detail::Where<detail::IsLazy<Left>::value || detail::IsLazy<Right>::value>::Type = 0>
+ETLMON_INLINE detail::Both<Left, Right> min_of(Left&& a, Right&& b) noexcept {
   return {a, b};
 }
-template <class A, class B,
-          typename detail::Where<detail::IsLazy<A>::value || detail::IsLazy<B>::value>::Type = 0>
-ETLMON_INLINE detail::Either<A, B> max_of(A&& a, B&& b) noexcept {
+template <
+    class Left, class Right,
+    typename detail::Where<detail::IsLazy<Left>::value || detail::IsLazy<Right>::value>::Type = 0>
+ETLMON_INLINE detail::Either<Left, Right> max_of(Left&& a, Right&& b) noexcept {
   return {a, b};
 }
-template <class A, typename detail::Where<detail::IsLazy<A>::value>::Type = 0>
-ETLMON_INLINE detail::Negation<A> negate(A&& a) noexcept {
+template <class Operand, typename detail::Where<detail::IsLazy<Operand>::value>::Type = 0>
+ETLMON_INLINE detail::Negation<Operand> negate(Operand&& a) noexcept {
   return {a};
 }
 

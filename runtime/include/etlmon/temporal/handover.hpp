@@ -16,23 +16,23 @@ namespace etlmon {
 inline namespace ETLMON_BUILD {
 
 /// A handover over a segment of positions.
-template <class V>
+template <class Value>
 struct Flanks {
-  V value;
-  V before;  ///< what f lets through to newer positions: min of f (its dual: max)
-  V behind;  ///< what g lets through to older ones
+  Value value;
+  Value before;  ///< what f lets through to newer positions: min of f (its dual: max)
+  Value behind;  ///< what g lets through to older ones
 };
 
 /// f hands over to g: max over j of min(min of f over [oldest, j], min of g over [j, newest]).
-template <class V>
+template <class Value>
 struct Handover {
-  using Element = Flanks<V>;
+  using Element = Flanks<Value>;
   static constexpr bool kMayOverlap = false;
   static constexpr bool kNewestLast = true;
   static constexpr Element identity() noexcept {
-    return {Lattice<V>::bottom(), Lattice<V>::top(), Lattice<V>::top()};
+    return {Lattice<Value>::bottom(), Lattice<Value>::top(), Lattice<Value>::top()};
   }
-  static constexpr Element at(V f, V g) noexcept { return {min_of(f, g), f, g}; }
+  static constexpr Element at(Value f, Value g) noexcept { return {min_of(f, g), f, g}; }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return {max_of(min_of(older.value, newer.behind), min_of(older.before, newer.value)),
             min_of(older.before, newer.before), min_of(older.behind, newer.behind)};
@@ -40,27 +40,27 @@ struct Handover {
 };
 
 /// The dual of Handover: min over j of max(max of f over [oldest, j], max of g over [j, newest]).
-template <class V>
+template <class Value>
 struct Covered {
-  using Element = Flanks<V>;
+  using Element = Flanks<Value>;
   static constexpr bool kMayOverlap = false;
   static constexpr bool kNewestLast = true;
   static constexpr Element identity() noexcept {
-    return {Lattice<V>::top(), Lattice<V>::bottom(), Lattice<V>::bottom()};
+    return {Lattice<Value>::top(), Lattice<Value>::bottom(), Lattice<Value>::bottom()};
   }
-  static constexpr Element at(V f, V g) noexcept { return {max_of(f, g), f, g}; }
+  static constexpr Element at(Value f, Value g) noexcept { return {max_of(f, g), f, g}; }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return {min_of(max_of(older.value, newer.behind), max_of(older.before, newer.value)),
             max_of(older.before, newer.before), max_of(older.behind, newer.behind)};
   }
 };
 
-template <class V>
-constexpr Flanks<typename Lattice<V>::End> low_of(Flanks<V> e) noexcept {
+template <class Value>
+constexpr Flanks<typename Lattice<Value>::End> low_of(Flanks<Value> e) noexcept {
   return {e.value.low, e.before.low, e.behind.low};
 }
-template <class V>
-constexpr Flanks<typename Lattice<V>::End> high_of(Flanks<V> e) noexcept {
+template <class Value>
+constexpr Flanks<typename Lattice<Value>::End> high_of(Flanks<Value> e) noexcept {
   return {e.value.high, e.before.high, e.behind.high};
 }
 template <class End>
@@ -69,8 +69,8 @@ constexpr auto pair_of(Flanks<End> low, Flanks<End> high) noexcept
   return {pair_of(low.value, high.value), pair_of(low.before, high.before),
           pair_of(low.behind, high.behind)};
 }
-template <class V>
-constexpr bool same_ends(Flanks<V> e) noexcept {
+template <class Value>
+constexpr bool same_ends(Flanks<Value> e) noexcept {
   return same_ends(e.before) && same_ends(e.behind) && same_ends(e.value);
 }
 

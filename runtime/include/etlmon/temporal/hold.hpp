@@ -12,32 +12,32 @@ namespace etlmon {
 inline namespace ETLMON_BUILD {
 
 /// D elements of T (float, or uint32_t for a flag), held for at most N steps in a row.
-template <class T, uint32_t D, uint32_t N>
+template <class Element, uint32_t Dim, uint32_t Steps>
 class Hold {
  public:
-  constexpr void reset() noexcept { age_ = N; }
+  constexpr void reset() noexcept { age_ = Steps; }
 
   /// `sample`: D elements, or nullptr where it is missing. The result is good until the next call.
-  const T* take(const T* sample) noexcept {
+  const Element* take(const Element* sample) noexcept {
     if (sample != nullptr) {
-      for (uint32_t i = 0; i < D; ++i) values_[i] = sample[i];
+      for (uint32_t i = 0; i < Dim; ++i) values_[i] = sample[i];
       age_ = 0;
       return sample;
     }
-    if (age_ == N) return nullptr;
+    if (age_ == Steps) return nullptr;
     ++age_;
     return values_;
   }
 
   /// The same for a scalar, which is missing where it is NaN.
   ETLMON_INLINE float take(const float& sample) noexcept {
-    static_assert(D == 1, "one number");
+    static_assert(Dim == 1, "one number");
     const float* const taken = take(is_nan(sample) ? nullptr : &sample);
     return taken != nullptr ? *taken : detail::from_bits(detail::kMissingBits);
   }
 
  private:
-  T values_[D];
+  Element values_[Dim];
   uint32_t age_;  ///< missing samples in a row since the held one; N: nothing to hold any more
 };
 

@@ -27,12 +27,12 @@ struct Owed {
 constexpr uint16_t kStrongly = 0xffff;
 
 /// The transitions into state t end at ends[t]; those of t follow those of t - 1.
-template <class V>
-void machine_advance(const V* now, V* next, uint32_t states, const Transition* transitions,
-                     const uint32_t* ends, const V* guards) noexcept {
+template <class Value>
+void machine_advance(const Value* now, Value* next, uint32_t states, const Transition* transitions,
+                     const uint32_t* ends, const Value* guards) noexcept {
   uint32_t at = 0;
   for (uint32_t target = 0; target < states; ++target) {
-    V best = Lattice<V>::bottom();
+    Value best = Lattice<Value>::bottom();
     for (; at < ends[target]; ++at)
       best = max_of(best, min_of(now[transitions[at].source], guards[transitions[at].guard]));
     next[target] = best;
@@ -41,8 +41,8 @@ void machine_advance(const V* now, V* next, uint32_t states, const Transition* t
 
 /// rho: the best state that owes nothing strongly. lower: what it owes weakly is worth its lowest
 /// unseen value. upper: any state, what it owes strongly is worth its highest unseen value.
-template <class V, class End>
-auto machine_read(const V* now, uint32_t states, const Owed* owed, const End* weak,
+template <class Value, class End>
+auto machine_read(const Value* now, uint32_t states, const Owed* owed, const End* weak,
                   const End* strong) noexcept {
   using Result = decltype(reading_of(*now));
   Result reading = Lattice<Result>::bottom();
@@ -57,29 +57,29 @@ auto machine_read(const V* now, uint32_t states, const Owed* owed, const End* we
 }
 
 /// The registers of a machine with its tables elsewhere; state 0 is the initial one.
-template <class V, uint32_t States>
+template <class Value, uint32_t States>
 class Machine {
-  using End = typename Lattice<V>::End;
+  using End = typename Lattice<Value>::End;
 
  public:
   constexpr void reset() noexcept {
     turn_ = 0;
     for (uint32_t q = 0; q < States; ++q)
-      registers_[0][q] = q == 0 ? Lattice<V>::top() : Lattice<V>::bottom();
+      registers_[0][q] = q == 0 ? Lattice<Value>::top() : Lattice<Value>::bottom();
   }
 
-  void advance(const Transition* transitions, const uint32_t* ends, const V* guards) noexcept {
+  void advance(const Transition* transitions, const uint32_t* ends, const Value* guards) noexcept {
     machine_advance(registers_[turn_], registers_[1 - turn_], States, transitions, ends, guards);
     turn_ = 1 - turn_;
   }
 
-  BasicReading<V> read(const Owed* owed, const End* weak, const End* strong) const noexcept {
+  BasicReading<Value> read(const Owed* owed, const End* weak, const End* strong) const noexcept {
     return machine_read(registers_[turn_], States, owed, weak, strong);
   }
 
  private:
   uint32_t turn_;
-  V registers_[2][States];
+  Value registers_[2][States];
 };
 
 }  // namespace ETLMON_BUILD

@@ -20,28 +20,28 @@ namespace etlmon {
 inline namespace ETLMON_BUILD {
 
 /// The aggregate of the last N elements: window.hpp, and boolean_window.hpp for truth values.
-template <class Monoid, uint32_t N>
+template <class Monoid, uint32_t Length>
 class Window;
 
 /// Greatest value of the segment: O over the last N, F over the next N.
-template <class V>
+template <class Value>
 struct Greatest {
-  using Element = V;
+  using Element = Value;
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = true;
-  static constexpr Element identity() noexcept { return Lattice<V>::bottom(); }
+  static constexpr Element identity() noexcept { return Lattice<Value>::bottom(); }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return max_of(older, newer);
   }
 };
 
 /// Least value of the segment: H over the last N, G over the next N.
-template <class V>
+template <class Value>
 struct Least {
-  using Element = V;
+  using Element = Value;
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = true;
-  static constexpr Element identity() noexcept { return Lattice<V>::top(); }
+  static constexpr Element identity() noexcept { return Lattice<Value>::top(); }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return min_of(older, newer);
   }
@@ -49,20 +49,22 @@ struct Least {
 
 /// A binary operator over a segment of positions. One position: value is the right operand g, guard
 /// the left operand f.
-template <class V>
+template <class Value>
 struct Span {
-  V value;  ///< the operator's value at the end of the segment that the operator looks from
-  V guard;  ///< what the segment lets through from beyond its other end: min of f (since, until),
-            ///< max of f (duals)
+  Value value;  ///< the operator's value at the end of the segment that the operator looks from
+  Value guard;  ///< what the segment lets through from beyond its other end: min of f (since,
+                ///< until), max of f (duals)
 };
 
 /// f S g seen from the newest position: max over j of min(g(j), min of f over (j, newest]).
-template <class V>
+template <class Value>
 struct Since {
-  using Element = Span<V>;
+  using Element = Span<Value>;
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = true;
-  static constexpr Element identity() noexcept { return {Lattice<V>::bottom(), Lattice<V>::top()}; }
+  static constexpr Element identity() noexcept {
+    return {Lattice<Value>::bottom(), Lattice<Value>::top()};
+  }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return {max_of(min_of(older.value, newer.guard), newer.value),
             min_of(older.guard, newer.guard)};
@@ -70,12 +72,14 @@ struct Since {
 };
 
 /// The dual of Since: min over j of max(g(j), max of f over (j, newest]).
-template <class V>
+template <class Value>
 struct Trigger {
-  using Element = Span<V>;
+  using Element = Span<Value>;
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = true;
-  static constexpr Element identity() noexcept { return {Lattice<V>::top(), Lattice<V>::bottom()}; }
+  static constexpr Element identity() noexcept {
+    return {Lattice<Value>::top(), Lattice<Value>::bottom()};
+  }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return {min_of(max_of(older.value, newer.guard), newer.value),
             max_of(older.guard, newer.guard)};
@@ -83,12 +87,14 @@ struct Trigger {
 };
 
 /// f U g seen from the oldest position: max over j of min(g(j), min of f over [oldest, j)).
-template <class V>
+template <class Value>
 struct Until {
-  using Element = Span<V>;
+  using Element = Span<Value>;
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = false;
-  static constexpr Element identity() noexcept { return {Lattice<V>::bottom(), Lattice<V>::top()}; }
+  static constexpr Element identity() noexcept {
+    return {Lattice<Value>::bottom(), Lattice<Value>::top()};
+  }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return {max_of(older.value, min_of(older.guard, newer.value)),
             min_of(older.guard, newer.guard)};
@@ -96,12 +102,14 @@ struct Until {
 };
 
 /// f R g, the dual of Until: min over j of max(g(j), max of f over [oldest, j)).
-template <class V>
+template <class Value>
 struct Release {
-  using Element = Span<V>;
+  using Element = Span<Value>;
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = false;
-  static constexpr Element identity() noexcept { return {Lattice<V>::top(), Lattice<V>::bottom()}; }
+  static constexpr Element identity() noexcept {
+    return {Lattice<Value>::top(), Lattice<Value>::bottom()};
+  }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return {min_of(older.value, max_of(older.guard, newer.value)),
             max_of(older.guard, newer.guard)};
@@ -112,12 +120,12 @@ struct Release {
 constexpr Key low_of(Value v) noexcept { return v.low; }
 constexpr Key high_of(Value v) noexcept { return v.high; }
 constexpr Value pair_of(Key low, Key high) noexcept { return {low, high}; }
-template <class V>
-constexpr Span<typename Lattice<V>::End> low_of(Span<V> s) noexcept {
+template <class Value>
+constexpr Span<typename Lattice<Value>::End> low_of(Span<Value> s) noexcept {
   return {s.value.low, s.guard.low};
 }
-template <class V>
-constexpr Span<typename Lattice<V>::End> high_of(Span<V> s) noexcept {
+template <class Value>
+constexpr Span<typename Lattice<Value>::End> high_of(Span<Value> s) noexcept {
   return {s.value.high, s.guard.high};
 }
 template <class End>
@@ -126,8 +134,8 @@ constexpr auto pair_of(Span<End> low, Span<End> high) noexcept
   return {pair_of(low.value, high.value), pair_of(low.guard, high.guard)};
 }
 constexpr bool same_ends(Value v) noexcept { return v.low == v.high; }
-template <class V>
-constexpr bool same_ends(Span<V> s) noexcept {
+template <class Value>
+constexpr bool same_ends(Span<Value> s) noexcept {
   return same_ends(s.value) && same_ends(s.guard);
 }
 

@@ -135,8 +135,8 @@ constexpr SourcedKey high_of(Sourced v) noexcept { return v.high; }
 constexpr Sourced pair_of(SourcedKey low, SourcedKey high) noexcept { return {low, high}; }
 constexpr bool same_ends(Sourced v) noexcept { return v.low.order == v.high.order; }
 
-template <template <class> class Operator, uint32_t N>
-class Window<Operator<Sourced>, N> : public PairWindow<Operator, Sourced, N> {};
+template <template <class> class Operator, uint32_t Length>
+class Window<Operator<Sourced>, Length> : public PairWindow<Operator, Sourced, Length> {};
 
 /// A value of the sample of this rank, as it stands above the middle.
 ETLMON_INLINE SourcedKey sourced(Key key, Rank rank) noexcept {

@@ -85,31 +85,25 @@ struct Register {
   }
 };
 
-/// The value of a robustness that is known; not NaN.
-ETLMON_INLINE Value known(const float& robustness) noexcept {
-  const Key key = key_of(robustness);
-  return {key, key};
-}
-
 /// The value of a robustness that lies in [low, high]; neither is NaN, low <= high.
 ETLMON_INLINE Value between(const float& low, const float& high) noexcept {
   return {key_of(low), key_of(high)};
 }
 
 /// Of more than two: values and registers, or all of another type.
-template <class A, class B, class C, class... More>
-constexpr auto min_of(A a, B b, C c, More... more) noexcept {
+template <class First, class Second, class Third, class... More>
+constexpr auto min_of(First a, Second b, Third c, More... more) noexcept {
   return min_of(min_of(a, b), c, more...);
 }
-template <class A, class B, class C, class... More>
-constexpr auto max_of(A a, B b, C c, More... more) noexcept {
+template <class First, class Second, class Third, class... More>
+constexpr auto max_of(First a, Second b, Third c, More... more) noexcept {
   return max_of(max_of(a, b), c, more...);
 }
 
 /// The least and the greatest element of a value type: bottom is false, top is true; End is the
 /// type of its two ends, low and high. A mode (truth.hpp, say) is a type with min_of and max_of
 /// found by argument-dependent lookup and a specialisation of this.
-template <class V>
+template <class Value>
 struct Lattice;
 
 template <>
@@ -117,12 +111,6 @@ struct Lattice<Key> {
   using End = Key;
   static constexpr Key bottom() noexcept { return kBottom; }
   static constexpr Key top() noexcept { return kTop; }
-};
-
-template <>
-struct Lattice<float> {
-  ETLMON_INLINE static float bottom() noexcept { return float_of(kBottom); }
-  ETLMON_INLINE static float top() noexcept { return float_of(kTop); }
 };
 
 template <>

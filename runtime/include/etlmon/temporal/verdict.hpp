@@ -48,11 +48,11 @@ struct Answers {
 };
 
 /// The answers of all monitors with their names, in the order of the spec, for loops over them.
-template <class V, uint32_t count>
+template <class Value, uint32_t count>
 struct Named {
   struct Entry {
     const char* name;
-    V verdict;
+    Value verdict;
   };
   Entry entries[count];
 

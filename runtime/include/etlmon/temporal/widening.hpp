@@ -13,9 +13,10 @@ inline namespace ETLMON_BUILD {
 /// From the aggregate of the last M to that of the last N of one stream, M < N <= 2 M: one
 /// combination and a delay by N - M instead of a second window, where several windows watch one
 /// signal. Only for operators whose segments may overlap.
-template <class Monoid, uint32_t M, uint32_t N>
+template <class Monoid, uint32_t Shorter, uint32_t Length>
 class Widening {
-  static_assert(M < N && N - M <= M, "the two shorter windows must meet");
+  static_assert(Shorter < Length && Length - Shorter <= Shorter,
+                "the two shorter windows must meet");
   static_assert(Monoid::kMayOverlap, "an element that both windows hold would count twice");
 
  public:
@@ -30,7 +31,7 @@ class Widening {
   }
 
  private:
-  Delay<Element, N - M> past_;
+  Delay<Element, Length - Shorter> past_;
 };
 
 }  // namespace ETLMON_BUILD

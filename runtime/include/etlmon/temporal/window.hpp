@@ -81,9 +81,9 @@ ETLMON_STEP typename Monoid::Element window_push(typename Monoid::Element* stora
 }
 
 /// The aggregate of the last N elements. Monoid::Element: trivially copyable, alignment at most 4.
-template <class Monoid, uint32_t N>
+template <class Monoid, uint32_t Length>
 class Window {
-  static_assert(N >= 1 && N <= 0x7fffffffu, "a window holds at least this step");
+  static_assert(Length >= 1 && Length <= 0x7fffffffu, "a window holds at least this step");
   static_assert(alignof(typename Monoid::Element) <= alignof(uint32_t),
                 "the cursor comes first, without padding");
 
@@ -91,16 +91,16 @@ class Window {
   using Element = typename Monoid::Element;
 
   /// Forgets all elements; time proportional to N.
-  constexpr void reset() noexcept { window_reset<Monoid>(storage_, cursor_, N); }
+  constexpr void reset() noexcept { window_reset<Monoid>(storage_, cursor_, Length); }
 
   /// Takes this step's element, gives the combination of the last N, oldest first.
   Element push(Element element) noexcept {
-    return window_push<Monoid>(storage_, cursor_, N, element);
+    return window_push<Monoid>(storage_, cursor_, Length, element);
   }
 
  private:
   uint32_t cursor_;
-  Element storage_[window_elements(N)];
+  Element storage_[window_elements(Length)];
 };
 
 /// Where the highs of a window over pairs part from its lows: per block the first slot whose ends
@@ -162,43 +162,43 @@ typename Ends::Element window_push_highs(const typename Ends::Element* lows,
 
 /// Over pairs of keys. The lows and the highs never meet: these are two windows. While no sample in
 /// them is missing they are the same window twice, and only that of the lows is kept up.
-template <template <class> class Operator, class V, uint32_t N>
+template <template <class> class Operator, class Value, uint32_t Length>
 class PairWindow {
  public:
-  using Element = typename Operator<V>::Element;
+  using Element = typename Operator<Value>::Element;
 
   constexpr void reset() noexcept {
-    window_reset<Ends>(lows_, cursor_, N);
+    window_reset<Ends>(lows_, cursor_, Length);
     parting_.reset();
   }
 
   ETLMON_STEP Element push(Element element) noexcept {
-    if (N == 1) return element;
+    if (Length == 1) return element;
     if (!same_ends(element) || !parting_.nowhere())
       return push_apart(low_of(element), high_of(element));
-    const EndElement both = window_push<Ends>(lows_, cursor_, N, low_of(element));
+    const EndElement both = window_push<Ends>(lows_, cursor_, Length, low_of(element));
     return pair_of(both, both);
   }
 
  private:
-  using Ends = Operator<typename Lattice<V>::End>;
+  using Ends = Operator<typename Lattice<Value>::End>;
   using EndElement = typename Ends::Element;
 
   ETLMON_COLD Element push_apart(EndElement low, EndElement high) noexcept {
     const bool parts = !same_ends(pair_of(low, high));
     const EndElement highs =
-        window_push_highs<Ends>(lows_, highs_, parting_, cursor_, N, high, parts);
-    return pair_of(window_push<Ends>(lows_, cursor_, N, low), highs);
+        window_push_highs<Ends>(lows_, highs_, parting_, cursor_, Length, high, parts);
+    return pair_of(window_push<Ends>(lows_, cursor_, Length, low), highs);
   }
 
   uint32_t cursor_;
   Parting parting_;
-  EndElement lows_[window_elements(N)];
-  EndElement highs_[window_elements(N)];  ///< written before they are read
+  EndElement lows_[window_elements(Length)];
+  EndElement highs_[window_elements(Length)];  ///< written before they are read
 };
 
-template <template <class> class Operator, uint32_t N>
-class Window<Operator<Value>, N> : public PairWindow<Operator, Value, N> {};
+template <template <class> class Operator, uint32_t Length>
+class Window<Operator<Value>, Length> : public PairWindow<Operator, Value, Length> {};
 
 }  // namespace ETLMON_BUILD
 }  // namespace etlmon

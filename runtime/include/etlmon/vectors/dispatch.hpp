@@ -25,27 +25,27 @@ ETLMON_INLINE uint32_t x86_64_level() noexcept {
 #endif
 
 /// The kernel. Small sets have no third version.
-template <class Metric, class Aggregation, class Size, bool InColumns, class G>
-ETLMON_INLINE MeasuredBits best_run(const float* z, G targets, const float* weights, Size size,
-                                    Aggregation aggregation) noexcept {
+template <class Metric, class Aggregation, class Size, bool InColumns, class Elements>
+ETLMON_INLINE MeasuredBits best_run(const float* z, Elements targets, const float* weights,
+                                    Size size, Aggregation aggregation) noexcept {
 #if defined(ETLMON_DISPATCH)
   const uint32_t level = x86_64_level();
   if constexpr (!Size::is_small(Metric::kDirection)) {
     if (level >= 4) {
-      return x86_64_v4::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size,
-                                                                     aggregation);
+      return x86_64_v4::run<Metric, Aggregation, Size, InColumns, Elements>(z, targets, weights,
+                                                                            size, aggregation);
     }
   }
   if (level >= 3) {
-    return x86_64_v3::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size,
-                                                                   aggregation);
+    return x86_64_v3::run<Metric, Aggregation, Size, InColumns, Elements>(z, targets, weights, size,
+                                                                          aggregation);
   }
 #endif
-  return baseline::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size,
-                                                                aggregation);
+  return baseline::run<Metric, Aggregation, Size, InColumns, Elements>(z, targets, weights, size,
+                                                                       aggregation);
 }
-template <class Metric, class Aggregation, class Size, bool InColumns, class G>
-ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, Size size,
+template <class Metric, class Aggregation, class Size, bool InColumns, class Elements>
+ETLMON_INLINE Measured best_of(const float* z, Elements targets, const float* weights, Size size,
                                Aggregation aggregation) noexcept {
   return unpacked(
       best_run<Metric, Aggregation, Size, InColumns>(z, targets, weights, size, aggregation));
@@ -65,9 +65,9 @@ ETLMON_INLINE float best_inverse_length(const float* z) noexcept {
 }
 
 /// The values of rows, for dynamic.hpp.
-template <class Metric, class G>
-bool best_row_values(const float* z, G targets, const float* weights, uint32_t row, uint32_t end,
-                     Sizes size, float* values) noexcept {
+template <class Metric, class Elements>
+bool best_row_values(const float* z, Elements targets, const float* weights, uint32_t row,
+                     uint32_t end, Sizes size, float* values) noexcept {
 #if defined(ETLMON_DISPATCH)
   const uint32_t level = x86_64_level();
   if (level >= 4) return x86_64_v4::row_values<Metric>(z, targets, weights, row, end, size, values);
@@ -88,8 +88,8 @@ ETLMON_INLINE Measured best_search(const float* z, const float* rows, SearchView
 }
 
 /// n elements as float32. Few do without vectors of 64 bytes.
-template <class G>
-ETLMON_INLINE void best_widen(G from, float* to, uint32_t n) noexcept {
+template <class Elements>
+ETLMON_INLINE void best_widen(Elements from, float* to, uint32_t n) noexcept {
 #if defined(ETLMON_DISPATCH)
   const uint32_t level = x86_64_level();
   if (level >= 4 && n > 4 * kLanes) return x86_64_v4::widen(from, to, n);
