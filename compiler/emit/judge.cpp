@@ -1,23 +1,23 @@
-// judge(): from the robustness of every predicate at this step to the verdicts.
+// Prints judge(): from the robustness of every predicate at this step to the verdicts.
 #include "emit/context.hpp"
 
 namespace etlc::emit {
 
 namespace {
 
-/// What was calibrated as a whole is shifted, bounds and all.
+/// Returns the value, shifted with its bounds if the monitor was calibrated as a whole.
 std::string shifted(const plan::Monitor& monitor, const std::string& value) {
     return monitor.shifted
                ? fmt::format("etlmon::shifted({}, {})", value, float_literal(monitor.shift))
                : value;
 }
 
-/// A reading or value that is robustness alone.
+/// Returns the reading or value without its sample.
 std::string robustness(const Context& context, const std::string& value) {
     return context.explains ? fmt::format("etlmon::unsourced({})", value) : value;
 }
 
-/// The verdict, from values that know their sample: the one that decides it is kept.
+/// Returns the verdict from values that carry their sample, and keeps the one that decides it.
 std::string deciding(const plan::Monitor& monitor, std::string_view kind, std::size_t m,
                      const std::string& value) {
     return fmt::format("deciding_.{}({}, {}{})", kind, m, value,
@@ -36,7 +36,7 @@ std::string prefix_verdict(const Context& context, std::size_t m) {
                        shifted(monitor, robustness(context, reading)));
 }
 
-/// About the position that its horizon is behind, where there is one.
+/// Returns the verdict on the position one horizon ago, if the trace contains it.
 std::string sliding_verdict(const Context& context, std::size_t m) {
     const plan::Monitor& monitor = context.plan.monitors[m];
     const std::string value = context.value(monitor.stream);
@@ -55,12 +55,12 @@ std::string verdict(const Context& context, std::size_t m) {
     return prefix_verdict(context, m);
 }
 
-/// In a Boolean monitor: computed while some verdict can still change.
+/// Prints a reading of a Boolean monitor, which is computed while some verdict can still change.
 void print_reading_while_open(Printer& out, const Context& context, std::uint32_t r) {
     const plan::Reading& reading = context.plan.readings[r];
     const std::string open = open_monitors(context, context.dependents.of_reading[r]);
     if (!reading.operands.empty() || open.empty())
-        return print_reading(out, context, r);  // of others, which ask for nothing; or always open
+        return print_reading(out, context, r);  // a combination of readings, or always open
     out.line("Reading {}{{}};", context.names.readings[r].local);
     print_wrapped(out, fmt::format("if ({}) {{", open));
     out.indent();
@@ -72,8 +72,7 @@ void print_readings(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
     if (plan.readings.empty()) return;
     const bool ends =
-        plan.has_sliding &&
-        !context.on_demand;  // prefixes do not grow while finish() reports the last positions
+        plan.has_sliding && !context.on_demand;  // the prefix does not grow during finish()
     if (ends) {
         out.gap();
         out.open("if (finishes_ == 0) {");
@@ -95,7 +94,7 @@ std::string if_open(const Context& context, std::size_t m) {
     return open == context.names.open_local.end() ? "" : fmt::format("if ({}) ", open->second);
 }
 
-/// The answers so far, with those that can still change brought up to date.
+/// Prints the update of the verdicts that can still change.
 void print_open_verdicts(Printer& out, const Context& context) {
     for (std::size_t m = 0; m < context.plan.monitors.size(); ++m) {
         const plan::Monitor& monitor = context.plan.monitors[m];

@@ -1,4 +1,4 @@
-// What the class keeps for its formulas: the plan's members, declared.
+// Declares the members that the plan lists for readings and streams.
 #include <algorithm>
 
 #include "emit/context.hpp"
@@ -54,7 +54,7 @@ Member declared(const Context& context, const plan::Member& member, const std::s
             reset_of(context, member, name), "",   begins_with};
 }
 
-/// The members of a reading; registers that are an array are one.
+/// Adds the members of a reading. Registers in an array are one member.
 void add_members(std::vector<Member>& result, const Context& context, std::size_t r) {
     const Names::OfReading& names = context.names.readings[r];
     const std::uint32_t begins_with = context.plan.readings[r].begins_with;

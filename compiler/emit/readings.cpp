@@ -1,4 +1,4 @@
-// The readings of judge(): what the prefix says about position 0.
+// Prints the readings of judge(): robustness and bounds at position 0, given the prefix.
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ using plan::Term;
 
 // ---- straight-line code
 
-/// Target elements that a term may have to measure.
+/// Returns the number of target elements that a term may have to measure.
 std::uint64_t work_of(const Context& context, const Term& term) {
     std::uint64_t sum = term.kind == Term::Kind::stream ? context.work(term.index) : 0;
     for (const Term& operand : term.operands) sum += work_of(context, operand);
@@ -29,8 +29,8 @@ bool is_lazy(const Context& context, const Term& term) {
                        [&](const Term& operand) { return is_lazy(context, operand); });
 }
 
-/// A register of the reading; elements of arrays as seen from the element `i` = `seen_from`, if
-/// any.
+/// Returns code for a register of the reading. With `seen_from`, array elements are relative to
+/// that element, whose index is `i`.
 std::string register_text(const Names::OfReading& names, std::uint32_t index,
                           std::uint32_t seen_from = plan::kNone) {
     const std::string& name = names.members[index];
@@ -42,7 +42,7 @@ std::string register_text(const Names::OfReading& names, std::uint32_t index,
                                : fmt::format("{}[i + {}]", name, element - seen_from);
 }
 
-/// How many of the terms, beginning with the one at `begin`, are neighbours in an array.
+/// Counts the terms from `begin` on that are consecutive elements of an array.
 std::size_t neighbours(const Names::OfReading& names, const std::vector<Term>& terms,
                        std::size_t begin) {
     std::size_t end = begin;
@@ -57,10 +57,10 @@ std::size_t neighbours(const Names::OfReading& names, const std::vector<Term>& t
     return end - begin;
 }
 
-/// The term in C++: of the reading r, whole or at one end.
+/// Returns code for a term of the reading r, or for one end of it.
 std::string text_of(const Context& context, std::uint32_t r, const Term& term, End end,
                     std::uint32_t seen_from = plan::kNone) {
-    constexpr std::size_t kMany = 4;  // elements that are said as a range
+    constexpr std::size_t kMany = 4;  // elements that are combined in one call
     const Names::OfReading& names = context.names.readings[r];
     const std::string part = end == End::both ? "" : end == End::low ? ".low" : ".high";
     switch (term.kind) {
@@ -114,21 +114,21 @@ void print_assignment(Printer& out, const Context& context, std::uint32_t r,
         fmt::format("{} = {};", register_text(names, assignment.index), value);
     const std::string held =
         plan::comment_of(plan::members_of(reading)[assignment.index], context.graph);
-    // What stands above the reading's code is not said again.
+    // The formula above the reading's code is not repeated.
     const bool said = held == context.graph.text(reading.node);
     print_with_comment(out,
                        condition.empty() ? update : fmt::format("if ({}) {}", condition, update),
                        said ? "" : held);
 }
 
-/// The element of an array that is assigned at every position; kNone: it is something else.
+/// Returns the array element that is assigned at every position; kNone for other assignments.
 std::uint32_t assigned_element(const Names::OfReading& names, const plan::Assignment& assignment) {
     const bool always = assignment.positions == ir::Interval{};
     return always && assignment.target == Term::Kind::reg ? names.elements[assignment.index]
                                                           : plan::kNone;
 }
 
-/// How many assignments, beginning with the one at `begin`, do the same for neighbours in an array.
+/// Counts the assignments from `begin` on that do the same for consecutive elements of an array.
 std::size_t alike(const Context& context, std::uint32_t r, std::size_t begin) {
     const Names::OfReading& names = context.names.readings[r];
     const std::vector<plan::Assignment>& list = context.plan.readings[r].straight.assignments;
@@ -150,7 +150,7 @@ std::size_t alike(const Context& context, std::uint32_t r, std::size_t begin) {
     return end - begin;
 }
 
-/// Assignments that do the same for neighbours in an array, as a loop.
+/// Prints such assignments as a loop.
 void print_loop(Printer& out, const Context& context, std::uint32_t r, std::size_t begin,
                 std::size_t count) {
     const plan::Straight& code = context.plan.readings[r].straight;
@@ -172,7 +172,7 @@ void print_loop(Printer& out, const Context& context, std::uint32_t r, std::size
 }
 
 void print_straight(Printer& out, const Context& context, std::uint32_t r) {
-    constexpr std::size_t kMany = 3;  // assignments that are worth a loop
+    constexpr std::size_t kMany = 3;  // assignments that become a loop
     const plan::Straight& code = context.plan.readings[r].straight;
     for (std::size_t i = 0; i < code.assignments.size();) {
         const std::size_t count = alike(context, r, i);
@@ -285,8 +285,8 @@ void print_tables(Printer& out, const Context& context) {
     const std::vector<Reading>& readings = context.plan.readings;
     if (std::none_of(readings.begin(), readings.end(), plan::table_of)) return;
     print_doc(out,
-              "State machines: the transitions into each state, where they end, what each state "
-              "owes.");
+              "State machines: the transitions into each state, where each list ends, and the "
+              "pending obligations of each state.");
     out.line("namespace tables {");
     for (std::uint32_t r = 0; r < readings.size(); ++r)
         if (plan::table_of(readings[r]) != nullptr) print_table(out, context, r);

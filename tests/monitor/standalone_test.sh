@@ -127,7 +127,7 @@ short() {
 # Boolean monitors have the algebra of what they ask for besides.
 while read -r values more; do
     short reach 2450 --values "$values"
-    short level 900 --values "$values"
+    short level 950 --values "$values"
     short windows $((1350 + more)) --values "$values"
     short everything $((2950 + more)) --values "$values"
     for storage in f16 i8; do

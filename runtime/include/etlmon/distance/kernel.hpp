@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The distance kernel: one embedding against K targets, aggregated.
-// Takes: z of D floats; targets K x D row-major, prepared as distances.def says (unit rows for
-// cosine and angular); weights D x D or D where the distance has some. Gives: the aggregated
-// distance and the nearest row. Keeps true: the order of additions depends on K and D alone, not on
-// what is known at compile time, so generated code and `etlc run` agree bit for bit on one machine;
-// nothing is allocated; the time depends on the data only where a sum of squares leaves [2^-80,
-// FLT_MAX] and the scaled form (rescaled.hpp) decides.
+// The distance kernel: the aggregated distance from an embedding to a target set. Takes: z of Dim
+// floats; targets Rows x Dim, row-major, prepared as in distances.def (unit rows for cosine and
+// angular); weights Dim x Dim or Dim, if the distance has some. Gives: the aggregated distance and
+// the nearest row. Keeps true: the order of additions depends only on Rows and Dim, not on what is
+// known at compile time, so generated code and `etlc run` agree bit for bit on one machine; nothing
+// is allocated; the time depends on the data only if a sum of squares leaves [2^-80, FLT_MAX] and
+// the scaled form (rescaled.hpp) is used.
 #pragma once
 
 #include "etlmon/distance/best.hpp"
@@ -16,14 +16,14 @@ namespace etlmon {
 inline namespace ETLMON_BUILD {
 namespace detail {
 
-/// Weights as the kernels take them: none, D (MahalanobisDiagonal) or D x D symmetric positive
+/// Returns the number of weights: none, Dim (MahalanobisDiagonal), or Dim x Dim, symmetric positive
 /// definite (Mahalanobis).
 template <class Metric, uint32_t Dim>
 constexpr uint32_t weights_of() noexcept {
   return Metric::kQuadratic ? Dim * Dim : Metric::kWeighted ? Dim : 0;
 }
 
-/// A set that is a constant of the program, as the machine likes it best.
+/// A constant target set in the layout that is fastest on the machine.
 template <class Metric, uint32_t Rows, uint32_t Dim, const auto& Targets>
 struct LaidOut {
   static_assert(sizeof(Targets) / sizeof(Targets[0]) == Rows * Dim, "K rows of Dim elements");
@@ -39,12 +39,11 @@ struct LaidOut {
 
 }  // namespace detail
 
-/// The aggregated distance from z, of D elements, to K targets: for generated code, whose sizes and
-/// targets are constants; the compiler lays the targets out as the machine likes them best. Errors:
-/// none; delta is NaN where an element of z is not finite and where z is zero under cosine and
-/// angular, +inf where it, or for the mean one of the distances, exceeds FLT_MAX; distances that do
-/// are taken for equal. Targets may be float32, or float16 as their bits, which are widened as they
-/// are read: the same distances.
+/// Returns the aggregated distance from z, of Dim elements, to Rows targets. For generated code,
+/// whose sizes and targets are constants, which the compiler lays out for the machine. Errors:
+/// none; delta is NaN if an element of z is not finite, or z is zero under cosine or angular; +inf
+/// if it, or for the mean one of the distances, exceeds FLT_MAX; such distances count as equal.
+/// Targets may be float32, or the bits of float16, with the same distances.
 template <class Metric, class Aggregation, uint32_t Rows, uint32_t Dim, const auto& Targets>
 ETLMON_INLINE Measured measure(const float* z, const float* weights = nullptr) noexcept {
   using Layout = detail::LaidOut<Metric, Rows, Dim, Targets>;
@@ -53,8 +52,8 @@ ETLMON_INLINE Measured measure(const float* z, const float* weights = nullptr) n
 }
 
 namespace detail {
-/// The same, or unmeasured where z is missing, which is left to what has the rare cases: the least
-/// code.
+/// Measures, or returns unmeasured if z is missing. The function for rare cases handles that, for
+/// the least code.
 template <class Metric, class Aggregation, uint32_t Rows, uint32_t Dim, const auto& Targets>
 ETLMON_INLINE Measured measure_unless_missing(const float* z, const float* weights) noexcept {
   using Layout = LaidOut<Metric, Rows, Dim, Targets>;
@@ -68,8 +67,8 @@ ETLMON_INLINE Measured measure_unless_missing(const float* z, const float* weigh
 }
 }  // namespace detail
 
-/// The same for a sample of this step, or a point made of some: unmeasured where it, or one of
-/// them, is missing.
+/// Measures a sample of this step, or a point of scalars; unmeasured if it, or one of them, is
+/// missing.
 template <class Metric, class Aggregation, uint32_t Rows, uint32_t Dim, const auto& Targets>
 ETLMON_INLINE Measured measure(Vector<float, Dim> z, const float* weights = nullptr) noexcept {
 #if defined(__OPTIMIZE_SIZE__)
@@ -85,15 +84,14 @@ ETLMON_INLINE Measured measure(const Point<Dim>& point, const float* weights = n
   return measure<Metric, Aggregation, Rows, Dim, Targets>(point.elements, weights);
 }
 
-/// An embedding and 1 / |z|, for the distances to it under which only the direction of z counts.
+/// An embedding and 1 / |z|, for distances that depend only on the direction of z.
 template <uint32_t Dim>
 struct Direction {
-  const float* elements;  ///< null where the sample is missing
-  float inverse_length;   ///< 0 where it is not known from the sum of squares, which the kernels
-                          ///< look into
+  const float* elements;  ///< null if the sample is missing
+  float inverse_length;   ///< 0 if unknown from the sum of squares; the kernels then find it
 };
 
-/// The direction of an embedding, found once for several distances.
+/// Returns the direction of an embedding, for several distances.
 template <size_t Dim>
 ETLMON_INLINE Direction<Dim> direction_of(Vector<float, Dim> z) noexcept {
   const float* elements = detail::unforeseen(z.data());
@@ -101,7 +99,7 @@ ETLMON_INLINE Direction<Dim> direction_of(Vector<float, Dim> z) noexcept {
           z.present() ? detail::best_inverse_length<detail::Fixed<1, Dim>>(elements) : 0.0f};
 }
 
-/// The same, bit for bit, as for the embedding; cosine and angular only.
+/// Measures a direction, with the same bits as for the embedding; cosine and angular only.
 template <class Metric, class Aggregation, uint32_t Rows, uint32_t Dim, const auto& Targets>
 ETLMON_INLINE Measured measure(const Direction<Dim>& z) noexcept {
   static_assert(Metric::kDirection, "this distance does not need the length of z");
@@ -110,7 +108,7 @@ ETLMON_INLINE Measured measure(const Direction<Dim>& z) noexcept {
                                                                                &z.inverse_length);
 }
 
-/// The same for targets of int8, each worth `scale` times itself, rounded once.
+/// Measures targets of int8, each times `scale`, rounded once.
 template <class Metric, class Aggregation, uint32_t Rows, uint32_t Dim, const auto& Targets>
 ETLMON_INLINE Measured measure_scaled(const float* z, float scale,
                                       const float* weights = nullptr) noexcept {
@@ -120,7 +118,7 @@ ETLMON_INLINE Measured measure_scaled(const float* z, float scale,
       z, rows, weights, {}, {});
 }
 
-/// The same, bit for bit, for targets that are not constants.
+/// Measures targets that are not constants, with the same bits.
 template <class Metric, class Aggregation, uint32_t Rows, uint32_t Dim>
 ETLMON_INLINE Measured measure(const float* z, const float (&targets)[Rows * Dim]) noexcept {
   static_assert(!Metric::kWeighted && !Metric::kQuadratic, "this distance needs weights");
@@ -128,7 +126,7 @@ ETLMON_INLINE Measured measure(const float* z, const float (&targets)[Rows * Dim
                                                                             {}, {});
 }
 
-/// The same for distances with weights: D x D symmetric positive definite (Mahalanobis) or D
+/// Measures a distance with weights: Dim x Dim, symmetric positive definite (Mahalanobis), or Dim,
 /// positive (MahalanobisDiagonal).
 template <class Metric, class Aggregation, uint32_t Rows, uint32_t Dim>
 ETLMON_INLINE Measured

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Points of distances that are projected first: y = A (z - m), by the kernels' own sums. Takes: z
-// of D floats, or a view of them; A, R x D row-major; m, D or none. Gives: y, R floats, or nothing
-// where z is missing. Keeps true: y is unknown as a whole where an element of z is not finite or
-// one of y exceeds FLT_MAX; the order of additions depends on R and D alone, so generated code and
-// `etlc run` agree bit for bit on one machine; nothing is allocated. Errors: projection_bound() in
-// hosted/error_bounds.hpp.
+// Projection of points before their distances: y = A (z - m), with the sums of the kernels. Takes:
+// z of Dim floats, or a view of them; A, Rows x Dim, row-major; m, Dim floats or none. Gives: y,
+// Rows floats, or nothing if z is missing. Keeps true: all of y is unknown if an element of z is
+// not finite or one of y exceeds FLT_MAX; the order of additions depends only on Rows and Dim, so
+// generated code and `etlc run` agree bit for bit on one machine; nothing is allocated. Errors:
+// projection_bound() in hosted/error_bounds.hpp.
 #pragma once
 
 #include "etlmon/distance/row_values.hpp"
@@ -14,11 +14,11 @@ namespace etlmon {
 inline namespace ETLMON_BUILD {
 
 namespace detail {
-/// The rows of A times z; nullptr where one of them is not finite.
+/// Computes A z. Returns nullptr if an element of it is not finite.
 ETLMON_INLINE const float* products(const float* z, const float* matrix, uint32_t Rows,
                                     uint32_t Dim, float* y) noexcept {
-  // With -ffast-math g++ warns of rows of 16 elements in a smaller matrix, in a branch that sizes
-  // rule out.
+  // With -ffast-math g++ warns of rows of 16 elements in a smaller matrix, in a branch that is not
+  // reached.
   best_row_values<Product>(unforeseen(z), unforeseen(matrix), nullptr, 0, Rows, Sizes{Rows, Dim},
                            y);
   return finite(y, Rows) ? y : nullptr;
@@ -30,13 +30,13 @@ ETLMON_INLINE void subtract(const float* z, const float* offset, uint32_t Dim,
 }
 }  // namespace detail
 
-/// A z, in `y`, which it returns; nullptr where it is unknown or z is null.
+/// Stores A z in `y`, and returns it; nullptr if it is unknown or z is null.
 template <uint32_t Rows, uint32_t Dim>
 ETLMON_INLINE const float* project(const float* z, const float* matrix, float (&y)[Rows]) noexcept {
   return z == nullptr ? nullptr : detail::products(z, matrix, Rows, Dim, y);
 }
 
-/// A (z - m), likewise.
+/// Stores A (z - m) likewise.
 template <uint32_t Rows, uint32_t Dim>
 ETLMON_INLINE const float* project(const float* z, const float* matrix, const float* offset,
                                    float (&y)[Rows]) noexcept {
@@ -46,7 +46,7 @@ ETLMON_INLINE const float* project(const float* z, const float* matrix, const fl
   return detail::products(centred, matrix, Rows, Dim, y);
 }
 
-/// The same for a sample of this step.
+/// Projects a sample of this step.
 template <uint32_t Rows, uint32_t Dim>
 ETLMON_INLINE const float* project(Vector<float, Dim> z, const float* matrix,
                                    float (&y)[Rows]) noexcept {
@@ -58,7 +58,7 @@ ETLMON_INLINE const float* project(Vector<float, Dim> z, const float* matrix, co
   return project<Rows, Dim>(z.data(), matrix, offset, y);
 }
 
-/// The same for scalars of this step, each NaN where it is missing.
+/// Projects scalars of this step, each NaN if missing.
 template <uint32_t Rows, uint32_t Dim>
 ETLMON_INLINE const float* project(const Point<Dim>& z, const float* matrix,
                                    float (&y)[Rows]) noexcept {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The same distances where squares, or a sum of distances, leave the range of float32: huge, tiny,
-// or exactly zero. Takes: what kernel.hpp takes. Gives: distances computed from differences scaled
-// by a power of two, one row at a time. Keeps true: a distance that float32 can represent does not
-// overflow on the way, a tiny one does not vanish on the way, and a vector of zeros has no
-// direction. Kept out of line, one function for every K and D.
+// Distances whose squares, or sum, leave the range of float32: huge, tiny, or exactly zero. Takes:
+// the arguments of kernel.hpp. Gives: distances computed from differences scaled by a power of two,
+// row by row. Keeps true: a distance that float32 can represent neither overflows nor vanishes in
+// between; a zero vector has no direction. Not inlined; one function for all sizes.
 #pragma once
 
 #include "etlmon/distance/best.hpp"
@@ -28,7 +27,7 @@ ETLMON_INLINE uint32_t greatest_magnitude(Elements x, uint32_t n) noexcept {
   return greatest;
 }
 
-/// Bits of |z - g|. Short, here and below: of rows that Size::is_short() says.
+/// Computes the bits of |z - g|. Short, here and below: Size::is_short() of the rows.
 template <bool Short>
 class RescaledL2 {
  public:
@@ -52,9 +51,9 @@ class RescaledL2 {
   uint32_t dimension_;
 };
 
-/// Bits of sqrt((z - g)^T W (z - g)); W a diagonal or full. With s = sqrt(diag W) and a = s (z -
-/// g), every |W_ij / (s_i s_j)| <= 1 (W is positive definite), so scaling a by its largest element
-/// bounds every term.
+/// Computes the bits of sqrt((z - g)^T W (z - g)); W a diagonal or full. With s = sqrt(diag W) and
+/// a = s (z - g), every |W_ij / (s_i s_j)| <= 1 (W is positive definite), so scaling a by its
+/// largest element bounds every term.
 template <class Metric>
 class RescaledRoot {
  public:
@@ -95,7 +94,7 @@ class RescaledRoot {
   float stretch(uint32_t i) const noexcept {
     return square_root(weights_[Metric::kQuadratic ? static_cast<size_t>(i) * dimension_ + i : i]);
   }
-  /// Element i of W (z - g) / s_i, scaled.
+  /// Returns element i of W (z - g) / s_i, scaled.
   template <class Elements>
   float weighted(Elements g, uint32_t i, float half, float down) const noexcept {
     const float* row = weights_ + static_cast<size_t>(i) * dimension_;
@@ -113,8 +112,8 @@ class RescaledRoot {
   uint32_t dimension_;
 };
 
-/// Bits of cosine and angular distance for a z whose squared length is out of range: z is scaled
-/// first, then to length 1.
+/// Computes the bits of cosine and angular distance for a z whose squared length is out of range:
+/// scales z by a power of two, then to length 1.
 template <class Metric>
 class RescaledDirection {
  public:
@@ -128,8 +127,8 @@ class RescaledDirection {
       const float x = rounded(z[i] * down_);
       square += x * x;
     }
-    known_ = (observe(square) & kInfinityBits) !=
-             0;  // zero also where the denormals of z were flushed to zero
+    known_ =
+        (observe(square) & kInfinityBits) != 0;  // also zero if denormals of z were flushed to zero
     point_.scale = known_ ? 1.0f / square_root(square) : 0.0f;
   }
   bool known() const noexcept { return known_; }
@@ -152,7 +151,7 @@ class RescaledDirection {
   UnitPoint point_{};
 };
 
-/// Bits of a distance that needs no scaling itself; only the mean over its rows does.
+/// Computes the bits of a distance that needs no scaling, except in the mean over rows.
 template <class Metric, bool Short>
 class Unscaled {
  public:
@@ -198,8 +197,8 @@ MeasuredBits measure_rescaled(const float* z, const Set<InColumns, Elements>& se
     const uint32_t bits = distance.row(set.row(row, buffer));
     nearest.add(bits, row);
     if constexpr (Aggregation::kOfDistances) {
-      aggregation.add(rounded(from_bits(bits) /
-                              static_cast<float>(set.rows)));  // so that the sum cannot overflow
+      aggregation.add(
+          rounded(from_bits(bits) / static_cast<float>(set.rows)));  // prevents overflow of the sum
     } else {
       aggregation.add(bits);
     }
@@ -211,13 +210,13 @@ MeasuredBits measure_rescaled(const float* z, const Set<InColumns, Elements>& se
   }
 }
 
-/// z is row k of the set, element by element.
+/// Returns whether z equals row k of the set.
 template <bool Short, bool InColumns, class Elements>
 ETLMON_INLINE bool is_row(const float* z, const Set<InColumns, Elements>& set,
                           uint32_t k) noexcept {
   typename Set<InColumns, Elements>::Buffer buffer;
   const auto row = set.row(k, buffer);
-  if ((observe(z[0] - element(row, 0)) & ~kSignBit) != 0) return false;  // most rows end here
+  if ((observe(z[0] - element(row, 0)) & ~kSignBit) != 0) return false;  // most rows differ here
   return observe(baseline::one_row<Linf>({}, z, row, z, RowSize<Short>{{1, set.dimension}})) == 0;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The values of rows by the best version of the kernel, with sizes known at run time. Gives:
-// best_row_values(...). Keeps true: the order of additions is layout.hpp's, so a row has the same
-// value as in measure(...).
+// The values of rows, by the best version of the kernel, with sizes known at run time. Gives:
+// best_row_values(...). Keeps true: the order of additions is that of layout.hpp, so a row has the
+// same value as in measure(...).
 #pragma once
 
 #include "etlmon/distance/best.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Whole embeddings in narrow storage, widened to float32 before they are measured.
-// Takes: n float16 as their IEEE bits, or n int8 and what one of them is worth. Gives: n floats.
-// Keeps true: the bits of storage.hpp's element(), by the instructions that the CPU has (vcvtph2ps,
-// vpmovsxbd), chosen as kernels are.
+// Widens embeddings in narrow storage to float32 before they are measured. Takes: n float16 as IEEE
+// bits, or n int8 and their scale. Gives: n floats. Keeps true: the bits of element() in
+// storage.hpp, by instructions of the CPU (vcvtph2ps, vpmovsxbd), which are selected as for
+// kernels.
 #pragma once
 
 #include "etlmon/distance/storage.hpp"

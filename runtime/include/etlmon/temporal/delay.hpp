@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A stream, a fixed number of steps later.
-// Takes: one value a step. Gives: the value of N steps ago; the fill for the first N steps.
-// Keeps true: one read and one write a step, whatever N; state is N values and a cursor, the same
-// on every target.
+// A stream, delayed by a fixed number of steps. Takes: one value a step. Gives: the value of N
+// steps ago; the fill for the first N steps. Keeps true: one read and one write a step, whatever N;
+// state is N values and a cursor, the same on every target.
 #pragma once
 
 #include <stdint.h>

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Measuring only what a verdict still depends on.
-// Takes: a way to find a value out. Gives: values that are found out when somebody first asks in a
-// step, and "and", "or" and "not" of such values, which ask their operands from left to right and
-// stop at the first that decides. Keeps true: a value is found out at most once; what comes out is
-// the min, max or negation of all operands, asked or not: kNo decides a min and kYes a max whatever
-// the others are.
+// Evaluation on demand: measures only what a verdict still depends on. Takes: a function that
+// computes a value. Gives: values that are computed at their first use in a step, and "and", "or"
+// and "not" of them, which evaluate operands from left to right and stop at the first that decides.
+// Keeps true: a value is computed at most once; the result is the min, max or negation of all
+// operands, since kNo decides a min and kYes a max.
 #pragma once
 
 #include "etlmon/temporal/truth.hpp"
@@ -12,7 +11,7 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// What `find()` gives, found out on the first call. Lives in one step and is not copied.
+/// The result of `find()`, computed at the first use. Lives in one step and is not copied.
 template <class Find>
 class Lazy {
   using Result = decltype(static_cast<const Find*>(nullptr)->operator()());
@@ -42,7 +41,7 @@ Lazy(Find) -> Lazy<Find>;
 
 namespace detail {
 
-/// What a combination keeps of an operand: a reference to a variable, a temporary itself.
+/// How a combination stores an operand: a variable by reference, a temporary by value.
 template <class Operand>
 struct Kept {
   using Type = const Operand;
@@ -114,7 +113,7 @@ struct Where<true> {
 
 }  // namespace detail
 
-/// `a`, then `b` unless a decides; the same for more.
+/// Evaluates `a`, then `b` unless a decides; likewise for more operands.
 template <
     class Left, class Right,
     typename detail::Where<detail::IsLazy<Left>::value || detail::IsLazy<Right>::value>::Type = 0>

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Handovers inside a window: one signal holds up to some position, another from there on.
-// Takes: elements of two neighbouring segments of positions, the older first. Gives: the element of
-// their union, and that of the empty segment. Keeps true: combine is associative and identity
-// neutral; monoids for window.hpp, whatever the value type. Segments must not overlap.
-//
-// Of the dual: an interval of n steps is covered where none of its positions has neither g, now or
-// later in it, nor f, now or earlier. G F[0,a] (p && F[0,b] q) asks this at every step of the
-// intervals that its open windows share with what is settled: g is what was answered, f is p, which
-// may still be answered.
+// Handovers in a window: one signal holds up to some position, another from there on. Takes:
+// elements of two adjacent segments of positions, the older first. Gives: the element of their
+// union, and of the empty segment. Keeps true: combine is associative and identity is neutral.
+// Segments must not overlap.  The dual: an interval is covered if every position in it has g, then
+// or later in the interval, or f, then or earlier. G F[0,a] (p && F[0,b] q) evaluates this at every
+// step for the intervals that its open windows share with settled positions: g is a completed
+// answer, f is p, which may still be completed.
 #pragma once
 
 #include "etlmon/temporal/monoid.hpp"
@@ -19,8 +17,8 @@ inline namespace ETLMON_BUILD {
 template <class Value>
 struct Flanks {
   Value value;
-  Value before;  ///< what f lets through to newer positions: min of f (its dual: max)
-  Value behind;  ///< what g lets through to older ones
+  Value before;  ///< guard towards newer positions: min of f (dual: max)
+  Value behind;  ///< guard towards older positions, of g
 };
 
 /// f hands over to g: max over j of min(min of f over [oldest, j], min of g over [j, newest]).

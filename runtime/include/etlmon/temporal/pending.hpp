@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Formulas at the last positions of a prefix, whose windows still reach past its end.
-// Takes: readings of the operands at n positions, oldest first, the last one being the present.
-// Gives: readings of the formula there, by the definitions of robustness and of the bounds, every
-// window cut at the present. Keeps true: position p tells exactly what rho and the bounds of the
-// operator are there on this prefix; the work is in proportion to n, whatever the windows. R:
-// Reading or BasicReading<Truth>.
+// Formulas at the last positions of a prefix, whose windows extend beyond its end. Takes: readings
+// of the operands at the last n positions, oldest first. Gives: readings of the formula there, by
+// the definitions of robustness and bounds, with every window cut at the last position. Keeps true:
+// the result at each position is exact for this prefix; the work is proportional to n for any
+// windows. Reading: etlmon::Reading or BasicReading<Truth>.
 #pragma once
 
 #include <stdint.h>
@@ -15,7 +14,7 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// The last N values of a stream.
+/// The last Length values of a stream.
 template <class Value, uint32_t Length>
 class Recent {
  public:
@@ -26,7 +25,7 @@ class Recent {
     next_ = next_ + 1 == Length ? 0 : next_ + 1;
   }
 
-  /// The last n <= N, oldest first, as readings of settled values.
+  /// Lists the last n <= Length values, oldest first, as settled readings.
   void list(BasicReading<Value>* out, uint32_t n) const noexcept {
     uint32_t at = next_ >= n ? next_ - n : next_ + Length - n;
     for (uint32_t p = 0; p < n; ++p) {
@@ -41,15 +40,15 @@ class Recent {
 };
 
 namespace detail {
-/// A parameter that follows the others' type: nullptr may stand for it.
+/// A parameter whose type is deduced from the others, so that nullptr may be passed.
 template <class Same>
 struct As {
   using Type = Same;
 };
 }  // namespace detail
 
-/// The two senses of a future operator. F and U seek: the best over a window, and beyond its end
-/// something better may come.
+/// The two kinds of future operators. F and U are max over a window, which later positions may
+/// raise.
 struct Seeking {
   template <class Value>
   static constexpr Value gain(Value a, Value b) noexcept {
@@ -67,14 +66,14 @@ struct Seeking {
   static constexpr Value all() noexcept {
     return Lattice<Value>::top();
   }
-  /// The bound that what is unseen moves.
+  /// The bound that unseen values affect.
   template <class Reading>
   static constexpr auto& open_end(Reading& reading) noexcept {
     return reading.upper;
   }
 };
 
-/// G and R guard: the dual.
+/// G and R are the dual.
 struct Guarding {
   template <class Value>
   static constexpr Value gain(Value a, Value b) noexcept {
@@ -98,7 +97,7 @@ struct Guarding {
   }
 };
 
-/// The upper bound of a window without one.
+/// The end of an unbounded window.
 constexpr uint32_t kWithoutEnd = 0xffffffffu;
 
 template <class Reading>
@@ -111,13 +110,13 @@ void pending_or(const Reading* f, const Reading* g, Reading* out, uint32_t n) no
   for (uint32_t p = 0; p < n; ++p) out[p] = max_of(f[p], g[p]);
 }
 
-/// Combines into out[p] what `in` is over the `length` positions from p + first on, cut at the
-/// present. Cut into blocks of that length, a window is a suffix of one and a prefix of the next.
+/// Combines into out[p] the values of `in` over `length` positions from p + first on, cut at the
+/// last one. In blocks of that length, a window is a suffix of one block and a prefix of the next.
 template <class Reading, class Combine>
 void pending_windows(const Reading* in, Reading* out, uint32_t n, uint32_t first, uint32_t length,
                      Combine combine) noexcept {
   if (first >= n || length == 0) return;
-  const uint32_t last_block = (n - 1) / length * length;  // where it begins
+  const uint32_t last_block = (n - 1) / length * length;  // begin of the last block
   Reading part = in[n - 1];
   for (uint32_t at = n, begin = last_block; at-- > first;) {  // suffixes
     const bool ends = at + 1 == begin;
@@ -133,14 +132,14 @@ void pending_windows(const Reading* in, Reading* out, uint32_t n, uint32_t first
     Reading& whole = out[at + 1 - first - length];
     whole = combine(whole, part);
   }
-  // Windows that the present cuts, where they reach into the last block.
+  // Windows that extend beyond the last position.
   uint32_t p = n + 1 > first + length ? n + 1 - first - length : 0;
   for (; p + first < last_block; ++p) out[p] = combine(out[p], part);
 }
 
-/// f U[low,high] g (Seeking) or f R[low,high] g (Guarding) at each position; without f (nullptr), F
-/// and G. unseen: the highest, or lowest, unseen value of g. f U[low,high] g is f at the first low
-/// positions, and behind them F[0,high-low] g and f U g, also where the prefix ends before.
+/// Computes f U[low,high] g (Seeking) or f R[low,high] g (Guarding) at each position; without f
+/// (nullptr), F and G. unseen: highest or lowest unseen value of g. f U[low,high] g is f at the
+/// first low positions, then F[0,high-low] g and f U g, even if the prefix ends before.
 template <class Sense, class Reading>
 void pending_at_each(const typename detail::As<Reading>::Type* f, const Reading* g, Reading* out,
                      uint32_t n, uint32_t low, uint32_t high,
@@ -162,9 +161,9 @@ void pending_at_each(const typename detail::As<Reading>::Type* f, const Reading*
   pending_windows(f, out, n, 0, low, keep);
 }
 
-/// The same from position 0 alone, the operands settled `horizon` steps late. n readings of them,
-/// the last at `step`. best and held: the operator and its left side up to the last settled
-/// position; both are moved on by one.
+/// Computes the operator at position 0 only, from operands that are settled `horizon` steps late: n
+/// readings of them, the last at `step`. best and held: the operator and its left operand up to the
+/// last settled position; both advance by one position.
 template <class Sense, class Value>
 BasicReading<Value> pending_from_start(Value& best, Value& held,
                                        const typename detail::As<BasicReading<Value>>::Type* f,
@@ -192,9 +191,9 @@ BasicReading<Value> pending_from_start(Value& best, Value& held,
   return result;
 }
 
-/// A state machine whose guards are settled some steps late. guards: n rows of `width`, the first
-/// one settled where `settles`; scratch: 2 * states readings; settled_guards: width + states
-/// values. Its registers are moved on by the settled row.
+/// Runs a state machine whose guards are settled some steps late. guards: n rows of `width`, the
+/// first of which is settled if `settles`; scratch: 2 * states readings; settled_guards: width +
+/// states values. The settled row advances the registers.
 template <class Value, class End>
 BasicReading<Value> pending_machine(Value* registers, uint32_t states,
                                     const BasicReading<Value>* guards, uint32_t width, uint32_t n,
@@ -220,7 +219,7 @@ BasicReading<Value> pending_machine(Value* registers, uint32_t states,
   return machine_read(now, states, owed, weak, strong);
 }
 
-/// Its registers, with room on the stack for the rest.
+/// The registers of such a machine; the rest is on the stack.
 template <class Value, uint32_t States, uint32_t Width>
 class PendingMachine {
   using End = typename Lattice<Value>::End;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a prefix says about a formula at position 0, and how such answers combine.
-// Takes: the values that a monitor keeps. Gives: its verdict. Keeps true: min and max act on
-// robustness and bounds alike, since the bounds of && and || are the min and max of the operands'
-// bounds.
+// Readings: robustness and bounds of a formula at position 0, and their min and max. Takes: the
+// values of a monitor. Gives: its verdict. Keeps true: min and max apply to robustness and bounds
+// alike, since the bounds of && and || are the min and max of the operands' bounds.
 #pragma once
 
 #include "etlmon/temporal/value.hpp"
@@ -11,7 +10,7 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// rho on the prefix so far, and what every continuation keeps it between. V: Value or Truth.
+/// rho on the prefix so far, and its bounds over every continuation. Value: etlmon::Value or Truth.
 template <class Value>
 struct BasicReading {
   Value rho;
@@ -30,16 +29,16 @@ constexpr BasicReading<Value> max_of(BasicReading<Value> a, BasicReading<Value> 
   return {max_of(a.rho, b.rho), max_of(a.lower, b.lower), max_of(a.upper, b.upper)};
 }
 
-/// A reading that no continuation changes.
+/// Returns the reading of a value that no continuation changes.
 template <class Value>
 constexpr BasicReading<Value> settled(Value rho) noexcept {
   return {rho, rho.low, rho.high};
 }
 
-/// A register that is settled by itself.
+/// Returns the reading of a settled register.
 constexpr Reading settled(Register kept) noexcept { return settled<Value>(kept); }
 
-/// A register as a reading.
+/// Returns a register as a reading.
 template <class Value>
 constexpr BasicReading<Value> reading_of(Value settled_value) noexcept {
   return settled(settled_value);
