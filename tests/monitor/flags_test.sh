@@ -152,6 +152,27 @@ for same in as_*.o; do
     fail "$same and ${same#as_} have the names of one another, and other code"
 done
 
+# The short name of a standalone header differs where vector instructions or -ffast-math do.
+mkdir standalone
+"$etlc" flags.etl --standalone -o standalone/flags.hpp
+while read -r name flags; do
+  # shellcheck disable=SC2086
+  "$gxx" -std=c++17 $flags -DANSWERS="answers_$name" -I standalone -c unit.cpp \
+    -o "standalone/$name.o" || fail "standalone $name does not compile"
+  nm --defined-only "standalone/$name.o" | awk '$2 ~ /^[WwVuv]$/ && $3 ~ /etlmon|flags/ { print $3 }'
+done >standalone.txt <<'END'
+base -O0
+fast -O0 -ffast-math
+avx -O0 -mavx
+avx2 -O0 -mavx2
+fma -O0 -march=x86-64-v3
+avx512 -O0 -march=x86-64-v4
+END
+[ "$(wc -l <standalone.txt)" -gt 300 ] || fail "no inline function in standalone objects"
+shared=$(sort standalone.txt | uniq -d | head -n 1)
+[ -z "$shared" ] || fail "standalone: one name under different flags: $(c++filt "$shared")"
+grep -q N6etlmon4v0_2 standalone.txt || fail "the short name is longer than v0_2"
+
 # Links units together. Units that this machine cannot run are linked only.
 run_with() {  # UNIT OBJECT...: the output of the unit in a program of these objects
   local unit=$1

@@ -126,9 +126,9 @@ short() {
 }
 # Boolean monitors also need the algebra of values on demand.
 while read -r values more; do
-    short reach 2700 --values "$values"
-    short level 1200 --values "$values"
-    short windows $((1450 + more)) --values "$values"
+    short reach 2450 --values "$values"
+    short level 950 --values "$values"
+    short windows $((1350 + more)) --values "$values"
     short everything $((2950 + more)) --values "$values"
     for storage in f16 i8; do
         short everything $((3100 + more)) --values "$values" --targets-as $storage
@@ -137,7 +137,7 @@ done <<'END'
 robustness 0
 boolean 240
 END
-short reach 2700
+short reach 2450
 cmp pasted/reach.hpp same.hpp
 for example in "$here"/../../examples/firmware_loop/*.etl; do
     "$etlc" "$example" --standalone -o "pasted/example_$(basename "$example" .etl).hpp"
