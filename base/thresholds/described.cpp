@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "data/arrays/npy.hpp"
+#include "data/arrays/array.hpp"
 #include "data/text/quote.hpp"
 #include "thresholds/thresholds.hpp"
 

@@ -3,7 +3,7 @@
 // long an input may take is up to libFuzzer's -timeout, and to replay.cpp.
 #include "deep_spec.hpp"
 #include "diag/render.hpp"
-#include "driver/compile/compile.hpp"
+#include "driver/commands/commands.hpp"
 #include "emit/emit.hpp"
 #include "fuzz_target.hpp"
 
