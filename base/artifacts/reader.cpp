@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "data/arrays/npy.hpp"
+#include "data/arrays/array.hpp"
 #include "data/files/hash.hpp"
 #include "data/text/quote.hpp"
 

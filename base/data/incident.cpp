@@ -14,7 +14,7 @@ namespace {
 using diag::Code;
 using diag::Failure;
 
-/// Bytes in their order, of which there are enough: whoever reads has counted them.
+/// Reads numbers from bytes; the caller has checked that there are enough.
 class Reader {
 public:
     explicit Reader(std::string_view bytes) : bytes_(bytes) {}
@@ -50,7 +50,7 @@ Failure damaged(std::string message) {
     return {Code::damaged_incident, std::move(message)};
 }
 
-/// What is wrong with the file as bytes; nothing where they are as they were written.
+/// Checks the head and the checksum of a file.
 std::optional<Failure> why_unusable(std::string_view bytes) {
     if (!has_magic(bytes))
         return Failure{Code::unknown_incident_format, bytes.empty()
@@ -67,7 +67,7 @@ std::optional<Failure> why_unusable(std::string_view bytes) {
         return damaged(fmt::format("has {} bytes, and says that it has {}", bytes.size(), length));
     const std::size_t content = length - etlmon::kIncidentChecksumBytes;
     if (Reader(bytes.substr(content)).long_word() != xxh64(bytes.substr(0, content)))
-        return damaged("was changed: its checksum is that of other bytes");
+        return damaged("was changed: its checksum does not fit");
     return std::nullopt;
 }
 

@@ -8,8 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "diag/render.hpp"
-#include "driver/learn/calibrate.hpp"
-#include "driver/learn/fit.hpp"
+#include "driver/commands/commands.hpp"
 #include "parse/parse.hpp"
 
 namespace etlc::tests {
@@ -24,12 +23,12 @@ Calibrated calibrated(const std::string& spec, const std::vector<std::string>& e
     const TemporaryPath thresholds("before.json", before);
     const TemporaryPath fits("fits.npz", fitted);
     const TemporaryPath output("after.json");
-    driver::CalibrateRequest request;
+    driver::Request request;
     request.data = episodes;
-    request.calibration.jobs = 1;
+    request.jobs = 1;
     request.output = output.path();
-    if (!before.empty()) request.thresholds = thresholds.path();
-    if (!fitted.empty()) request.fitted = fits.path();
+    if (!before.empty()) request.check.thresholds_path = thresholds.path();
+    if (!fitted.empty()) request.check.fitted_path = fits.path();
     diag::Sink sink;
     testing::internal::CaptureStdout();
     const bool done = driver::calibrate(source::File("t.etl", spec), request, sink);
@@ -54,9 +53,9 @@ std::string numbers(const std::string& thresholds) {
 
 std::string fitted(const std::string& spec, const std::vector<std::string>& episodes) {
     const TemporaryPath output("fits.npz");
-    driver::FitRequest request;
+    driver::Request request;
     request.data = episodes;
-    request.fit.jobs = 1;
+    request.jobs = 1;
     request.output = output.path();
     diag::Sink sink;
     testing::internal::CaptureStdout();

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "check/guarantees/guarantees.hpp"
-#include "driver/compile/compile.hpp"
+#include "driver/commands/commands.hpp"
 #include "episodes/truth.hpp"
 #include "plan/evaluate/evaluator.hpp"
 #include "random.hpp"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "driver/compile/compile.hpp"
+#include "driver/commands/commands.hpp"
 #include "random.hpp"
 #include "roads.hpp"
 

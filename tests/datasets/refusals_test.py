@@ -107,7 +107,7 @@ LACKING_21 = (
     (lambda: write(VIDEO, "version https://git-lfs.github.com/spec/v1\n"),
      "is a pointer of Git LFS", (0, 2)),
     (lambda: shutil.copy(ROWS, ROWS.replace("1.p", "7.p")),
-     "'data/chunk-000/episode_000007.parquet', of which the metadata say nothing", (0, 1, 2)),
+     "'data/chunk-000/episode_000007.parquet', which the metadata do not mention", (0, 1, 2)),
     (lambda: rewrite_rows(1, lambda own: own["timestamp"][1].__setitem__(5, 0.45)),
      "row 5 is at 0.45 s, expected it at 0.5 s", (0, 2)),
     (lambda: rewrite_rows(1, lambda own: own.update(
@@ -174,7 +174,7 @@ ERRORS_21 = (
     (lambda: change(INFO, lambda info: info.update(data_path="../{episode_index}")), "E0850",
      "leads out of its folder"),
     (lambda: change(INFO, lambda info: info.update(video_path="{videos_key}")), "E0850",
-     "of which '{videos_key}' is not known"),
+     "with the unknown field '{videos_key}'"),
     (lambda: change(INFO, lambda info: info.update(
         video_path="videos/chunk-000/{video_key}/episode_000001.mp4")), "E0854",
      "episode 0 (9 rows, from 0 to 0.9 s) and episode 1 (8 rows, from 0 to 0.8 s) overlap"),
@@ -257,7 +257,7 @@ def check_calls(base):
     os.mkdir("empty")
     for path, words in (
             (f"{base}:-1", f"':-1' chooses no episodes of the data set: '{base}:3' is episode 3, "
-                           f"'{base}:0:50' are the episodes from 0 up to, but not with, 50"),
+                           f"'{base}:0:50' are the episodes 0 to 49"),
             (f"{base}:0-2", f"':0-2' chooses no episodes of the data set: '{base}:3'"),
             (f"{base}:0:2:1", f"':0:2:1' chooses no episodes of the data set: '{base}:3'"),
             (f"{base}:", f"':' chooses no episodes of the data set: '{base}:3'"),

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <numeric>
 
-#include "driver/compile/compile.hpp"
+#include "driver/commands/commands.hpp"
 #include "parse/parse.hpp"
 
 namespace etlc::tests {

@@ -3,7 +3,7 @@
 // one. libFuzzer's -timeout and replay.cpp limit the time of an input.
 #include "deep_spec.hpp"
 #include "diag/render.hpp"
-#include "driver/compile/compile.hpp"
+#include "driver/commands/commands.hpp"
 #include "emit/emit.hpp"
 #include "fuzz_target.hpp"
 

@@ -9,7 +9,6 @@
 #include "ast/ast.hpp"
 #include "diag/diag.hpp"
 #include "lsp/format/format.hpp"
-#include "lsp/format/gap.hpp"
 #include "parse/parse.hpp"
 #include "parse/words.hpp"
 

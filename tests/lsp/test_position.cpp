@@ -1,7 +1,7 @@
 // Tests positions in a text in UTF-16 and in UTF-8, and names of documents.
 #include <gtest/gtest.h>
 
-#include "lsp/spec/document.hpp"
+#include "lsp/spec/analysis.hpp"
 #include "lsp/text/position.hpp"
 #include "lsp/text/uri.hpp"
 

@@ -113,7 +113,7 @@ TEST_F(Hdf5Trace, GroupsOfAFileAreEpisodes) {
     EXPECT_TRUE(find_episodes({kFile}, "nothing/*", sink).empty());
     EXPECT_TRUE(find_episodes({kFile}, "data/*", sink).empty());
     ASSERT_EQ(sink.errors(), 2U);
-    EXPECT_EQ(sink.sorted()[0].message, "no group of it matches 'nothing/*'");
+    EXPECT_EQ(sink.sorted()[0].message, "none of its groups matches 'nothing/*'");
     EXPECT_EQ(
         sink.sorted()[1].message,
         "has a group with a name that cannot be printed or is too long: 'data/demo_\\x1b[31m'");

@@ -1,179 +1,146 @@
-// The commands. Exit statuses: driver/process/process.hpp.
+// The program etlc: which command a call means, and how its findings are printed.
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <filesystem>
+#include <algorithm>
+#include <new>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "data/files/file.hpp"
+#include "diag/diag.hpp"
 #include "driver/codes/explain_code.hpp"
+#include "driver/commands/commands.hpp"
 #include "driver/manual/manual.hpp"
-#include "driver/options/commands.hpp"
+#include "driver/options/call.hpp"
 #include "driver/options/mistakes.hpp"
-#include "driver/options/parse.hpp"
-#include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
-#include "driver/process/with_specs.hpp"
+#include "library/open.hpp"
 #include "lsp/lsp.hpp"
 #include "report/page.hpp"
+#include "source/source.hpp"
+
+namespace etlc::driver {
 
 namespace {
 
-using namespace etlc;
-using driver::Call;
-using driver::Command;
-using driver::SpecWarnings;
-
+/// Reads the specs, calls `work(files, sinks)`, and prints the findings, also where memory runs
+/// out. Only the command that compiles a spec prints the warnings about it.
 template <class Work>
-int with_specs(const Call& call, SpecWarnings of_spec, const Work& work) {
-    return driver::with_specs(call.specs, {call.diagnostics, !call.warnings.empty(), of_spec},
-                              work);
+int with_specs(const Call& call, const Work& work) {
+    std::vector<diag::Sink> sinks(call.specs.size(), diag::Sink(!call.warnings.empty()));
+    std::vector<source::File> files(call.specs.size());
+    const auto report_lack = [&] {
+        sinks[0].report(data::in_file(
+            {diag::Code::out_of_memory, "there is not enough memory for this"}, call.specs[0]));
+    };
+    try {
+        bool all_read = true;
+        for (std::size_t i = 0; i < files.size(); ++i)
+            all_read = library::read_spec(call.specs[i], files[i], sinks[i]) && all_read;
+        if (all_read) work(files, sinks);
+    } catch (const std::bad_alloc&) {
+        report_lack();
+    } catch (const std::length_error&) {
+        report_lack();
+    }
+    int status = kDone;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        if (call.command != Command::compile) sinks[i].drop_warnings_of_spec();
+        status = std::max(status, conclude(call.diagnostics, files[i], sinks[i]));
+    }
+    return status;
 }
 
-/// The same with one spec, whose warnings the command that compiles it tells.
+/// Calls `work(file, sink)` with the one spec of the call.
 template <class Work>
-int with_spec(const Call& call, const Work& work, SpecWarnings of_spec = SpecWarnings::dropped) {
-    return with_specs(call, of_spec,
-                      [&](const std::vector<source::File>& files, std::vector<diag::Sink>& sinks) {
-                          work(files[0], sinks[0]);
-                      });
+int with_spec(const Call& call, const Work& work) {
+    return with_specs(call, [&](const auto& files, auto& sinks) { work(files[0], sinks[0]); });
 }
 
-/// With the spec's plan.
-template <class Work>
-int with_plan(const Call& call, const Work& work) {
+/// A command that reads the text of a spec.
+template <auto work>
+int on_spec(Call& call) {
+    return with_spec(call,
+                     [&](const source::File& file, diag::Sink& sink) { work(file, call, sink); });
+}
+
+/// A command that needs the plan of a spec.
+template <auto work>
+int on_plan(Call& call) {
     return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
-        const auto compiled = driver::compile(file, call.request, sink);
-        if (compiled && !sink.refused()) work(file, *compiled, sink);
+        const auto compiled = compile(file, call, sink);
+        if (compiled && !sink.refused()) work(file, *compiled, call, sink);
     });
 }
 
-/// monitor.targets.bin and monitor.params.bin for monitor.hpp, in the same folder; none for
-/// standard output.
-void name_files_beside(Call& call) {
-    call.output.targets_named = !call.output.targets.empty();
-    const std::filesystem::path header = call.output.result;
-    const auto beside = [&](const char* ending) {
-        return (header.parent_path() / (header.stem().string() + ending)).string();
-    };
-    if (header != "-") call.output.params = beside(".params.bin");
-    if (!call.output.targets_named && header != "-") call.output.targets = beside(".targets.bin");
-    call.request.targets_file = std::filesystem::path(call.output.targets).filename().string();
+int compile_spec(Call& call) {
+    if (call.explains) call.values = check::Values::sourced;
+    call.check.allow_missing = call.check_only;
+    return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
+        if (call.check_only)
+            compile(file, call, sink);
+        else
+            emit(file, call, sink);
+    });
 }
 
-int compile(Call& call, episodes::Sharing*) {
-    if (call.request.explain) call.request.values = check::Values::sourced;
-    if (call.request.emit == "params") call.request.check.retargetable = true;
-    if (call.output.result.empty()) call.output.result = "-";
-    name_files_beside(call);
-    call.request.check.allow_missing = call.check_only;
-    const auto work = [&](const source::File& file, diag::Sink& sink) {
-        if (call.check_only) {
-            driver::compile(file, call.request, sink);
-            return;
-        }
-        const auto output = driver::emit(file, call.request, sink);
-        if (output && !sink.refused()) driver::write_output(call.output, file, *output, sink);
-    };
-    return with_spec(call, work, SpecWarnings::told);
-}
-
-/// Where it cannot, this has said why.
+/// Returns false, with a message, where this etlc lacks what pages are made of.
 bool can_make_pages() {
     const std::string missing = report::what_is_missing();
-    if (!missing.empty()) driver::print_error(fmt::format("etlc: {}\n", missing));
+    if (!missing.empty()) print_error(fmt::format("etlc: {}\n", missing));
     return missing.empty();
 }
 
-int run(Call& call, episodes::Sharing*) {
+int run_trace(Call& call) {
     const bool has_other_output =
         call.run.summary || !call.run.html.empty() || !call.run.svg.empty();
-    if (has_other_output && !call.has("--output")) call.run.output.clear();
-    if (!call.run.html.empty() && !can_make_pages()) return driver::kFailed;
-    return with_plan(call, [&](const source::File& file, const driver::Compiled& compiled,
-                               diag::Sink& sink) { driver::run(file, compiled, call.run, sink); });
+    if (has_other_output && !call.has("--output")) call.output.clear();
+    if (!call.run.html.empty() && !can_make_pages()) return kFailed;
+    return on_plan<run>(call);
 }
 
-int embed(Call& call, episodes::Sharing*) {
-    return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
-        driver::embed(file, call.embed, sink);
+int make_report(Call& call) {
+    return can_make_pages() ? on_plan<report>(call) : kFailed;
+}
+
+int evaluate_specs(Call& call) {
+    return with_specs(call, [&](const auto& files, auto& sinks) {
+        std::vector<SpecToJudge> specs;
+        for (std::size_t i = 0; i < files.size(); ++i) specs.push_back({files[i], sinks[i]});
+        evaluate(specs, call);
     });
 }
 
-int fit(Call& call, episodes::Sharing*) {
-    return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
-        driver::fit(file, call.fit, sink);
-    });
-}
-
-int calibrate(Call& call, episodes::Sharing* merged) {
-    auto sharing = driver::sharing_of(call.calibrate.shard, call.words);
-    call.calibrate.calibration.sharing = sharing ? &*sharing : merged;
-    return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
-        driver::calibrate(file, call.calibrate, sink);
-    });
-}
-
-int evaluate(Call& call, episodes::Sharing* merged) {
-    auto sharing = driver::sharing_of(call.evaluate.shard, call.words);
-    call.evaluate.evaluation.sharing = sharing ? &*sharing : merged;
-    return with_specs(call, SpecWarnings::dropped,
-                      [&](const std::vector<source::File>& files, std::vector<diag::Sink>& sinks) {
-                          std::vector<driver::SpecToJudge> specs;
-                          for (std::size_t i = 0; i < files.size(); ++i)
-                              specs.push_back({files[i], sinks[i]});
-                          driver::evaluate(specs, call.request, call.evaluate);
-                      });
-}
-
-int serve_editors(Call&, episodes::Sharing*) {
+int serve_editors(Call&) {
     return lsp::serve(STDIN_FILENO, STDOUT_FILENO);
 }
 
-int merge(Call& call, episodes::Sharing*);
+int merge(Call& call);
 
-int explain(Call& call, episodes::Sharing*) {
-    return with_plan(
-        call, [&](const source::File& file, const driver::Compiled& compiled, diag::Sink& sink) {
-            driver::explain(file, compiled, call.explain, sink);
-        });
-}
-
-int incident(Call& call, episodes::Sharing*) {
-    return with_plan(
-        call, [&](const source::File& file, const driver::Compiled& compiled, diag::Sink& sink) {
-            driver::incident(file, compiled, call.incident, sink);
-        });
-}
-
-int report(Call& call, episodes::Sharing*) {
-    if (!can_make_pages()) return driver::kFailed;
-    return with_plan(
-        call, [&](const source::File& file, const driver::Compiled& compiled, diag::Sink& sink) {
-            driver::report(file, compiled, call.request, call.report, sink);
-        });
-}
-
-/// In the order of Command. `merged`: all parts of this call; null: the episodes are read.
-constexpr int (*kFunctions[])(Call& call, episodes::Sharing* merged) = {
-    compile,  run,           embed, fit,     calibrate, evaluate,
-    evaluate, serve_editors, merge, explain, incident,  report};
-static_assert(std::size(kFunctions) == driver::kCommandCount);
+/// The function of each command, in the order of Command.
+constexpr int (*kFunctions[])(Call& call) = {compile_spec,     run_trace,          on_spec<embed>,
+                                             on_spec<fit>,     on_spec<calibrate>, evaluate_specs,
+                                             evaluate_specs,   serve_editors,      merge,
+                                             on_plan<explain>, on_plan<incident>,  make_report};
+static_assert(std::size(kFunctions) == kCommandCount);
 
 int execute(Command command, int argc, char** argv, episodes::Sharing* merged = nullptr) {
     Call call(command);
-    if (const auto status = driver::parse(argc, argv, call)) return *status;
-    return kFunctions[static_cast<std::size_t>(command)](call, merged);
+    call.merged = merged;
+    if (const auto status = parse(argc, argv, call)) return *status;
+    return kFunctions[static_cast<std::size_t>(command)](call);
 }
 
-int merge(Call& call, episodes::Sharing*) {
+/// Runs the call that wrote the parts, with their episodes.
+int merge(Call& call) {
     diag::Sink sink;
-    auto sharing = driver::read_parts(call.parts, sink);
-    if (!sharing) return driver::conclude(call.diagnostics, source::File(), sink);
-    std::vector<std::string> words = driver::merged_call(sharing->part(), call.output.result);
+    auto sharing = read_parts(call.parts, sink);
+    if (!sharing) return conclude(call.diagnostics, source::File(), sink);
+    std::vector<std::string> words = merged_call(sharing->part(), call.output);
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     const Command command = words[0] == "evaluate" ? Command::evaluate : Command::calibrate;
@@ -182,25 +149,26 @@ int merge(Call& call, episodes::Sharing*) {
 
 int execute(int argc, char** argv) {
     const std::string_view word = argc > 1 ? argv[1] : "";
-    if (const auto command = driver::command_named(word))
-        return execute(*command, argc - 1, argv + 1);
-    // With a spec it is an option of the class that is made.
-    if (word == "--explain" && argc == 3 && driver::is_code(argv[2]))
-        return driver::explain_code_command(argv[2]);
-    if (word == "--completion" && argc == 3) return driver::completion_command(argv[2]);
-    if (word == "--man" && argc == 2) return driver::manual_command();
-    if (const std::string mistake = driver::mistake_in_command(argc, argv); !mistake.empty())
-        return driver::complain("etlc", mistake);
+    if (const auto command = command_named(word)) return execute(*command, argc - 1, argv + 1);
+    // With a spec, --explain is an option of the generated class.
+    if (word == "--explain" && argc == 3 && is_code(argv[2])) return explain_code_command(argv[2]);
+    if (word == "--completion" && argc == 3) return completion_command(argv[2]);
+    if (word == "--man" && argc == 2) return manual_command();
+    if (const std::string mistake = mistake_in_command(argc, argv); !mistake.empty())
+        return complain("etlc", mistake);
     return execute(Command::compile, argc, argv);
 }
 
 }  // namespace
 
+}  // namespace etlc::driver
+
 int main(int argc, char** argv) {
-    driver::prepare_process();
+    using namespace etlc::driver;
+    prepare_process();
     try {
-        return driver::go_on_in_ranks(argv) ? execute(argc, argv) : driver::kFailed;
+        return go_on_in_ranks(argv) ? execute(argc, argv) : kFailed;
     } catch (...) {
-        return driver::say_what_failed();
+        return say_what_failed();
     }
 }

@@ -1,7 +1,6 @@
-// What `etlc embed` computes: embeddings of what a spec names, and episodes of recordings.
-// Takes: the model of check_encoded. Gives: the file of embeddings; episodes, each as the bytes of
-// an .npz archive. Keeps true: an encoder runs once for all that it encodes; what is wrong is
-// reported, with the image, video or model that it is about.
+// `etlc embed`: embeddings of the images and videos that a spec names, and episodes of recordings.
+// Takes: the model of check_encoded. Gives: the file of embeddings, and episodes as the bytes of
+// .npz archives. Keeps true: each encoder is started once; errors name their image, video or model.
 #pragma once
 
 #include <functional>
@@ -21,24 +20,23 @@ namespace etlc::embed {
 struct Request {
     Running running;
     std::string version;      ///< of etlc
-    data::NamesInFile names;  ///< of inputs and labels in data sets and arrays
+    data::NamesInFile names;  ///< names of inputs and labels in data sets and arrays
 };
 
-/// The encoders as they are now, without any embedding: their models and settings, those of a .json
-/// beside a model among them, which the model's encoders get too, and what runs them, which the
-/// request gets.
+/// Describes the encoders, without embeddings: their models and settings. Stores the settings of a
+/// .json file beside a model in the model's encoders, and the library that runs them in the
+/// request.
 std::optional<embedded::File> describe_encoders(check::Model& model, Request& request,
                                                 diag::Sink& sink);
 
-/// Fills the file in with the embeddings of all that the spec names. False where it cannot.
+/// Adds the embeddings of all images and videos that the spec names to the file.
 bool embed_targets(const check::Model& model, const Request& request, embedded::File& file,
                    diag::Sink& sink);
 
-/// Gets the bytes of each episode; false where they cannot be kept, which is reported.
+/// Receives the bytes of each episode; reports an error and returns false where it cannot.
 using Keep = std::function<bool(const Recording&, const std::string& bytes)>;
 
-/// Makes an episode of each recording: the inputs by encoders, and those that it has columns of.
-/// False where it cannot.
+/// Makes an episode of each recording, with the encoded inputs and those that it has columns of.
 bool embed_recordings(const check::Model& model, const embedded::File& file,
                       const std::vector<Recording>& recordings, const Request& request,
                       const Keep& keep, diag::Sink& sink);

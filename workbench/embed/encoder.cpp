@@ -45,7 +45,7 @@ std::optional<Failure> settle(Running& running) {
     std::vector<std::string> words = {"onnxruntime"};
     if (!running.onnxruntime.empty())
         words.insert(words.end(), {"--onnxruntime", running.onnxruntime});
-    // Where packages lie stands in the environment.
+    // The environment locates packages.
     const auto child = data::Child::start(data::embedder_path(), words,
                                           {.max_silence_seconds = running.max_silence_seconds,
                                            .whole_environment = true,

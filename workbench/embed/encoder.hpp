@@ -1,7 +1,7 @@
 // A running encoder: a network in etlc-embed, or a command of the user.
-// Takes: frames. Gives: their embeddings. Keeps true: there is one embedding a frame, in their
-// order, all of the dimension that the encoder said first, all finite; an encoder is started once
-// and may look at as many frames at a time as it likes.
+// Takes: frames. Gives: one embedding per frame, in order. Keeps true: all embeddings are finite
+// and have the dimension that the encoder declared; an encoder may process several frames at a
+// time.
 #pragma once
 
 #include <cstdint>
@@ -21,46 +21,46 @@ namespace etlc::embed {
 
 /// How encoders are run.
 struct Running {
-    std::string command;  ///< of --encoder-cmd; empty: etlc-embed runs the model
+    std::string command;  ///< --encoder-cmd; empty: etlc-embed runs the model
     int max_silence_seconds = 600;
-    std::string onnxruntime;  ///< of --onnxruntime; empty: etlc-embed looks for it
-    std::string kind;         ///< what fingerprints say of it, once `settle` has found out
+    std::string onnxruntime;  ///< --onnxruntime; empty: etlc-embed looks for it
+    std::string kind;         ///< its name in fingerprints, once `settle` has found it
 };
 
-/// What went wrong, with the frames or with the encoder.
+/// An error in the frames or in the encoder.
 struct Trouble {
     diag::Failure failure;
     bool of_encoder = true;
-    std::uint64_t frame = 0;  ///< of the frames: which one
+    std::uint64_t frame = 0;  ///< the frame, where the frames are at fault
 };
 
-/// Finds the library that runs networks, where no command does.
+/// Finds the library that runs networks, unless a command encodes.
 std::optional<diag::Failure> settle(Running& running);
 
 class Encoder {
 public:
-    /// Gets the embeddings of a source, row by row.
+    /// Receives the embeddings of a source, row by row.
     using Done = std::function<void(std::vector<float>)>;
 
-    /// `model_path`: from where etlc runs.
+    /// `model_path`: relative to the working directory.
     static diag::Result<std::unique_ptr<Encoder>> start(const check::Encoder& encoder,
                                                         const std::string& model_path,
                                                         const Running& running);
 
-    /// Gives it all frames of the source. `done` is called once their embeddings are there, at the
-    /// latest by `finish`; `name` is what messages call the source.
+    /// Passes it all frames of a source. `done` is called when their embeddings are complete, at
+    /// the latest by `finish`; messages call the source `name`.
     std::optional<Trouble> add(data::FrameSource& frames, const std::string& name, Done done);
-    /// There are no more frames.
+    /// Ends the input and waits for all embeddings.
     std::optional<Trouble> finish();
 
-    /// 0 as long as it has not said.
+    /// Returns the dimension, 0 before it is known.
     std::uint32_t dimension() const { return dimension_; }
 
 private:
     struct Job {
         std::string name;
         std::uint64_t frames = 0;
-        bool complete = false;  ///< all frames are given
+        bool complete = false;  ///< all frames were passed
         std::vector<float> rows;
         Done done;
     };
@@ -72,7 +72,7 @@ private:
           is_command_(!running.command.empty()),
           child_(std::move(child)) {}
 
-    /// Takes the embeddings that are there; with `all`, waits for those of all frames.
+    /// Reads the embeddings that have arrived; with `all`, waits for those of all frames.
     std::optional<diag::Failure> take(bool all);
     std::optional<diag::Failure> take_dimension();
     std::optional<diag::Failure> take_row(Job& job);
@@ -80,14 +80,14 @@ private:
     diag::Failure stopped();
 
     std::string name_;
-    std::uint32_t expected_;  ///< of the inputs by it; 0: there are none
+    std::uint32_t expected_;  ///< dimension of its inputs; 0 where it has none
     bool is_command_;
     std::unique_ptr<data::Child> child_;
     std::uint32_t dimension_ = 0;
     std::uint64_t given_ = 0;  ///< frames
     std::uint64_t taken_ = 0;  ///< embeddings
     std::deque<Job> jobs_;
-    std::string bytes_;  ///< of a row
+    std::string bytes_;  ///< one row
 };
 
 }  // namespace etlc::embed

@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "data/datasets/dataset.hpp"
+#include "data/datasets/trace.hpp"
 #include "data/files/file.hpp"
-#include "data/files/paths.hpp"
-#include "data/frames/images.hpp"
+#include "data/frames/frames.hpp"
+#include "data/hdf5/hdf5.hpp"
+#include "data/recordings/image_arrays.hpp"
 #include "data/recordings/open.hpp"
-#include "embed/sets.hpp"
 
 namespace etlc::embed {
 
@@ -20,11 +24,111 @@ namespace fs = std::filesystem;
 using diag::Code;
 using diag::Failure;
 
+std::string name_of_folder(const std::string& folder) {
+    std::error_code error;
+    const std::string name = fs::path(folder).lexically_normal().filename().string();
+    if (!name.empty() && name != "." && name != "..") return name;
+    return fs::canonical(folder, error).filename().string();
+}
+
+/// Finds the camera of each input.
+diag::Result<std::map<std::string, std::string>> cameras_of(const data::Dataset& set,
+                                                            const Search& search) {
+    std::map<std::string, std::string> cameras;
+    for (const std::string& input : search.inputs) {
+        auto camera = data::camera_of(set, search.camera(input));
+        if (!camera) return camera.failure();
+        cameras[input] = *camera;
+    }
+    return cameras;
+}
+
+Recording recording_of(const data::SoundEpisode& sound, std::uint64_t stride,
+                       const std::map<std::string, std::string>& cameras) {
+    const std::string& folder = sound.set->folder();
+    Recording recording;
+    recording.path = data::episode_path(folder, sound.episode->index);
+    recording.episode = fmt::format("{}-{:06}", name_of_folder(folder), sound.episode->index);
+    std::set<std::string> different;
+    for (const auto& [input, camera] : cameras) different.insert(camera);
+    recording.has_one_camera = different.size() < 2;
+    recording.open = [sound, stride, cameras](const std::string& input) {
+        return data::open_clip(*sound.set, *sound.episode, cameras.at(input), stride);
+    };
+    recording.columns = recording.path;
+    recording.stride = stride;
+    recording.tasks = sound.episode->tasks;
+    return recording;
+}
+
+diag::Result<std::vector<Recording>> recordings_in_dataset(const data::DatasetPath& path,
+                                                           const Search& search, diag::Sink& sink) {
+    const auto paths = data::find_dataset_episodes(path, sink);
+    if (!paths) return paths.failure();
+    const auto set = data::Dataset::known(path.folder);
+    if (!set) return set.failure();
+    const auto stride = data::rows_a_step(**set, search.rate);
+    if (!stride) return stride.failure();
+    const auto cameras = cameras_of(**set, search);
+    if (!cameras) return cameras.failure();
+    std::vector<Recording> recordings;
+    for (const std::string& episode : *paths) {
+        const auto sound = data::find_episode(episode);
+        if (!sound) return sound.failure();
+        std::string lack;
+        for (const auto& [input, camera] : *cameras)
+            if (lack.empty()) lack = data::camera_lack(*sound->set, *sound->episode, camera);
+        if (lack.empty())
+            recordings.push_back(recording_of(*sound, *stride, *cameras));
+        else
+            sink.report({Code::dataset_lacks,
+                         fmt::format("episode {} is left out: {}", sound->episode->index, lack),
+                         {},
+                         path.folder});
+    }
+    if (recordings.empty())
+        return diag::Failure{Code::no_such_episode, "has no episode that is whole"};
+    return recordings;
+}
+
+/// Returns whether a path is that of arrays: .npz, .h5, .hdf5 or FILE.h5:GROUP.
+bool is_arrays(const std::string& path) {
+    const std::string file = data::trace_file(path);
+    return file.ends_with(".npz") || data::is_hdf5(file);
+}
+
+diag::Result<std::vector<Recording>> recordings_in_arrays(const std::string& path,
+                                                          const Search& search) {
+    const std::string file = data::trace_file(path);
+    std::vector<std::string> groups = {path.substr(std::min(file.size() + 1, path.size()))};
+    if (groups[0].empty() && data::is_hdf5(file) && !search.groups.empty()) {
+        auto found = data::list_hdf5(file, search.groups);
+        if (!found) return found.failure();
+        groups = std::move(*found);
+    }
+    std::vector<Recording> recordings;
+    for (const std::string& group : groups) {
+        Recording recording;
+        recording.path = group.empty() ? file : file + ":" + group;
+        recording.episode = fs::path(file).stem().string();
+        if (!group.empty()) recording.episode += "-" + fs::path(group).filename().string();
+        std::set<std::string> different;
+        for (const std::string& input : search.inputs) different.insert(search.camera(input));
+        recording.has_one_camera = different.size() < 2;
+        recording.open = [whole = recording.path, search](const std::string& input) {
+            return data::open_image_array(whole, search.camera(input));
+        };
+        recording.columns = recording.path;
+        recordings.push_back(std::move(recording));
+    }
+    return recordings;
+}
+
 constexpr std::string_view kExpected =
     "expected a video, a folder of images, a data set, an .npz or .h5 file of images, or a folder "
     "or pattern of these";
 
-/// "drives/ep3.csv" of "drives/ep3.mp4", or of the folder "drives/ep3".
+/// Returns "drives/ep3.csv" for "drives/ep3.mp4" or the folder "drives/ep3".
 std::string beside(const fs::path& folder, const std::string& name) {
     const fs::path path = folder / (name + ".csv");
     std::error_code error;
@@ -86,8 +190,8 @@ public:
     }
 
 private:
-    /// Of a folder its images as one recording; else the videos, data sets and folders of images in
-    /// it; else its archives of arrays.
+    /// Finds the recordings in a folder: its images as one recording; else the videos, data sets
+    /// and folders of images in it; else its archives of arrays.
     diag::Result<std::vector<Recording>> in_folder(const std::string& folder, bool below) {
         const std::vector<std::string> entries = sorted_entries(folder);
         std::vector<std::string> frames;

@@ -1,7 +1,7 @@
-// Recordings from which `etlc embed` makes episodes.
+// The recordings from which `etlc embed` makes episodes.
 // Takes: the --data arguments: videos, folders of images, data sets, archives of arrays, folders
-// and patterns of these. Gives: the recordings. Keeps true: their order depends on the arguments
-// and the names of the files alone; a recording is opened when its turn comes.
+// and patterns of these. Keeps true: the order of recordings depends only on the arguments and the
+// names of files; a recording is opened when it is encoded.
 #pragma once
 
 #include <cstdint>
@@ -16,46 +16,47 @@
 
 namespace etlc::embed {
 
-/// An array of a recording that its episode has too, a row a step.
+/// An array of a recording that is copied to its episode, a row a step.
 struct Array {
     std::string name;
     std::uint32_t width = 1;
     std::vector<float> values;  ///< steps x width
-    bool is_vector = false;     ///< steps x width, else one number a step
+    bool is_vector = false;     ///< shape steps x width, else one number a step
 };
 
-/// What is looked for.
+/// What to look for.
 struct Search {
     std::vector<std::string> arguments;
-    std::string groups;  ///< of .h5 files each that matches is a recording; empty: the file is one
-    double rate = 0;     ///< steps a second, 0 where the spec has no rate: then every frame is one
-    /// The camera of an input; of "" that of all inputs. Of data sets and arrays.
+    std::string
+        groups;  ///< pattern of the groups of .h5 files that are recordings; empty: the file is one
+    double rate = 0;  ///< steps a second; 0 where the spec has no rate: every frame is a step
+    /// Cameras of data sets and arrays by input; "" stands for all inputs.
     std::map<std::string, std::string> cameras;
-    std::vector<std::string> inputs;  ///< that encoders make
+    std::vector<std::string> inputs;  ///< inputs made by encoders
 
-    /// Of an input; empty: none is named.
+    /// Returns the camera named for an input, or "".
     std::string camera(const std::string& input) const;
 };
 
 struct Recording {
     std::string path;     ///< for messages
     std::string episode;  ///< name of the episode's file, without its ending
-    /// A single camera, whose frames every input is made of.
+    /// One camera, whose frames all inputs are made of.
     bool has_one_camera = true;
-    /// The frames for an input, a frame a step. Failures do not repeat the path.
+    /// Opens the frames for an input, a frame a step. Failures do not repeat the path.
     std::function<diag::Result<std::unique_ptr<data::FrameSource>>(const std::string& input)> open;
-    /// A .csv file of its name beside it: see embed/beside.hpp; empty: there is none.
+    /// A .csv file of the same name beside it, with other inputs and labels; empty: none.
     std::string beside{};
-    /// The video, or the images, one a frame; empty: the frames lie among others.
+    /// The video, or the image of each frame; empty: the file also holds other recordings.
     std::vector<std::string> files{};
-    /// What data::open_trace reads the inputs from that no encoder makes; empty: none.
+    /// The path from which data::open_trace reads the other inputs; empty: none.
     std::string columns{};
-    std::uint64_t stride = 1;          ///< a step every so many rows of these
-    std::vector<std::string> tasks{};  ///< what is done in it, in words
+    std::uint64_t stride = 1;          ///< rows per step
+    std::vector<std::string> tasks{};  ///< descriptions of what is done in it
 };
 
-/// Every recording of the arguments. An argument without a recording is reported; of a data set,
-/// episodes that lack something are left out with a warning.
+/// Finds the recordings of all arguments. Reports an argument without recordings; warns of
+/// incomplete episodes of data sets, which are left out.
 std::vector<Recording> find_recordings(const Search& search, diag::Sink& sink);
 
 }  // namespace etlc::embed

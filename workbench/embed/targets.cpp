@@ -8,7 +8,6 @@
 #include "data/arrays/array.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/files/paths.hpp"
 #include "embed/embed.hpp"
 
 namespace etlc::embed {
@@ -19,7 +18,7 @@ using check::Encoded;
 using check::Index;
 using diag::Code;
 
-/// Encodes the sources of one encoder.
+/// Encodes all that one encoder encodes.
 class Targets {
 public:
     Targets(const check::Model& model, Index encoder, const Request& request, embedded::File& file,
@@ -79,7 +78,7 @@ private:
         return true;
     }
 
-    /// A row for each image, or for each frame as the spec lists them, which may be out of order.
+    /// Makes a row for each image, or for each frame in the order of the spec.
     static void fill(embedded::Entry& entry, const Encoded& encoded,
                      const std::vector<std::uint64_t>& decoded, const std::vector<float>& rows) {
         const std::size_t count = encoded.is_video ? decoded.size() : entry.sources.size();

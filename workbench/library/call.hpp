@@ -1,13 +1,69 @@
-// What all functions of the interface do first.
+// The message of the last call, and what all functions of the interface share.
+// Keeps true: no exception leaves a function; a message of one line allocates no memory.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
 #include "library/etlc.h"
-#include "library/handles.hpp"
-#include "library/message.hpp"
+#include "library/session.hpp"
 
 namespace etlc::library {
 
-/// `work(held)`, where the number stands for a session that no other thread is using.
+class Message {
+public:
+    /// Returns the message of this thread.
+    static Message& here() noexcept;
+
+    const char* text() const { return text_; }
+    const char* json() const { return json_; }
+    void clear() noexcept;
+    void take_diagnostics(std::string text, std::string json) noexcept;
+    /// Stores the warnings of a call that succeeded.
+    void take_warnings(std::string json) noexcept;
+
+    /// Sets a message of one line, cut off at the size of its buffer.
+    template <class... Arguments>
+    etlc_status say(etlc_status status, fmt::format_string<Arguments...> format,
+                    Arguments&&... arguments) {
+        clear();
+        const auto end = fmt::format_to_n(line_, sizeof line_ - 1, format,
+                                          std::forward<Arguments>(arguments)...);
+        *end.out = '\0';
+        text_ = line_;
+        return status;
+    }
+    /// Sets the message of the current exception.
+    etlc_status say_what_failed() noexcept;
+
+private:
+    char line_[512] = "";
+    std::string diagnostics_;
+    std::string diagnostics_json_;
+    const char* text_ = "";
+    const char* json_ = "";
+};
+
+template <class... Arguments>
+etlc_status refuse(etlc_status status, fmt::format_string<Arguments...> format,
+                   Arguments&&... arguments) {
+    return Message::here().say(status, format, std::forward<Arguments>(arguments)...);
+}
+
+/// Returns the status of `work`, which may throw.
+template <class Work>
+etlc_status guarded(const Work& work) noexcept {
+    try {
+        Message::here().clear();
+        return work();
+    } catch (...) {
+        return Message::here().say_what_failed();
+    }
+}
+
+/// Calls `work(held)` where the number stands for a session that no other thread uses.
 template <class Work>
 etlc_status with_held(etlc_session number, const Work& work) noexcept {
     return guarded([&]() -> etlc_status {
@@ -24,13 +80,13 @@ etlc_status with_held(etlc_session number, const Work& work) noexcept {
     });
 }
 
-/// `work(session)`, in the same way.
+/// Calls `work(session)` in the same way.
 template <class Work>
 etlc_status with_session(etlc_session number, const Work& work) noexcept {
     return with_held(number, [&](Held& held) -> etlc_status { return work(*held); });
 }
 
-/// Of an input's elements.
+/// Returns the type of an input's elements.
 inline std::uint32_t type_of(const check::Input& input) {
     switch (input.type) {
         case check::InputType::boolean: return ETLC_BOOL;
@@ -50,7 +106,7 @@ inline etlc_status refuse_index(const char* what, std::uint64_t found, std::uint
     return refuse(ETLC_NO_SUCH, "there is no {} {}: the spec has {} of them", what, found, count);
 }
 
-/// `found`: what the caller says is the size of a struct.
+/// Checks the struct_size that the caller has set.
 inline etlc_status check_size(std::uint32_t found, std::size_t expected, const char* what) {
     if (found == expected) return ETLC_OK;
     return refuse(ETLC_WRONG_VERSION,
@@ -59,7 +115,7 @@ inline etlc_status check_size(std::uint32_t found, std::size_t expected, const c
                   what, found, expected);
 }
 
-/// A struct that the caller made, of the size that this version knows.
+/// Checks a struct of the caller, which must have the size of this version.
 template <class Struct>
 etlc_status check_struct(const Struct* given, const char* what) {
     if (given == nullptr) return refuse_null(what);

@@ -1,4 +1,4 @@
-// What a session says after a step, beside its verdicts.
+// Queries after a step: measurements, lets, counts, explanations and incidents.
 #include <cstring>
 
 #include "library/call.hpp"
@@ -15,6 +15,16 @@ etlc_status check_monitor(const Session& session, std::uint32_t monitor) {
 etlc_status refuse_undecided(const Session& session, std::uint32_t monitor) {
     return refuse(ETLC_UNDECIDED, "monitor '{}' has no verdict yet",
                   session.plan().monitors[monitor].name);
+}
+
+/// Calls `work(recorder)` where the spec was opened with a recorder.
+template <class Work>
+etlc_status with_recorder(etlc_session number, const Work& work) noexcept {
+    return with_session(number, [&](Session& opened) -> etlc_status {
+        if (opened.recorder() != nullptr) return work(*opened.recorder());
+        return refuse(ETLC_NOT_KEPT,
+                      "no incident is kept: open the spec with options.recorder, as \"2s,1s,4\"");
+    });
 }
 
 }  // namespace
@@ -95,6 +105,45 @@ etlc_status etlc_explain(etlc_session session, uint32_t monitor, uint32_t format
         if (const std::string why = opened.why_unexplained(); !why.empty())
             return refuse(ETLC_NOT_KEPT, "{}", why);
         *text = opened.explain(monitor, format == ETLC_JSON).c_str();
+        return ETLC_OK;
+    });
+}
+
+etlc_status etlc_incidents(etlc_session session, uint32_t* complete, uint32_t* lost) {
+    return with_recorder(session, [&](plan::FlightRecorder& recorder) -> etlc_status {
+        if (complete == nullptr) return refuse_null("complete");
+        if (lost == nullptr) return refuse_null("lost");
+        *complete = recorder.complete();
+        *lost = recorder.lost();
+        return ETLC_OK;
+    });
+}
+
+etlc_status etlc_incident(etlc_session session, uint32_t incident, const void** bytes,
+                          size_t* size) {
+    return with_recorder(session, [&](plan::FlightRecorder& recorder) -> etlc_status {
+        if (bytes == nullptr) return refuse_null("bytes");
+        if (size == nullptr) return refuse_null("size");
+        if (incident >= recorder.complete())
+            return refuse(ETLC_NO_SUCH, "there is no incident {}: {} of them are complete",
+                          incident, recorder.complete());
+        const std::vector<std::uint8_t>& written = recorder.write(incident);
+        *bytes = written.data();
+        *size = written.size();
+        return ETLC_OK;
+    });
+}
+
+etlc_status etlc_close_incidents(etlc_session session) {
+    return with_recorder(session, [](plan::FlightRecorder& recorder) -> etlc_status {
+        recorder.close();
+        return ETLC_OK;
+    });
+}
+
+etlc_status etlc_forget_incidents(etlc_session session) {
+    return with_recorder(session, [](plan::FlightRecorder& recorder) -> etlc_status {
+        recorder.forget();
         return ETLC_OK;
     });
 }

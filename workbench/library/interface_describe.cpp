@@ -1,4 +1,4 @@
-// What a session says of its spec.
+// The description of the spec of a session.
 #include <algorithm>
 #include <string>
 

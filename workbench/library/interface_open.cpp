@@ -1,4 +1,4 @@
-// etlc_open() and what goes with it.
+// Opens and closes sessions, and returns messages.
 #include <cstddef>
 #include <cstring>
 #include <optional>
@@ -8,7 +8,6 @@
 #include "diag/render.hpp"
 #include "library/call.hpp"
 #include "library/open.hpp"
-#include "library/recorder.hpp"
 #include "library/settings.hpp"
 #include "library/version.hpp"
 
@@ -16,7 +15,7 @@ namespace etlc::library {
 
 namespace {
 
-/// How the spec is compiled.
+/// The options of a compilation.
 struct Wish {
     check::Options check;
     pipeline::Options plan;
@@ -68,7 +67,7 @@ etlc_status take_choices(const etlc_options& options, Wish& wish) {
     if (options.max_state != 0) limits.state_bytes = options.max_state;
     if (options.max_code != 0) limits.code_bytes = options.max_code;
     if (options.max_work != 0) limits.operations = options.max_work;
-    // Observations are of so many steps, each of some bytes.
+    // The size of the observations in bytes must not overflow.
     constexpr std::uint64_t kLongestHistory = std::uint64_t{1} << 40U;
     if (options.history > kLongestHistory)
         return refuse(ETLC_WRONG_VALUE, "options.history is {}, expected at most {} steps",
@@ -86,7 +85,7 @@ etlc_status take(const etlc_options& options, Wish& wish) {
     return take_choices(options, wish);
 }
 
-/// Without what only those have to know who write C++ for a generated class.
+/// Drops findings that concern only users of the generated class.
 diag::Sink told_here(const diag::Sink& sink) {
     diag::Sink result;
     for (const diag::Diagnostic& found : sink.sorted())
@@ -94,7 +93,7 @@ diag::Sink told_here(const diag::Sink& sink) {
     return result;
 }
 
-/// The session, or nothing where the sink says why not.
+/// Opens a session; reports errors.
 std::unique_ptr<Session> open(const etlc_options& options, const Wish& wish, source::File& file,
                               diag::Sink& sink) {
     const std::string path = options.path == nullptr ? "spec.etl" : options.path;
@@ -108,11 +107,11 @@ std::unique_ptr<Session> open(const etlc_options& options, const Wish& wish, sou
     return std::make_unique<Session>(file, std::move(*compiled), sink, options.history);
 }
 
-/// The options of each version of etlc.h: they only grow.
+/// The size of etlc_options in each version of etlc.h.
 constexpr std::uint32_t kSizes[ETLC_API_VERSION + 1] = {0, offsetof(etlc_options, recorder),
                                                         sizeof(etlc_options)};
 
-/// The caller's options, as those of this version.
+/// Converts the caller's options to those of this version.
 etlc_status take_version(const etlc_options* options, etlc_options& own) {
     if (options == nullptr) return refuse_null("options");
     const std::uint32_t version = options->api_version;

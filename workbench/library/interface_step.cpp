@@ -1,4 +1,4 @@
-// Stepping a session, and what it says after a step.
+// Steps the monitors of a session.
 #include <cmath>
 #include <cstring>
 
@@ -17,7 +17,7 @@ static_assert(ETLC_SATISFIED == etlmon::Verdict::kSatisfied &&
 constexpr const char* kTypes[] = {"ETLC_F32", "ETLC_BOOL", "ETLC_F16", "ETLC_I8"};
 constexpr std::uint32_t kBytes[] = {4, 1, 2, 1};
 
-/// Whether the elements are those of the input.
+/// Checks the type and number of an input's elements.
 etlc_status check_elements(const check::Input& input, std::uint32_t type, std::uint32_t count) {
     if (type != type_of(input))
         return refuse(ETLC_WRONG_TYPE, "input '{}' is given elements of type {}, expected {} ({})",
@@ -45,7 +45,7 @@ etlc_status check_bool(const check::Input& input, const void* data) {
                   found);
 }
 
-/// The elements as the evaluator has them: what the generated class makes of them.
+/// Converts the elements for the evaluator as the generated class does.
 void take(const check::Input& input, const void* data, plan::Sample& sample) {
     const std::size_t n = input.dimension;
     sample.present = data != nullptr;
@@ -119,7 +119,7 @@ etlc_status check_column(const check::Input& input, const etlc_column& column,
     return ETLC_OK;
 }
 
-/// Null: missing.
+/// Returns a sample of a column; null where it is missing.
 const void* at(const etlc_column& column, std::uint64_t step) {
     if (column.data == nullptr || (column.present != nullptr && column.present[step] == 0))
         return nullptr;

@@ -6,7 +6,7 @@
 namespace etlc::library {
 
 bool read_spec(const std::string& path, source::File& file, diag::Sink& sink) {
-    // Far more than parse/ takes, which refuses a large spec with its size and what to do about it.
+    // Far more than parse/ accepts, which refuses a large spec with its size and advice.
     constexpr std::size_t kMostRead = 64 * parse::kMaxSpecBytes;
     auto text = data::read_file(path, kMostRead, diag::Code::unreadable_spec, data::Streams::taken);
     file = source::File(path, text ? std::move(*text) : "");

@@ -1,4 +1,4 @@
-// From a spec's file to its plan, for all who step one: libetlc, `etlc run` and the other commands.
+// Reads and compiles a spec, for libetlc and the commands.
 #pragma once
 
 #include <optional>
@@ -11,10 +11,10 @@
 
 namespace etlc::library {
 
-/// The file's text; of one that cannot be read nothing, and the sink now says why not.
+/// Reads the file of a spec; reports an error where that fails.
 bool read_spec(const std::string& path, source::File& file, diag::Sink& sink);
 
-/// Through all stages. Nothing where there was an error.
+/// Compiles a spec through all stages; nothing where there was an error.
 std::optional<pipeline::Compiled> compile(const source::File& file, const check::Options& check,
                                           const pipeline::Options& options, diag::Sink& sink);
 

@@ -1,7 +1,7 @@
-// A spec that is open: what a session of the C interface owns.
-// Takes: a spec's text, and how it is compiled. Gives: its monitors, stepped, and what they say.
-// Keeps true: all memory for steps is asked for when it is made; a call that is refused changes
-// nothing.
+// The sessions of the C interface, and the numbers that stand for them.
+// Keeps true: a session allocates all memory for its steps when it is opened; a refused call
+// changes nothing. A number is never reused, so closed and invalid numbers are detected; looking
+// one up takes no lock and allocates no memory.
 #pragma once
 
 #include <cstdint>
@@ -23,10 +23,11 @@ namespace etlc::library {
 
 using check::Index;
 
+/// An open spec with its monitors.
 class Session {
 public:
-    /// `compiled`, of `file`, as the sink has found it. `history`: steps that explain() can look
-    /// back at.
+    /// Takes the compiled `file` and its findings. `history`: the number of steps that explain()
+    /// can look back at.
     Session(source::File file, pipeline::Compiled compiled, const diag::Sink& sink,
             std::uint64_t history);
     Session(const Session&) = delete;
@@ -47,19 +48,19 @@ public:
     bool is_used(Index input) const { return is_used_[input]; }
     bool is_measured(Index predicate) const { return is_measured_[predicate]; }
 
-    /// Where the next step's sample of an input goes. Its `values` have room for it.
+    /// Returns the place for the next sample of an input, with room for its `values`.
     plan::Sample& sample(Index input) { return samples_[input]; }
-    /// With these samples.
+    /// Steps the monitors with these samples.
     const std::vector<etlmon::Verdict>& step();
     const std::vector<etlmon::Verdict>& finish();
     void reset();
     void restart(std::size_t monitor);
     void observe(Index predicate, float distance, bool truth);
 
-    /// Null: the spec was opened without one.
+    /// Returns the recorder; null where the spec was opened without one.
     plan::FlightRecorder* recorder() { return recorder_ ? &*recorder_ : nullptr; }
 
-    /// Why there is no explanation of the last verdict; empty where there is one.
+    /// Says why the last verdict cannot be explained; empty where it can.
     std::string why_unexplained() const;
     const std::string& explain(std::size_t monitor, bool as_json);
 
@@ -79,12 +80,40 @@ private:
     std::vector<etlmon::Verdict> verdicts_;  ///< the last ones
     std::optional<plan::FlightRecorder> recorder_;
 
-    /// What happened so far, and who measures it: monitors measure only what they need.
+    /// Observations of the steps so far, and the evaluator that measures them: monitors measure
+    /// only what they need.
     std::uint64_t history_;
     std::optional<explain::Observations> observations_;
     std::optional<plan::Evaluator> atoms_;
     bool thresholds_moved_ = false;
     std::string explanation_;
 };
+
+struct Slot;
+
+/// A session in use by this thread, or the reason that there is none.
+class Held {
+public:
+    enum class State : std::uint8_t { held, absent, busy };
+
+    explicit Held(std::uint64_t number) noexcept;
+    ~Held();
+    Held(const Held&) = delete;
+    Held& operator=(const Held&) = delete;
+
+    State state() const { return state_; }
+    Session* operator->() const { return session_; }
+    Session& operator*() const { return *session_; }
+    /// Removes the session from its number.
+    std::unique_ptr<Session> close();
+
+private:
+    Slot* slot_ = nullptr;
+    Session* session_ = nullptr;
+    State state_ = State::absent;
+};
+
+/// Stores a session and returns its number; 0 where there are too many.
+std::uint64_t hold(std::unique_ptr<Session> session);
 
 }  // namespace etlc::library

@@ -10,7 +10,6 @@
 #include "data/arrays/archive.hpp"
 #include "data/arrays/npy_header.hpp"
 #include "data/files/file.hpp"
-#include "data/files/paths.hpp"
 #include "data/frames/frames.hpp"
 #include "data/recordings/open.hpp"
 #include "data/text/quote.hpp"

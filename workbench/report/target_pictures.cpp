@@ -5,7 +5,6 @@
 
 #include "check/encoders/encoded.hpp"
 #include "data/files/file.hpp"
-#include "data/files/paths.hpp"
 #include "data/frames/frames.hpp"
 #include "report/document.hpp"
 #include "report/pictures.hpp"

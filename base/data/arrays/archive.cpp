@@ -11,7 +11,7 @@
 #include <new>
 #include <optional>
 
-#include "data/arrays/npy.hpp"
+#include "data/arrays/array.hpp"
 #include "data/arrays/zip_layout.hpp"
 #include "data/files/descriptor.hpp"
 #include "data/files/file.hpp"
@@ -25,13 +25,13 @@ using diag::Failure;
 
 constexpr std::string_view kEnding = ".npy";
 constexpr std::size_t kCandidates =
-    1000;  ///< for the name that was meant: a distance is computed to each
+    1000;  ///< for a suggested name: an edit distance is computed to each
 
 Failure malformed(std::string message) {
     return {Code::malformed_archive, std::move(message)};
 }
 
-/// A libzip error code in words.
+/// Describes an error code of libzip.
 std::string words(int code) {
     zip_error_t error;
     zip_error_init_with_code(&error, code);
@@ -50,7 +50,7 @@ Failure damaged(int code) {
     return malformed(fmt::format("archive is damaged: {}", words(code)));
 }
 
-/// A member being unpacked; it keeps its archive open.
+/// A member that is being unpacked; it keeps its archive open.
 class Member final : public ByteSource {
 public:
     Member(std::shared_ptr<zip> archive, zip_file_t* file, std::uint64_t size)
@@ -112,7 +112,7 @@ diag::Result<std::vector<ZipMember>> layout_of(const std::string& path) {
         [&](std::uint64_t at, char* to, std::size_t n) { return read_all_at(*file, at, to, n); });
 }
 
-/// Whether libzip, which has rules of its own for where an archive ends, has found these members.
+/// Returns whether libzip, which has its own rules for the end of an archive, finds these members.
 bool holds(zip_t* archive, const std::vector<ZipMember>& members) {
     if (zip_get_num_entries(archive, 0) != static_cast<zip_int64_t>(members.size())) return false;
     for (std::size_t i = 0; i < members.size(); ++i) {
@@ -175,8 +175,7 @@ Failure Archive::missing(const std::string& key) const {
         fmt::format("has no array {}; it holds {}", in_quotes(key), listed(keys_));
     std::vector<std::string> candidates = keys_;
     candidates.resize(std::min(candidates.size(), kCandidates));
-    if (auto nearest = diag::nearest_name(key, candidates))
-        message += fmt::format("; did you mean {}?", in_quotes(*nearest));
+    message += suggestion(key, candidates);
     return {Code::no_such_array, message};
 }
 

@@ -17,7 +17,7 @@ struct zip;
 
 namespace etlc::data {
 
-/// Where an archive lies: a file, or bytes that outlive it.
+/// The location of an archive: a file, or bytes that outlive the archive.
 struct ArchivePlace {
     std::string path;
     std::string_view bytes;
@@ -28,15 +28,15 @@ class Archive {
 public:
     static diag::Result<Archive> open(const ArchivePlace& place);
 
-    /// Names of the members that end in .npy, without that ending, in the order of the archive.
+    /// Returns the names of the .npy members, without that ending, in the order of the archive.
     const std::vector<std::string>& keys() const { return keys_; }
-    /// The array `key`. No such key, or two of them, is a failure that names the nearest and lists
-    /// what there is.
+    /// Opens the array `key`. Where the key is missing or occurs twice, the failure names the
+    /// nearest key and lists all.
     diag::Result<std::unique_ptr<ByteSource>> member(const std::string& key) const;
-    /// Whether there is a member with this whole name.
+    /// Returns whether the archive has a member with this full name.
     bool has_file(const std::string& name) const;
-    /// The bytes of the member with this whole name, "about.json". At most `limit`. Whoever reads
-    /// on to the end is told where they do not have their checksum.
+    /// Opens the member with this full name, "about.json", of at most `limit` bytes. Reading it to
+    /// the end checks its checksum.
     diag::Result<std::unique_ptr<ByteSource>> file(const std::string& name,
                                                    std::uint64_t limit) const;
 
@@ -48,7 +48,7 @@ private:
 
     std::shared_ptr<zip> handle_;
     std::vector<std::string> keys_;
-    std::vector<std::uint64_t> indices_;  ///< of the keys in the archive
+    std::vector<std::uint64_t> indices_;  ///< places of the keys in the archive
 };
 
 }  // namespace etlc::data

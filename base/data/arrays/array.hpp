@@ -10,15 +10,16 @@
 #include <string_view>
 #include <vector>
 
+#include "data/files/bytes.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::data {
 
 enum class Element : std::uint8_t { f16, f32, f64, i8, i16, i32, i64, u8, u16, u32, u64, boolean };
 
-std::string_view name(Element element);  ///< "float32", as numpy spells it
+std::string_view name(Element element);  ///< "float32", as in numpy
 
-/// Larger arrays are refused: 1 GiB as doubles.
+/// The largest array that is read: 1 GiB as doubles.
 inline constexpr std::uint64_t kMaxArrayElements = 1ULL << 27U;
 
 struct Array {
@@ -29,25 +30,32 @@ struct Array {
     std::string shape_text() const;  ///< "(8, 32)"
 };
 
-/// One .npy file. Reads float16/32/64, integers and bool, C and Fortran order, little endian.
+/// Reads a .npy file: float16/32/64, integers and bool, C and Fortran order, little endian.
 /// Failures of this header are E04; their messages do not repeat the path: `in_file`
 /// (data/files/file.hpp) adds it.
 diag::Result<Array> read_npy(const std::string& path);
-/// The same from memory.
+/// Reads a .npy file from memory.
 diag::Result<Array> parse_npy(std::string_view bytes);
 
-/// One array of an .npz file, stored or deflated. An empty key takes the only array there is, else
-/// it is an error.
+/// Reads an array of an .npz file, stored or deflated. An empty key takes the only array, and is an
+/// error where there are several.
 diag::Result<Array> read_npz(const std::string& path, const std::string& key);
-/// The same from memory.
+/// Reads an array of an .npz file from memory.
 diag::Result<Array> parse_npz(std::string_view bytes, const std::string& key);
 
-/// .npy or .npz by the file's ending. An .npy file takes no key.
+/// Reads an .npy or .npz file, by its ending. An .npy file takes no key.
 diag::Result<Array> read_array(const std::string& path, const std::string& key);
 
-/// 64-bit content hash as 16 hex digits over shape and float32 bits: the same on every machine. It
-/// is XXH64 with seed 0 of: the rank and the dimensions as 64-bit, then the values' IEEE bits as
-/// 32-bit little-endian integers.
+/// Returns a hash of the content as 16 hex digits, the same on every machine: XXH64 with seed 0 of
+/// the rank and the dimensions as 64-bit, then the values' IEEE bits as 32-bit little-endian
+/// integers.
 std::string content_hash(const std::vector<std::uint64_t>& shape, const std::vector<float>& values);
+
+/// Reads a .npy array from any source. Memory grows with the bytes that have arrived, not with what
+/// the header promises.
+diag::Result<Array> read_npy_from(ByteSource& source);
+
+/// Adds the name of the array to a failure.
+diag::Failure in_array(const diag::Failure& failure, const std::string& key);
 
 }  // namespace etlc::data

@@ -25,7 +25,7 @@ constexpr std::array<ElementInfo, 12> kElements{{
     {Element::boolean, "b1", "bool", 1},
 }};
 
-/// An unsigned integer from its little-endian bytes.
+/// Loads an unsigned integer from its little-endian bytes.
 template <class Bits>
 Bits load(const char* bytes) {
     Bits result = 0;
@@ -39,8 +39,8 @@ Bits load(const char* bytes) {
     return result;
 }
 
-/// `convert` takes the bits of one element. Restrict: a billion elements pass here, several at a
-/// time.
+/// Converts each element by its bits. `__restrict` allows the compiler to vectorize: files have up
+/// to a billion elements.
 template <class Bits, class Convert>
 std::size_t decode_each(const char* __restrict bytes, std::size_t n, double* __restrict to,
                         Convert convert) {

@@ -80,7 +80,7 @@ private:
         header.element = *element;
     }
 
-    /// What a numpy type code that is not read stands for, as " (Python objects)".
+    /// Describes a numpy type code that is not read: " (Python objects)".
     static std::string_view kind_of(std::string_view code) {
         switch (code.empty() ? ' ' : code.front()) {
             case 'O': return " (Python objects)";
@@ -158,7 +158,7 @@ private:
         ++at_;
     }
 
-    /// The next character that is not white space; NUL at the end.
+    /// Returns the next character that is not white space; NUL at the end.
     char peek() {
         while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\n' ||
                                       text_[at_] == '\t' || text_[at_] == '\r'))
@@ -190,7 +190,7 @@ private:
                               {"shape", &Literal::shape}}};
 };
 
-/// The product of the shape; a Failure where the bytes it takes cannot be counted.
+/// Returns the product of the shape; fails where the size in bytes overflows.
 std::optional<Failure> count_elements(NpyHeader& header) {
     header.count = 1;
     for (const std::uint64_t n : header.shape)
@@ -207,7 +207,7 @@ std::optional<Failure> count_elements(NpyHeader& header) {
     return {};
 }
 
-/// Exactly `n` bytes, or a Failure that says the file ends before `what` does.
+/// Reads exactly `n` bytes; the Failure says that the file ends before `what` does.
 diag::Result<std::string> read_exactly(ByteSource& source, std::size_t n, std::string_view what) {
     std::string bytes(n, '\0');
     const auto got = source.read(bytes.data(), n);

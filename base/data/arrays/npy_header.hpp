@@ -1,7 +1,7 @@
 // The header of an .npy array: a magic word, a version, and a Python dictionary literal.
 // Takes: the bytes before the data. Gives: element type, order, shape. Source: numpy.lib.format,
 // versions 1.0, 2.0 and 3.0. Keeps true: the number of elements and of bytes fits 63 bits; what the
-// header promises is not yet believed, only read.
+// header promises is only read; the caller compares it with the bytes.
 #pragma once
 
 #include <cstdint>
@@ -27,11 +27,10 @@ struct NpyHeader {
 /// nor array.
 diag::Result<NpyHeader> read_npy_header(ByteSource& source);
 
-/// Nothing where `total` bytes, header included, are just what the array takes; else what is
-/// missing or too much.
+/// Returns a failure unless `total` bytes, header included, are exactly what the array takes.
 std::optional<diag::Failure> check_size(const NpyHeader& header, std::uint64_t total);
 
-/// "(8, 32)", as numpy writes shapes.
+/// Returns a shape as numpy writes it: "(8, 32)".
 std::string shape_text(const std::vector<std::uint64_t>& shape);
 
 }  // namespace etlc::data

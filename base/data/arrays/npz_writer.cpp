@@ -18,7 +18,7 @@ struct Discard {
     void operator()(zip_source_t* source) const { zip_source_free(source); }
 };
 
-/// What libzip writes to memory fails only where there is too little of it.
+/// Writing to memory fails only where memory runs out.
 void require(bool done) {
     if (!done) throw std::bad_alloc();
 }
@@ -46,7 +46,7 @@ std::string bytes_of(zip_source_t* source) {
     return bytes;
 }
 
-/// All of a .npy file before its values. `element`: as numpy writes it, "<f4".
+/// Returns the head of a .npy file. `element`: the type code of numpy, "<f4".
 std::string npy_head(std::string_view element, const std::vector<std::uint64_t>& shape) {
     constexpr std::size_t kAlignment = 64;
     constexpr std::size_t kPreamble = 10;  // magic word, version, length of the header

@@ -1,6 +1,5 @@
-// Arrays and texts as the bytes of .npy and .npz files.
-// Takes: shapes and values; named members. Gives: what numpy.save and numpy.savez write. Keeps
-// true: the same members give the same bytes, on every machine and at any time.
+// Writes arrays and texts as .npy and .npz files, like numpy.save and numpy.savez.
+// Keeps true: the same members give the same bytes, on every machine and at any time.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +8,9 @@
 
 namespace etlc::data {
 
-/// Values in row-major order, one for each element of the shape, as little-endian float32.
+/// Writes values in row-major order, one for each element of the shape, as float32.
 std::string npy_bytes(const std::vector<std::uint64_t>& shape, const std::vector<float>& values);
-/// The same of uint8.
+/// Writes values in row-major order as uint8.
 std::string npy_of_uint8(const std::vector<std::uint64_t>& shape,
                          const std::vector<std::uint8_t>& values);
 
@@ -20,7 +19,7 @@ struct ArchiveMember {
     std::string bytes;
 };
 
-/// A zip archive that stores its members, in this order, without times.
+/// Writes a zip archive that stores its members in this order, without times.
 std::string npz_bytes(const std::vector<ArchiveMember>& members);
 
 }  // namespace etlc::data

@@ -25,9 +25,9 @@ constexpr std::size_t kEndBytes = 22;
 constexpr std::size_t kEnd64Bytes = 56;
 constexpr std::size_t kLocatorBytes = 20;
 constexpr std::size_t kMostComment = 0xffff;
-constexpr std::uint64_t kMostDirectoryBytes = 64U << 20U;  ///< of half a million members
+constexpr std::uint64_t kMostDirectoryBytes = 64U << 20U;  ///< enough for half a million members
 constexpr std::uint64_t kIn64 =
-    0xffffffff;  ///< a field of 32 bits whose value stands elsewhere, in 64
+    0xffffffff;  ///< marks a 32-bit field whose value is stored elsewhere, in 64 bits
 constexpr std::uint64_t kCountIn64 = 0xffff;
 
 Failure damaged(std::string message) {
@@ -46,7 +46,7 @@ Failure not_one_archive(std::string_view where) {
     return damaged(fmt::format("has bytes {}, expected one archive and nothing else", where));
 }
 
-/// The little-endian number of `n` bytes at `at`, which are there.
+/// Returns the little-endian number of `n` bytes at `at`, which must exist.
 std::uint64_t number(std::string_view bytes, std::size_t at, std::size_t n) {
     std::uint64_t value = 0;
     for (std::size_t i = n; i-- > 0;)
@@ -66,8 +66,7 @@ public:
     }
 
 private:
-    /// The record at the end of the file says where the directory is; another one may not be behind
-    /// it.
+    /// Finds the directory by the record at the end of the file, which nothing may follow.
     std::optional<Failure> find_directory() {
         if (size_ < kEndBytes) return no_archive();
         const std::uint64_t searched = std::min<std::uint64_t>(size_, kEndBytes + kMostComment);
@@ -95,7 +94,7 @@ private:
         return {};
     }
 
-    /// The same in 64 bits, which is there where a locator stands before the record.
+    /// Reads the 64-bit record, which exists where a locator precedes the 32-bit one.
     std::optional<Failure> find_directory64(std::uint64_t end) {
         const bool needed =
             entries_ == kCountIn64 || directory_bytes_ == kIn64 || directory_ == kIn64;
@@ -146,8 +145,7 @@ private:
         return rest.empty() ? std::nullopt : std::optional(damaged());
     }
 
-    /// Takes what stands in the extra field of 64-bit values, in the order unpacked, packed,
-    /// offset.
+    /// Reads the extra field of 64-bit values, in the order unpacked, packed, offset.
     static bool widen(std::string_view extra, std::uint64_t unpacked, ZipMember& member) {
         std::string_view wide;
         while (extra.size() >= 4) {
@@ -179,7 +177,7 @@ private:
         return {};
     }
 
-    /// The member ends where the next one begins.
+    /// Checks that the member ends where the next one begins.
     std::optional<Failure> check_place(const ZipMember& member, std::uint64_t next) const {
         if (member.offset > next || next - member.offset < kLocalBytes) return damaged();
         const auto head = read(member.offset, kLocalBytes);
@@ -194,7 +192,7 @@ private:
         if (*again != member.name)
             return damaged(fmt::format("has a member that is {} in one place and {} in another",
                                        in_quotes(*again), in_quotes(member.name)));
-        // Behind the data its checksum and sizes, in 32 or 64 bits, with or without a signature.
+        // The data are followed by their checksum and sizes, in 32 or 64 bits, perhaps signed.
         const std::uint64_t behind = room - before - member.packed_bytes;
         const bool descriptor = behind == 12 || behind == 16 || behind == 20 || behind == 24;
         if (behind != 0 && !(member.sizes_follow && descriptor))
@@ -213,9 +211,9 @@ private:
     std::uint64_t size_;
     const ReadAt& read_;
     std::uint64_t entries_ = 0;
-    std::uint64_t directory_ = 0;  ///< where it begins
+    std::uint64_t directory_ = 0;  ///< its offset
     std::uint64_t directory_bytes_ = 0;
-    std::uint64_t directory_end_ = 0;  ///< where what comes behind it begins
+    std::uint64_t directory_end_ = 0;  ///< offset of what follows it
     std::vector<ZipMember> members_;
 };
 

@@ -21,8 +21,8 @@ std::vector<std::string> datasets_in(const fs::path& folder) {
     return names;
 }
 
-/// "lerobot/pusht", "hf://datasets/lerobot/pusht", "https://huggingface.co/datasets/lerobot/pusht":
-/// of the Hub the owner and the name; empty: none.
+/// Returns the owner and name of a data set of the Hub, "lerobot/pusht", for
+/// "hf://datasets/lerobot/pusht" or "https://huggingface.co/datasets/lerobot/pusht"; else "".
 std::string name_on_hub(const std::string& path) {
     static const std::regex kName(
         "(?:(?:hf://|https?://huggingface\\.co/)(?:datasets/)?)?"
@@ -42,8 +42,8 @@ std::string with_dataset_meant(const std::string& why, const std::string& path) 
         const std::string folder = path.substr(0, at);
         if (is_dataset(folder))
             return fmt::format(
-                "{} chooses no episodes of the data set: {} is episode 3, {} are "
-                "the episodes from 0 up to, but not with, 50",
+                "{} chooses no episodes of the data set: {} is episode 3, {} are the episodes 0 to "
+                "49",
                 in_quotes(path.substr(at)), in_quotes(folder + ":3"), in_quotes(folder + ":0:50"));
     }
     std::error_code error;
@@ -52,7 +52,7 @@ std::string with_dataset_meant(const std::string& why, const std::string& path) 
         return inside.empty() ? why
                               : fmt::format("{}; it holds data sets: {}", why, listed(inside));
     }
-    // Without what would choose episodes; the colon of "https://" chooses none.
+    // Drop the choice of episodes, which is not the colon of "https://".
     const std::size_t scheme = path.find("://");
     const std::string name =
         path.substr(0, path.find(':', scheme == std::string::npos ? 0 : scheme + 1));

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -9,12 +8,10 @@
 #include <set>
 
 #include "data/datasets/dataset.hpp"
-#include "data/datasets/json_lines.hpp"
-#include "data/datasets/tasks.hpp"
-#include "data/datasets/template.hpp"
+#include "data/datasets/metadata.hpp"
 #include "data/files/file.hpp"
-#include "data/files/paths.hpp"
 #include "data/parquet/table.hpp"
+#include "data/text/number.hpp"
 #include "data/text/quote.hpp"
 
 namespace etlc::data {
@@ -33,7 +30,7 @@ Failure wrong(const std::string& file, const std::string& why) {
     return {Code::unreadable_dataset, fmt::format("{} {}", file, why)};
 }
 
-/// What is wrong in a file of the folder.
+/// Adds the file in the folder to a failure.
 Failure in_part(const std::string& file, Failure failure) {
     failure.message = fmt::format("{}: {}", file, failure.message);
     return failure;
@@ -55,7 +52,7 @@ std::optional<std::string> text(const Json& object, const char* key) {
 
 }  // namespace
 
-/// Fills a data set in.
+/// Reads the metadata of a data set.
 class DatasetReader {
 public:
     explicit DatasetReader(const std::string& folder) : set_(std::make_shared<Dataset>()) {
@@ -93,7 +90,7 @@ private:
         const auto fps = info_.find("fps");
         if (fps == info_.end() || !fps->is_number() || !(fps->get<double>() > 0) ||
             !(fps->get<double>() < 1e6))
-            return wrong(kInfo, "does not say how many rows it has a second (fps)");
+            return wrong(kInfo, "does not give its rows per second (fps)");
         set_->fps_ = fps->get<double>();
         const auto features = info_.find("features");
         if (features == info_.end() || !features->is_object())
@@ -107,7 +104,7 @@ private:
         return std::nullopt;
     }
 
-    /// meta/episodes.jsonl: an object a line.
+    /// Reads meta/episodes.jsonl, an object a line.
     std::optional<Failure> read_lines() {
         place_ = "meta/episodes.jsonl";
         const auto bytes =
@@ -149,7 +146,7 @@ private:
         return std::nullopt;
     }
 
-    /// Of info.json a template, filled in.
+    /// Fills in a template of info.json.
     diag::Result<std::string> path(const char* key, const PathNames& names) {
         const auto pattern = text(info_, key);
         if (!pattern) return wrong(kInfo, fmt::format("does not give its {}", key));
@@ -158,7 +155,7 @@ private:
         return path;
     }
 
-    /// meta/episodes/*/*.parquet: a row an episode.
+    /// Reads meta/episodes/*/*.parquet, a row an episode.
     std::optional<Failure> read_tables() {
         place_ = "meta/episodes";
         const std::string prefix = set_->folder() + "/";
@@ -204,7 +201,7 @@ private:
         }
     }
 
-    /// `cells`: as read_table asks for them.
+    /// `cells`: the columns that read_table requests, in their order.
     diag::Result<DatasetEpisode> episode_of(const std::vector<Table::Cell>& cells,
                                             const std::vector<std::string>& cameras) {
         const auto number = [&](std::size_t i) {
@@ -227,8 +224,8 @@ private:
         return episode;
     }
 
-    /// Some writers give the time of the last frame as the end of a video that has one episode:
-    /// then all of it is meant, and its frames are counted as they are decoded.
+    /// Some writers give the time of the last frame as the end of a video with one episode. The
+    /// whole video is meant, and its frames are counted when they are decoded.
     void find_whole_videos() {
         std::map<std::string, std::size_t> episodes;
         for (const DatasetEpisode& episode : set_->episodes_)
@@ -241,7 +238,7 @@ private:
             }
     }
 
-    /// What the metadata say in two places.
+    /// Compares what the metadata say in two places.
     void compare() {
         std::uint64_t rows = 0;
         for (const DatasetEpisode& episode : set_->episodes_) rows += episode.length;
@@ -263,7 +260,7 @@ private:
         find_strangers();
     }
 
-    /// A data set without the list of its tasks is read all the same.
+    /// Compares the list of tasks; a data set without one is still read.
     void compare_tasks() {
         auto& contradictions = set_->contradictions_;
         const auto list = read_tasks(set_->folder(), major_);
@@ -283,7 +280,7 @@ private:
                             list->file, listed({strange.begin(), strange.end()}), place_));
     }
 
-    /// Files of rows that no episode is in.
+    /// Reports files of rows that belong to no episode.
     void find_strangers() {
         const std::string prefix = set_->folder() + "/";
         const auto files = paths_matching(literal(prefix) + "data/*/*.parquet");
@@ -295,7 +292,7 @@ private:
             if (!std::binary_search(known.begin(), known.end(), file.substr(prefix.size())))
                 strange.push_back(file.substr(prefix.size()));
         if (!strange.empty())
-            set_->contradictions_.push_back(fmt::format("{} {}, of which the metadata say nothing",
+            set_->contradictions_.push_back(fmt::format("{} {}, which the metadata do not mention",
                                                         strange.size() == 1 ? "holds" : "hold",
                                                         listed(strange)));
     }
@@ -303,7 +300,7 @@ private:
     std::shared_ptr<Dataset> set_;
     Json info_;
     int major_ = 0;
-    std::string place_;  ///< of the episodes
+    std::string place_;  ///< place of the episodes
 };
 
 diag::Result<std::shared_ptr<Dataset>> Dataset::read(const std::string& folder) {
@@ -359,11 +356,9 @@ std::optional<DatasetPath> dataset_path(const std::string& path) {
     while (numbers.size() < 2 && !is_dataset(folder)) {
         const std::size_t colon = folder.rfind(':');
         if (colon == std::string::npos) return std::nullopt;
-        std::uint64_t number = 0;
-        const char* const end = folder.data() + folder.size();
-        const auto [rest, failed] = std::from_chars(folder.data() + colon + 1, end, number);
-        if (failed != std::errc() || rest != end) return std::nullopt;
-        numbers.push_back(number);
+        const auto number = parse_whole<std::uint64_t>(std::string_view(folder).substr(colon + 1));
+        if (!number) return std::nullopt;
+        numbers.push_back(*number);
         folder.resize(colon);
     }
     if (!is_dataset(folder)) return std::nullopt;

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
 #include "data/parquet/table.hpp"
+#include "data/text/number.hpp"
 #include "data/text/quote.hpp"
-#include "data/traces/array_trace.hpp"
+#include "data/traces/trace_formats.hpp"
 
 namespace etlc::data {
 namespace {
@@ -17,31 +17,19 @@ namespace {
 using diag::Code;
 using diag::Failure;
 
-/// Of "action[3]" the column and the place in it.
-struct Wanted {
-    std::string column;
-    std::optional<std::uint64_t> element;
-};
-
-Wanted wanted_of(const Channel& channel) {
-    const std::string& name = channel.name;
-    const std::size_t open = name.find('[');
-    if (channel.kind == Channel::Kind::vector || open == std::string::npos || name.back() != ']')
-        return {name, {}};
-    std::uint64_t element = 0;
-    const char* const end = name.data() + name.size() - 1;
-    const auto [rest, error] = std::from_chars(name.data() + open + 1, end, element);
-    if (error != std::errc() || rest != end) return {name, {}};
-    return {name.substr(0, open), element};
+/// Returns the column of a channel; for "action[3]" also the place in it.
+ElementName wanted_of(const Channel& channel) {
+    if (channel.kind == Channel::Kind::vector) return {channel.name, {}};
+    return element_name(channel.name);
 }
 
-/// The rows of all channels; they are asked for in step with each other.
+/// The rows of all channels, which read them in step.
 class JointCells {
 public:
     JointCells(std::unique_ptr<Table> table, std::uint64_t steps)
         : table_(std::move(table)), steps_(steps) {}
 
-    /// Of row `step`, which is the current one or the next.
+    /// Returns a cell of row `step`, which is the current or the next one.
     diag::Result<const Table::Cell*> cell(std::uint64_t step, std::size_t column) {
         if (step < taken_) return &cells_[column];
         const auto more = table_->next(cells_);
@@ -68,7 +56,7 @@ private:
 
 class CellRows final : public Rows {
 public:
-    CellRows(std::shared_ptr<JointCells> joint, std::size_t column, Wanted wanted,
+    CellRows(std::shared_ptr<JointCells> joint, std::size_t column, ElementName wanted,
              std::uint32_t width)
         : joint_(std::move(joint)), column_(column), wanted_(std::move(wanted)), row_(width) {}
 
@@ -98,46 +86,43 @@ public:
 private:
     std::shared_ptr<JointCells> joint_;
     std::size_t column_;
-    Wanted wanted_;
+    ElementName wanted_;
     std::vector<double> row_;
     std::uint64_t step_ = 0;
 };
 
-/// A column that is not there, or not of numbers.
-std::optional<Failure> refused(const Dataset& set, const Channel& channel, const Wanted& wanted,
-                               const Table::Column& column) {
+/// Refuses a column that is missing, or does not hold numbers.
+std::optional<Failure> refused(const Dataset& set, const Channel& channel,
+                               const ElementName& wanted, const Table::Column& column) {
     std::vector<std::string> columns;
     for (const Feature& feature : set.features()) {
         const bool is_picture = feature.type == "video" || feature.type == "image";
-        if (is_picture && feature.name == wanted.column)
+        if (is_picture && feature.name == wanted.array)
             return Failure{Code::no_such_channel,
                            fmt::format("{} is a camera; `etlc embed` makes embeddings of it",
-                                       in_quotes(wanted.column))};
+                                       in_quotes(wanted.array))};
         if (!is_picture) columns.push_back(feature.name);
     }
     if (!column.is_there) {
-        std::string message = fmt::format("no column {}", in_quotes(wanted.column));
-        if (const auto meant = diag::nearest_name(wanted.column, columns))
-            message += fmt::format("; did you mean {}?", in_quotes(*meant));
         return Failure{Code::no_such_channel,
-                       message + fmt::format("; there are {}", listed(columns))};
+                       fmt::format("no column {}{}; there are {}", in_quotes(wanted.array),
+                                   suggestion(wanted.array, columns), listed(columns))};
     }
     if (column.is_text)
         return Failure{Code::trace_elements, fmt::format("column {} holds text, expected numbers",
-                                                         in_quotes(wanted.column))};
+                                                         in_quotes(wanted.array))};
     if (column.is_bool && channel.kind != Channel::Kind::boolean)
         return Failure{Code::trace_elements,
                        fmt::format("column {} has bool elements, expected numbers: the input is "
                                    "no bool",
-                                   in_quotes(wanted.column))};
+                                   in_quotes(wanted.array))};
     return std::nullopt;
 }
 
 std::optional<Failure> refuse_empty(const DatasetPath& path) {
     if (path.first < path.end) return std::nullopt;
     return Failure{Code::no_such_episode,
-                   fmt::format("'{}:{}' ends before it begins: {} are the episodes from 0 up to, "
-                               "but not with, 50",
+                   fmt::format("'{}:{}' ends before it begins: {} are the episodes 0 to 49",
                                path.first, path.end, in_quotes(path.folder + ":0:50"))};
 }
 
@@ -179,11 +164,11 @@ diag::Result<std::unique_ptr<Trace>> open_dataset_trace(const std::string& path,
     const auto found = find_episode(path);
     if (!found) return found.failure();
     const DatasetEpisode& episode = *found->episode;
-    std::vector<Wanted> wanted;
+    std::vector<ElementName> wanted;
     std::vector<std::string> names;
     for (const Channel& channel : channels) {
         wanted.push_back(wanted_of(channel));
-        names.push_back(wanted.back().column);
+        names.push_back(wanted.back().array);
     }
     auto table =
         Table::open(found->set->path_of(episode.rows), names, "episode_index", episode.index);

@@ -22,14 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned kMostNames =
-    1000;                        ///< of temporary files, before the folder counts as full of them
-constexpr int kMostLinks = 40;   ///< in a chain of symbolic links, as in Linux
-constexpr int kMostTurns = 200;  ///< that a commit waits for others, kTurnMicroseconds each
+constexpr unsigned kMostNames = 1000;  ///< temporary names that are tried
+constexpr int kMostLinks = 40;         ///< longest chain of symbolic links, as in Linux
+constexpr int kMostTurns = 200;  ///< a commit waits so often for others, kTurnMicroseconds each
 constexpr unsigned kTurnMicroseconds = 5000;
 
-/// The file that a chain of symbolic links ends at, whether it exists or not; empty where the chain
-/// does not end.
+/// Follows symbolic links to a file, which need not exist; returns an empty path for a loop.
 fs::path behind_links(fs::path path) {
     for (int i = 0; i < kMostLinks; ++i) {
         std::string target(PATH_MAX, '\0');
@@ -49,7 +47,7 @@ struct CloseFolder {
     void operator()(DIR* folder) const { ::closedir(folder); }
 };
 
-/// The process of such a name; 0 of any other name.
+/// Returns the process in a temporary name; 0 for any other name.
 pid_t process_in(const std::string& name) {
     int process = 0;
     unsigned number = 0;
@@ -57,13 +55,12 @@ pid_t process_in(const std::string& name) {
     return name == fmt::format(".etlc-{}-{}.part", process, number) ? process : 0;
 }
 
-/// Whoever writes a temporary file holds it, in whatever container: others can tell that it is in
-/// use.
+/// Locks a temporary file, so that processes in other containers see that it is in use.
 void hold(int file) {
     static_cast<void>(::flock(file, LOCK_EX | LOCK_NB));
 }
 
-/// Whether the process is gone and nobody holds the file.
+/// Returns whether the process has ended and nobody holds the lock.
 bool is_left_over(int folder, const std::string& name) {
     const pid_t process = process_in(name);
     if (process <= 0 || ::kill(process, 0) == 0 || errno != ESRCH) return false;
@@ -73,7 +70,7 @@ bool is_left_over(int folder, const std::string& name) {
     return file && ::flock(*file, LOCK_EX | LOCK_NB) == 0;
 }
 
-/// Removes what processes that were killed have left in a folder.
+/// Removes the temporary files of killed processes from a folder.
 void clear(int folder) {
     const int copy =
         uninterrupted([&] { return ::openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC); });
@@ -87,16 +84,15 @@ void clear(int folder) {
         if (is_left_over(folder, entry->d_name)) ::unlinkat(folder, entry->d_name, 0);
 }
 
-/// "folder/", "folder" and the like: nothing that a file could be called.
+/// Returns whether a path ends in "/", "." or "..", so that it cannot name a file.
 bool names_no_file(const fs::path& path) {
     return !path.has_filename() || path.filename() == "." || path.filename() == "..";
 }
 
-/// Held while names in a folder change hands.
+/// A lock on a folder while names in it are exchanged.
 class Turn {
 public:
-    /// Waits for a second at most: the lock keeps files of two calls apart, but nothing hangs on
-    /// it.
+    /// Waits for a second at most: without the lock the files of two calls may mix, no more.
     explicit Turn(int folder)
         : folder_(uninterrupted(
               [&] { return ::openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC); })) {
@@ -133,7 +129,7 @@ AtomicFile::~AtomicFile() {
 
 diag::Result<AtomicFile> AtomicFile::create(const std::string& path, diag::Code code) {
     const auto refuse = [&](int error) {
-        // A missing file is no obstacle to writing; ENOENT is about its folder.
+        // Writing does not need the file to exist, so ENOENT is about its folder.
         const bool no_folder = error == ENOENT || error == ENOTDIR;
         return diag::Failure{code, fmt::format("cannot be written: {}",
                                                no_folder ? "no such folder" : error_words(error))};
@@ -142,7 +138,7 @@ diag::Result<AtomicFile> AtomicFile::create(const std::string& path, diag::Code 
         if (descriptor < 0) return refuse(errno);
         return AtomicFile({}, Descriptor(), Descriptor(descriptor), code);
     };
-    // They are written where they stand: behind them may be a file that others write to as well.
+    // These are written in place: others may write to the same file.
     if (path == "/dev/stdout")
         return directly(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
     if (path == "/dev/stderr")
@@ -172,7 +168,7 @@ bool AtomicFile::open_temporary(mode_t mode) {
         return uninterrupted(
             [&] { return ::openat(*folder_, name, O_WRONLY | O_CLOEXEC | flags, mode); });
     };
-    // A nameless file gets its name by way of /proc.
+    // A nameless file gets its name through /proc.
     if (::access("/proc/self/fd", X_OK) == 0) file_ = Descriptor(open(".", O_TMPFILE));
     state_ = State::nameless;
     if (file_) return true;
@@ -192,8 +188,7 @@ bool AtomicFile::open_temporary(mode_t mode) {
 
 void AtomicFile::copy_permissions(const struct stat& of) {
     mode_t mode = of.st_mode & 0777;
-    // Where the group cannot be kept, the group that the new file has instead may do no more than
-    // everybody.
+    // Where the group cannot be kept, the new group gets the permissions of everybody.
     if (::fchown(*file_, of.st_uid, of.st_gid) != 0 &&
         ::fchown(*file_, static_cast<uid_t>(-1), of.st_gid) != 0)
         mode &= ~static_cast<mode_t>(S_IRWXG) | (mode & S_IRWXO) << 3U;
@@ -250,7 +245,7 @@ std::optional<diag::Failure> AtomicFile::place() {
         state_ = State::exchanged;
         return {};
     }
-    // There is nothing under the name, or the file system cannot exchange names.
+    // The name is free, or the file system cannot exchange names.
     if (::renameat(*folder_, temporary_.c_str(), *folder_, name_.c_str()) != 0)
         return failed(errno);
     state_ = exists ? State::kept : State::made;

@@ -1,13 +1,12 @@
 // Files that appear whole or not at all.
-// Takes: a path and bytes. Gives: a file of that name with these bytes, or a Failure that carries
-// the code which the caller names; its message does not repeat the path: `in_file`
-// (data/files/file.hpp) puts both together. Keeps true: a failed write leaves what stood there
-// before, and no other file. A process that is killed leaves none either: until it is complete a
-// file has no name, where the file system knows such files. There is a window of a few system calls
-// while names change hands, and there are file systems without nameless files: a kill then leaves
-// `.etlc-PROCESS-NUMBER.part`, until the next call that writes into that folder. A file that is
-// replaced keeps its permissions, and its owner and group where the system lets them be kept.
-// Nothing waits for the disk: a machine that loses its power loses what it had not yet stored.
+// Takes: a path and bytes. Gives: a file of that name with these bytes, or a Failure with the
+// caller's code; its message does not repeat the path: `in_file` (data/files/file.hpp) adds it.
+// Keeps true: a failed write leaves the old file, and no other. So does a process that is killed:
+// until it is complete a file has no name, where the file system supports such files. Only during
+// the few system calls that exchange names, and on file systems without nameless files, a kill
+// leaves `.etlc-PROCESS-NUMBER.part`, until the next call that writes into that folder. A replaced
+// file keeps its permissions, and its owner and group where the system permits. Nothing waits for
+// the disk: a power failure loses what is not yet stored.
 #pragma once
 
 #include <sys/stat.h>
@@ -23,25 +22,25 @@
 
 namespace etlc::data {
 
-/// Which file could not take its name, and why.
+/// The file that could not take its name, and the reason.
 struct Uncommitted {
     std::size_t file;
     diag::Failure failure;
 };
 
-/// A file that takes its own name only when it is complete.
-/// A path that is a device, a pipe, /dev/stdout or /dev/stderr is written to directly; of a
-/// symbolic link, the file it points to is made or replaced.
+/// A file that takes its own name only when it is complete. Devices, pipes, /dev/stdout and
+/// /dev/stderr are written to directly. A symbolic link stays; the file that it points to is
+/// created or replaced.
 class AtomicFile {
 public:
     static diag::Result<AtomicFile> create(const std::string& path, diag::Code code);
 
     AtomicFile(AtomicFile&& other) noexcept;
     AtomicFile& operator=(AtomicFile&&) = delete;
-    ~AtomicFile();  ///< takes back what was not kept
+    ~AtomicFile();  ///< undoes what was not committed
 
     std::optional<diag::Failure> write(std::string_view bytes);
-    /// commit_all() of this file alone.
+    /// Calls commit_all() for this file alone.
     std::optional<diag::Failure> commit();
 
 private:
@@ -52,9 +51,9 @@ private:
     std::optional<diag::Failure> failed(int error) const;
     bool open_temporary(mode_t mode);
     void copy_permissions(const struct stat& of);
-    /// What the file system says only when a file is closed: of a full disk, for example.
+    /// Returns the errors that a file system reports only on close, such as a full disk.
     std::optional<diag::Failure> finish();
-    /// Puts the file under its name; what was there before is kept until keep().
+    /// Puts the file under its name; the old file survives until keep().
     std::optional<diag::Failure> place();
     bool link_as(const char* name);
     bool name_temporarily();
@@ -62,27 +61,27 @@ private:
     void take_back();
 
     enum class State : std::uint8_t {
-        direct,     ///< no file of ours
-        nameless,   ///< nor will it be seen
+        direct,     ///< written in place
+        nameless,   ///< without any name
         temporary,  ///< under its temporary name
-        made,       ///< under its name, where nothing was before
-        exchanged,  ///< under its name; what was there before has the temporary one
+        made,       ///< under its name, which was free
+        exchanged,  ///< under its name; the old file has the temporary name
         kept
     };
     State state_ = State::direct;
-    std::string name_;  ///< in its folder
+    std::string name_;  ///< name in its folder
     std::string temporary_;
     Descriptor folder_;
     Descriptor file_;
     diag::Code code_;
 };
 
-/// The files take their names in this order, or none of them does: one that cannot makes those
-/// before it take back theirs. Processes that commit to the folder of the last file take turns, so
-/// that what they write does not mix.
+/// Gives all files their names in this order, or none: a failure undoes the earlier ones.
+/// Processes that commit to the folder of the last file take turns, so that their files do not
+/// mix.
 std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files);
 
-/// The whole of `bytes` as the content of `path`.
+/// Writes `bytes` as the whole content of `path`.
 std::optional<diag::Failure> write_file_atomically(const std::string& path, std::string_view bytes,
                                                    diag::Code code);
 

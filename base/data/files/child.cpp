@@ -23,8 +23,8 @@
 namespace etlc::data {
 namespace {
 
-/// Without the whole only what finds the libraries: nothing in the environment shall change what
-/// the program does.
+/// Returns the environment of the child: all of it, or only what locates libraries, so that nothing
+/// else changes what the program does.
 std::vector<std::string> environment(const Child::Options& options) {
     std::vector<std::string> settings = options.variables;
     const char* const libraries = std::getenv("LD_LIBRARY_PATH");
@@ -43,11 +43,11 @@ std::vector<char*> pointers(std::vector<std::string>& words) {
 }
 
 struct Pipe {
-    Descriptor out;  ///< to read from
-    Descriptor in;   ///< to write to
+    Descriptor out;  ///< read end
+    Descriptor in;   ///< write end
 };
 
-/// Frames of video go through it: the larger, the fewer changes between processes.
+/// The size of a pipe: frames of video need few context switches if it is large.
 constexpr int kPipeBytes = 1 << 20;
 
 std::optional<Pipe> make_pipe() {
@@ -57,7 +57,7 @@ std::optional<Pipe> make_pipe() {
     return Pipe{Descriptor(ends[0]), Descriptor(ends[1])};
 }
 
-/// A write to a pipe that nobody reads any more is an error and no signal.
+/// Writes to a pipe without SIGPIPE where nobody reads it any more.
 ssize_t write_quietly(int to, std::string_view bytes) {
     sigset_t pipes{};
     sigset_t before{};
@@ -78,7 +78,7 @@ public:
     Spawn() {
         ::posix_spawn_file_actions_init(&actions_);
         ::posix_spawnattr_init(&attributes_);
-        // A group of its own, so that what it has started ends with it.
+        // A process group, so that its children end with it.
         ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP);
     }
     Spawn(const Spawn&) = delete;
@@ -88,7 +88,7 @@ public:
         ::posix_spawnattr_destroy(&attributes_);
     }
 
-    /// A stream of the program: `end`, or /dev/null where there is none.
+    /// Connects a stream of the program to `end`, or to /dev/null without one.
     void connect(int stream, const Descriptor& end) {
         if (end)
             ::posix_spawn_file_actions_adddup2(&actions_, *end, stream);
@@ -148,7 +148,7 @@ void Child::stop() {
     status();
 }
 
-/// It has closed its output or its input, and ends now; one that goes on is stopped.
+/// Waits for the end of a program that has closed its output or input; kills one that goes on.
 int Child::status() {
     using namespace std::chrono;
     const auto deadline = steady_clock::now() + seconds(options_.max_silence_seconds);

@@ -1,8 +1,8 @@
-// A program that is run for what it writes to its standard output.
-// Takes: its path and arguments, and what it shall read. Gives: its output as it comes, and how it
-// ended. Keeps true: it has no other input, and ends with this object at the latest; a program that
-// neither reads, writes nor ends for too long is stopped; one that ends before it has read all that
-// it was given ends nothing here.
+// A child process that is run for its standard output.
+// Takes: its path, arguments and input. Gives: its output as it arrives, and how it ended. Keeps
+// true: it has no other input, and ends with this object at the latest; it is killed where it
+// neither reads, writes nor ends for too long; where it ends without reading all its input, this
+// process goes on.
 #pragma once
 
 #include <sys/types.h>
@@ -21,13 +21,13 @@ class Child {
 public:
     struct Options {
         int max_silence_seconds = 0;
-        bool fed = false;  ///< it reads what `give` gives it; else nothing
-        /// It has all of the environment, else only what finds libraries.
+        bool fed = false;  ///< its standard input is what `give` writes; else empty
+        /// It inherits the whole environment; else only what locates libraries.
         bool whole_environment = false;
-        std::vector<std::string> variables;  ///< of the environment besides: "NAME=VALUE"
-        bool heard = false;  ///< the end of its standard error is kept; else none of it
+        std::vector<std::string> variables;  ///< added to its environment: "NAME=VALUE"
+        bool heard = false;                  ///< the end of its standard error is kept; else none
     };
-    /// Nothing where the program cannot be run.
+    /// Starts a program; null where it cannot be run.
     static std::unique_ptr<Child> start(const std::string& program,
                                         const std::vector<std::string>& arguments,
                                         const Options& options);
@@ -35,26 +35,26 @@ public:
     Child& operator=(const Child&) = delete;
     ~Child();
 
-    /// Writes all of `bytes` to its standard input; false where it does not take them. What it
-    /// writes meanwhile is kept for `read`.
+    /// Writes all of `bytes` to its standard input; false where it stops reading. Output that
+    /// arrives meanwhile is kept for `read`.
     bool give(std::string_view bytes);
-    /// The end of its standard input.
+    /// Closes its standard input.
     void give_no_more();
 
-    /// Exactly `n` bytes; false where there are fewer, or where the program was stopped for its
-    /// silence.
+    /// Reads exactly `n` bytes; false where there are fewer, or where the program was silent too
+    /// long.
     bool read(char* to, std::size_t n);
-    /// Whether it writes nothing more. Waits until that is known.
+    /// Returns whether its output has ended. Waits until that is known.
     bool at_end();
-    /// How many bytes have come that were not read.
+    /// Returns how many bytes have arrived and were not read.
     std::size_t arrived() const { return arrived_.size() - taken_; }
 
-    /// How it ended, after `read` failed: "was stopped by signal 11 (Segmentation fault)". Waits
-    /// for it.
+    /// Says how it ended, after `read` failed: "was stopped by signal 11 (Segmentation fault)".
+    /// Waits for it.
     std::string ending();
-    /// Its exit status; -1 where it was stopped. Waits for it.
+    /// Returns its exit status; -1 where it was killed. Waits for it.
     int exit_status();
-    /// The last line of its standard error, where it is heard; without what cannot be printed.
+    /// Returns the last line of its standard error, without unprintable bytes.
     std::string last_words();
 
 private:
@@ -66,8 +66,8 @@ private:
           output_(std::move(output)),
           errors_(std::move(errors)) {}
 
-    /// Waits until something can be done and does it, writing `bytes` from the front; false where
-    /// there is nothing to wait for, or it was stopped for its silence.
+    /// Waits until it can read or write, and writes `bytes` from the front; false where there is
+    /// nothing to wait for, or it was silent too long.
     bool wait(std::string_view& bytes);
     void hear();
     void receive();
@@ -80,15 +80,15 @@ private:
     Descriptor output_;
     Descriptor errors_;
     std::string arrived_;
-    std::size_t taken_ = 0;  ///< of arrived_
+    std::size_t taken_ = 0;  ///< bytes of arrived_ that were read
     std::string said_;       ///< the end of its standard error
     int status_ = 0;
     bool silent_ = false;
-    bool deaf_ = false;  ///< it reads no more
+    bool deaf_ = false;  ///< it has stopped reading
 };
 
-/// A program that belongs to etlc: beside it, as in the build folder, or below libexec/, where it
-/// is installed.
+/// Finds a program that belongs to etlc: beside it in the build folder, below libexec/ in an
+/// installation.
 std::string helper_path(std::string_view name);
 
 }  // namespace etlc::data

@@ -1,6 +1,6 @@
 // File descriptors.
-// Keeps true: one is closed with its object; what a signal interrupts goes on; `errno` says why
-// something failed.
+// Keeps true: a descriptor is closed with its object; interrupted calls are repeated; `errno` holds
+// the reason of a failure.
 #pragma once
 
 #include <cerrno>
@@ -24,7 +24,7 @@ private:
     int number_;
 };
 
-/// `call`, of the system, until no signal interrupts it.
+/// Repeats a system call until no signal interrupts it.
 template <class Call>
 auto uninterrupted(Call call) {
     auto result = call();
@@ -32,10 +32,10 @@ auto uninterrupted(Call call) {
     return result;
 }
 
-/// All of `bytes`; false where it cannot be written.
+/// Writes all of `bytes`; false where they cannot be written.
 bool write_all(int descriptor, std::string_view bytes);
 
-/// `n` bytes from `at` on; false where they cannot be read or are not there, which is EIO.
+/// Reads `n` bytes at `at`; false where that fails, with EIO where the file is too short.
 bool read_all_at(int descriptor, std::uint64_t at, char* to, std::size_t n);
 
 }  // namespace etlc::data

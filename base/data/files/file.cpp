@@ -1,16 +1,22 @@
 #include "data/files/file.hpp"
 
 #include <fmt/format.h>
+#include <glob.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <string_view>
 
 namespace etlc::data {
+
 namespace {
 
 struct CloseFile {
@@ -78,6 +84,37 @@ diag::Diagnostic in_file(const diag::Failure& failure, const std::string& path) 
     result.line = failure.line;
     result.column = failure.column;
     return result;
+}
+
+bool is_lfs_pointer(const std::string& path) {
+    constexpr std::string_view kBegin = "version https://git-lfs";
+    std::string begin(kBegin.size(), '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    return file && begin == kBegin;
+}
+
+std::string beside(const std::string& file, const std::string& path) {
+    return (std::filesystem::path(file).parent_path() / path).lexically_normal().string();
+}
+
+std::string literal(const std::string& path) {
+    std::string result;
+    for (const char c : path) {
+        if (std::string_view("*?[]\\").find(c) != std::string_view::npos) result += '\\';
+        result += c;
+    }
+    return result;
+}
+
+std::optional<std::vector<std::string>> paths_matching(const std::string& pattern) {
+    glob_t found{};
+    const int status = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &found);
+    std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+    ::globfree(&found);
+    if (status != 0 && status != GLOB_NOMATCH) return std::nullopt;
+    std::sort(paths.begin(), paths.end());
+    return paths;
 }
 
 }  // namespace etlc::data

@@ -1,6 +1,6 @@
-// Whole files of bytes.
-// Takes: a path. Gives: its bytes. Keeps true: a Failure carries the code that the caller names and
-// a message that does not repeat the path: `in_file` puts both together.
+// Whole files of bytes, and paths.
+// Keeps true: a Failure carries the caller's code and a message that does not repeat the path:
+// `in_file` adds it.
 #pragma once
 
 #include <cstdint>
@@ -8,29 +8,30 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "diag/diag.hpp"
 
 namespace etlc::data {
 
-/// An errno in the words of a message: "no such file", "permission denied".
+/// Describes an errno as messages do: "no such file", "permission denied".
 std::string error_words(int error);
 
-/// Pipes and devices, of which nobody knows whether they ever end, or begin: only what a user names
-/// and what is read once may be one.
+/// Whether pipes and devices are read. They may never end, so only a file that a user names and
+/// that is read once may be one.
 enum class Streams : std::uint8_t { refused, taken };
 
-/// Why `path` cannot be read as a file ("no such file", "is a directory", ...), or nothing.
+/// Says why `path` cannot be read as a file: "no such file", "is a directory", ...
 std::optional<std::string> why_unreadable(const std::string& path,
                                           Streams streams = Streams::refused);
 
-/// All bytes of a file, at most `limit`. Failures: why_unreadable, too large.
+/// Reads all bytes of a file. Failures: why_unreadable, more than `limit` bytes.
 diag::Result<std::string> read_file(const std::string& path, std::uint64_t limit, diag::Code code,
                                     Streams streams = Streams::refused);
 
 diag::Failure out_of_memory();
 
-/// What `read` gives, a diag::Result; out_of_memory() where memory runs out on the way.
+/// Returns the diag::Result of `read`, or out_of_memory() where memory runs out on the way.
 template <class Read>
 auto within_memory(Read read) -> decltype(read()) {
     try {
@@ -41,7 +42,22 @@ auto within_memory(Read read) -> decltype(read()) {
     return out_of_memory();
 }
 
-/// The finding as a diagnostic whose place is `path`, with line and column where they are known.
+/// Makes a diagnostic at `path`, with line and column where they are known.
 diag::Diagnostic in_file(const diag::Failure& failure, const std::string& path);
+
+/// Returns whether a file is what Git LFS leaves in a clone in place of a large file.
+bool is_lfs_pointer(const std::string& path);
+
+inline constexpr const char* kIsLfsPointer =
+    "is a pointer of Git LFS in place of the file; `git lfs pull` fetches it";
+
+/// Resolves a path that is relative to the folder of `file`, without making it absolute.
+std::string beside(const std::string& file, const std::string& path);
+
+/// Returns a pattern that matches this path alone.
+std::string literal(const std::string& path);
+
+/// Returns the paths that match, sorted bytewise; nothing where a folder cannot be read.
+std::optional<std::vector<std::string>> paths_matching(const std::string& pattern);
 
 }  // namespace etlc::data

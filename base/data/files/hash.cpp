@@ -28,7 +28,7 @@ std::uint64_t little_endian(const char* bytes, int n) {
     return result;
 }
 
-/// Whole stripes of 32 bytes; `bytes` keeps what is left.
+/// Hashes whole stripes of 32 bytes; `bytes` keeps the rest.
 std::uint64_t stripes(std::string_view& bytes, std::uint64_t seed) {
     const std::size_t whole = bytes.size() / 32 * 32;
     XxhLanes lanes(seed);
@@ -37,7 +37,7 @@ std::uint64_t stripes(std::string_view& bytes, std::uint64_t seed) {
     return lanes.merged();
 }
 
-/// What is left after the stripes, fewer than 32 bytes, and the mixing at the end.
+/// Hashes the rest after the stripes, fewer than 32 bytes, and mixes the result.
 std::uint64_t finish(std::uint64_t hash, std::string_view bytes) {
     for (; bytes.size() >= 8; bytes.remove_prefix(8))
         hash = rotated(hash ^ xxh_round(0, little_endian(bytes.data(), 8)), 27) * kXxhPrime1 +

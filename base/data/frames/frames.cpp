@@ -5,16 +5,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 
 #include "data/files/child.hpp"
 #include "data/files/file.hpp"
-#include "data/frames/images.hpp"
 #include "data/frames/protocol.hpp"
 #include "data/text/quote.hpp"
 
 namespace etlc::data {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +29,7 @@ Failure stopped(Child& child, Code code) {
                               child.ending())};
 }
 
-/// What a process writes frames of: the code of what it refuses; whose frames a video has to have.
+/// What a process decodes: the code of its failures, and the episodes that a video must hold.
 struct Decoded {
     Code code;
     std::string total_of;
@@ -47,7 +48,7 @@ diag::Result<bool> end_of(Child& child, const Decoded& decoded) {
     }
 }
 
-/// The next frame that it writes; false at the end.
+/// Reads the next frame that the process writes; false at the end.
 diag::Result<bool> read_frame(Child& child, const Decoded& decoded, Frame& frame) {
     std::array<char, 8> head{};
     if (child.at_end()) return end_of(child, decoded);
@@ -153,6 +154,58 @@ std::optional<Failure> ImageDecoder::decode(std::string_view bytes, Frame& frame
     if (!given) return given.failure();
     if (!*given) return stopped(*child_, kCode);
     return std::nullopt;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+using diag::Code;
+using diag::Failure;
+
+const std::vector<std::string> kEndings = {".png", ".jpg", ".jpeg"};
+
+}  // namespace
+
+bool is_image(const std::string& path) {
+    std::string small = path;
+    std::transform(small.begin(), small.end(), small.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return std::any_of(kEndings.begin(), kEndings.end(),
+                       [&](const std::string& ending) { return small.ends_with(ending); });
+}
+
+std::string image_endings() {
+    return diag::alternatives(kEndings);
+}
+
+diag::Result<std::vector<std::string>> find_images(const std::string& folder,
+                                                   const std::string& path) {
+    const std::string prefix = folder.empty() || fs::path(path).is_absolute() ? "" : folder + "/";
+    const std::string whole = prefix + path;
+    std::error_code error;
+    std::vector<std::string> images;
+    if (fs::is_directory(whole, error)) {
+        const std::string separator = path.empty() || path.ends_with('/') ? "" : "/";
+        for (const auto& entry : fs::directory_iterator(whole, error))
+            if (is_image(entry.path().string()))
+                images.push_back(path + separator + entry.path().filename().string());
+    } else if (!why_unreadable(whole)) {
+        if (!is_image(path))
+            return Failure{Code::unreadable_image,
+                           fmt::format("unknown kind of image, expected {}", image_endings())};
+        images.push_back(path);
+    } else {
+        const auto matches = paths_matching(literal(prefix) + path);
+        for (const std::string& match : matches.value_or(std::vector<std::string>{}))
+            if (is_image(match)) images.push_back(match.substr(prefix.size()));
+    }
+    std::sort(images.begin(), images.end());
+    if (images.empty())
+        return Failure{Code::unreadable_image,
+                       fmt::format("no such image, folder of images or pattern of some, expected "
+                                   "files that end in {}",
+                                   image_endings())};
+    return images;
 }
 
 }  // namespace etlc::data

@@ -1,7 +1,7 @@
-// Frames of images and videos, one after the other.
-// Takes: a file, and which of its frames are wanted. Gives: frames of red, green and blue, 8 bits
-// each. Keeps true: memory is that of one frame; files are decoded by a program of its own,
-// etlc-embed, so whatever they do to it, here it is a failure with an E10 code.
+// Frames of images and videos, one after the other: red, green and blue, 8 bits each.
+// Keeps true: only one frame is in memory; files are decoded by a separate program, etlc-embed, so
+// a hostile file causes a failure with an E10 code at worst. Lists of image files are sorted
+// bytewise, whatever the file system or the locale.
 #pragma once
 
 #include <cstdint>
@@ -30,36 +30,36 @@ public:
     virtual diag::Result<bool> next(Frame& frame) = 0;
 };
 
-/// Which frames of a video, counted from 0 as they are shown.
+/// The frames of a video that are wanted, counted from 0 in the order in which they are shown.
 struct FrameChoice {
-    std::vector<std::uint64_t> only;  ///< these, ascending; empty: all from `first` on
+    std::vector<std::uint64_t> only;  ///< these frames, ascending; empty: all from `first` on
     std::uint64_t first = 0;
-    std::uint64_t count = UINT64_MAX;  ///< at most
-    /// A frame a step of 1 / rate seconds, from the first on; the frames have to come at a whole
-    /// multiple of the rate. 0: every frame.
+    std::uint64_t count = UINT64_MAX;  ///< largest number of frames
+    /// One frame per step of 1 / rate seconds, from the first on; the frame rate has to be a whole
+    /// multiple of this rate. 0: every frame.
     double rate = 0;
-    /// The frames that the video has to have, and whose they are: "of 2 episodes".
+    /// The number of frames that the video must have, and whose they are: "of 2 episodes".
     std::optional<std::uint64_t> total;
     std::string total_of;
 };
 
-/// Whether the ending of a path is that of a video that is looked for in folders.
+/// Returns whether the ending of a path is that of a video; folders are searched for these.
 bool is_video(const std::string& path);
 
 /// Opens a video. Failures do not repeat the path.
 diag::Result<std::unique_ptr<FrameSource>> open_video(const std::string& path,
                                                       const FrameChoice& choice);
 
-/// Opens images, a frame each. Failures are about the first image that has not been given.
+/// Opens images, a frame each. A failure is about the next image.
 diag::Result<std::unique_ptr<FrameSource>> open_images(const std::vector<std::string>& paths);
 
-/// Decodes images whose bytes are at hand, with the rules of image files.
+/// Decodes images in memory, by the rules of image files.
 class ImageDecoder {
 public:
     static diag::Result<std::unique_ptr<ImageDecoder>> start();
     ~ImageDecoder();
 
-    /// `bytes`: as a file of the image has them. After a failure, E1009, there is nothing more.
+    /// Decodes the bytes of an image file. After a failure, E1009, the decoder has ended.
     std::optional<diag::Failure> decode(std::string_view bytes, Frame& frame);
 
 private:
@@ -68,8 +68,18 @@ private:
     std::unique_ptr<Child> child_;
 };
 
-/// The program that decodes and runs networks.
+/// Returns the path of the program that decodes files and runs networks.
 std::string embedder_path();
 diag::Failure no_embedder();
+
+/// Returns whether the ending of a path is that of an image, in any case.
+bool is_image(const std::string& path);
+/// Returns ".png, .jpg or .jpeg".
+std::string image_endings();
+
+/// Finds the images that `path` names, an image, a folder or a pattern, relative to `folder`.
+/// Failures are E1009, and do not repeat the path.
+diag::Result<std::vector<std::string>> find_images(const std::string& folder,
+                                                   const std::string& path);
 
 }  // namespace etlc::data

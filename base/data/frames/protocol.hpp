@@ -1,11 +1,12 @@
-// What etlc-embed and encoder commands read and write.
+// The protocol of etlc-embed and of encoder commands.
+//
 // Frames, on the standard output of `etlc-embed video FILE ...`, `etlc-embed images FILE...` and
-// `etlc-embed given`, and the standard input of encoders: of each frame its height and its width,
-// 32 bits each, then height x width x 3 bytes. Images, on the standard input of `etlc-embed given`:
-// of each how many bytes its file would have, 32 bits, then these. Embeddings, on the standard
-// output of encoders: once their dimension, 32 bits, then for every frame as many float32. All
-// numbers are little-endian. The version and the path of what runs networks, a line each, on the
-// standard output of `etlc-embed onnxruntime`. What went wrong is the last line on standard error.
+// `etlc-embed given`, and the standard input of encoders: for each frame its height and width, 32
+// bits each, then height x width x 3 bytes. Images, on the standard input of `etlc-embed given`:
+// for each the size of its file, 32 bits, then the bytes of the file. Embeddings, on the standard
+// output of encoders: once their dimension, 32 bits, then for every frame as many float32. The
+// version and the path of ONNX Runtime, a line each, on the standard output of `etlc-embed
+// onnxruntime`. All numbers are little-endian. The last line of standard error explains a failure.
 #pragma once
 
 #include <cstdint>
@@ -15,24 +16,24 @@ namespace etlc::data::frames {
 
 inline constexpr std::uint32_t kMaxExtent = 1U << 14U;       ///< rows or columns
 inline constexpr std::uint64_t kMaxPixels = 1ULL << 26U;     ///< of a frame
-inline constexpr std::uint32_t kMaxImageBytes = 64U << 20U;  ///< of an image that is given
+inline constexpr std::uint32_t kMaxImageBytes = 64U << 20U;  ///< of an image on standard input
 inline constexpr std::uint32_t kMaxDimension = 1U << 20U;
 
 /// Exit statuses of etlc-embed, besides 0.
 enum Exit : int {
     kWrongCall = 64,
-    kRefused = 65,      ///< the image, video or model
-    kOutOfStep = 66,    ///< frames that do not come at the rate
-    kNoSuchFrame = 67,  ///< fewer frames than are wanted
-    kNoRuntime = 68,    ///< what runs networks is missing, or another library
-    kOtherCount = 69    ///< more or fewer frames than the video has to have
+    kRefused = 65,      ///< the image, video or model is refused
+    kOutOfStep = 66,    ///< the frame rate does not fit the rate of the spec
+    kNoSuchFrame = 67,  ///< the video has fewer frames than are wanted
+    kNoRuntime = 68,    ///< ONNX Runtime is missing, or another library
+    kOtherCount = 69    ///< the video has more or fewer frames than it must have
 };
 
-// Limits of what decodes. An honest file needs a small part of them.
+// Limits of the decoder. An ordinary file needs a small part of them.
 inline constexpr std::uint64_t kMaxMemoryBytes = 4ULL << 30U;  ///< address space
 inline constexpr int kMaxSilenceSeconds = 120;                 ///< of the clock, between two frames
 
-/// A number of 32 bits, as it is written and read.
+/// Writes and reads a number of 32 bits.
 inline void append(std::string& bytes, std::uint32_t value) {
     for (unsigned shift = 0; shift < 32; shift += 8)
         bytes += static_cast<char>((value >> shift) & 0xffU);

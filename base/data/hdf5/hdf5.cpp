@@ -9,10 +9,10 @@
 
 #include "data/arrays/npy_header.hpp"
 #include "data/frames/protocol.hpp"
-#include "data/hdf5/protocol.hpp"
+#include "data/records/protocol.hpp"
 #include "data/records/records.hpp"
 #include "data/text/quote.hpp"
-#include "data/traces/array_trace.hpp"
+#include "data/traces/trace_formats.hpp"
 
 namespace etlc::data {
 namespace {
@@ -70,13 +70,13 @@ std::optional<std::vector<Shape>> parse_shapes(std::string_view text, std::size_
     return shapes;
 }
 
-/// The rows of all channels, side by side; they are asked for in step with each other.
+/// The rows of all channels, side by side; channels read them in step.
 class JointRows {
 public:
     JointRows(std::shared_ptr<Records> records, std::size_t width, std::uint64_t steps)
         : records_(std::move(records)), steps_(steps), row_(width) {}
 
-    /// Row `step`, which is the current one or the next.
+    /// Returns row `step`, which is the current or the next one.
     diag::Result<const double*> row(std::uint64_t step) {
         if (step < taken_) return row_.data();
         const std::size_t bytes = row_.size() * sizeof(double);
@@ -91,7 +91,7 @@ public:
         std::memcpy(row_.data(), records_->bytes().data() + at_, bytes);
         at_ += bytes;
         if (++taken_ < steps_) return row_.data();
-        const auto tag = records_->next();  // what is wrong at the very end is wrong too
+        const auto tag = records_->next();  // a failure may follow the last row
         if (!tag) return tag.failure();
         if (*tag != Tag::end) return records_->nonsense();
         return row_.data();
@@ -102,7 +102,7 @@ private:
     std::uint64_t steps_;
     std::uint64_t taken_ = 0;
     std::vector<double> row_;
-    std::size_t at_ = 0;  ///< in the record's bytes
+    std::size_t at_ = 0;  ///< place in the bytes of the record
 };
 
 class ChannelRows final : public Rows {
@@ -122,7 +122,7 @@ private:
     std::uint64_t step_ = 0;
 };
 
-/// Images of which the records hold one after the other, cut anywhere.
+/// Images in records, which may be cut anywhere within an image.
 class RecordedFrames final : public FrameSource {
 public:
     RecordedFrames(std::shared_ptr<Records> records, const std::vector<std::uint64_t>& shape)
@@ -172,7 +172,7 @@ diag::Result<std::vector<std::string>> list_hdf5(const std::string& path,
         const auto tag = (*records)->next();
         if (!tag) return tag.failure();
         if (*tag == Tag::end) break;
-        if (*tag != Tag::name || names.size() == hdf5::kMaxNames) return (*records)->nonsense();
+        if (*tag != Tag::name || names.size() == records::kMaxNames) return (*records)->nonsense();
         const std::string& name = (*records)->bytes();
         if (in_quotes(name) != "'" + name + "'")
             return Failure{
@@ -183,7 +183,7 @@ diag::Result<std::vector<std::string>> list_hdf5(const std::string& path,
     }
     if (names.empty())
         return Failure{Code::unreadable_trace,
-                       fmt::format("no group of it matches {}", in_quotes(pattern))};
+                       fmt::format("none of its groups matches {}", in_quotes(pattern))};
     return names;
 }
 
@@ -194,7 +194,7 @@ diag::Result<std::unique_ptr<Trace>> open_hdf5_trace(const std::string& path,
     for (const Channel& channel : channels)
         arguments.insert(arguments.end(),
                          {std::to_string(channel.width), channel.name,
-                          std::string(channel.optional ? hdf5::kOptional : hdf5::kNeeded)});
+                          std::string(channel.optional ? records::kOptional : records::kNeeded)});
     auto records = start(path, arguments);
     if (!records) return records.failure();
     const auto tag = (*records)->next();

@@ -1,7 +1,7 @@
-// etlc-read-hdf5: the only program of ours that links libhdf5, which hostile files can crash.
-// Takes: arguments as protocol.hpp says. Gives: records on standard output. Keeps true: its
-// own memory, files and time are limited before a file is opened; no plugin is loaded; no link
-// leads to another file.
+// etlc-read-hdf5: the only program that links libhdf5, which hostile files can crash.
+// It speaks the protocol of data/records/protocol.hpp.
+// Keeps true: its own memory, files and time are limited before a file is opened; no plugin is
+// loaded; no link leads to another file.
 #include <fnmatch.h>
 #include <hdf5.h>
 
@@ -14,12 +14,11 @@
 #include <utility>
 #include <vector>
 
-#include "data/hdf5/protocol.hpp"
+#include "data/records/protocol.hpp"
 #include "data/records/sender.hpp"
 
 namespace {
 
-using namespace etlc::data::hdf5;
 using namespace etlc::data::records;
 
 constexpr std::size_t kChunkCacheBytes = 64U << 20U;  ///< of each dataset
@@ -52,8 +51,7 @@ std::vector<std::string> parts_of(const std::string& path) {
     return parts;
 }
 
-/// The object of that name in a group; negative where there is none. Links to other files are not
-/// followed.
+/// Opens an object in a group; negative where it is missing. Links to other files are not followed.
 hid_t open_member(hid_t group, const std::string& name) {
     H5L_info_t info{};
     if (H5Lexists(group, name.c_str(), H5P_DEFAULT) <= 0) return -1;
@@ -64,7 +62,7 @@ hid_t open_member(hid_t group, const std::string& name) {
     return H5Oopen(group, name.c_str(), H5P_DEFAULT);
 }
 
-/// Of `path`, relative to `from`.
+/// Opens the group `path`, relative to `from`.
 hid_t open_object(hid_t from, const std::string& path) {
     hid_t object = from;
     for (const std::string& part : parts_of(path)) {
@@ -89,7 +87,7 @@ std::vector<std::string> members(hid_t group) {
     return names;
 }
 
-/// "'a', 'b'", what there is where something was looked for in vain.
+/// Lists the existing names where one was not found: "'a', 'b'".
 std::string listed(hid_t group) {
     if (H5Iget_type(group) != H5I_GROUP && H5Iget_type(group) != H5I_FILE) return "";
     const std::vector<std::string> names = members(group);
@@ -130,7 +128,7 @@ struct Channel {
     std::string quoted() const { return "'" + name + "'"; }
 };
 
-/// Numbers are read as doubles; h5py keeps bools as an enumeration of one byte.
+/// Numbers are read as doubles; h5py stores bools as an enumeration of one byte.
 void find_type(Channel& channel) {
     const hid_t type = H5Dget_type(channel.dataset);
     const H5T_class_t kind = H5Tget_class(type);
@@ -152,7 +150,7 @@ void find_shape(Channel& channel) {
     if (rank > 0) H5Sget_simple_extent_dims(space, channel.shape.data(), nullptr);
 }
 
-/// Elsewhere than in this file, or put together from other files.
+/// Returns whether a dataset lies in another file, or is composed of other files.
 void refuse_foreign_data(const Channel& channel) {
     const hid_t properties = H5Dget_create_plist(channel.dataset);
     if (H5Pget_external_count(properties) != 0 || H5Pget_layout(properties) == H5D_VIRTUAL)
@@ -190,7 +188,7 @@ bool fits(const Channel& channel) {
     return channel.shape.size() == 2 && channel.shape[1] == channel.width;
 }
 
-/// Why a dataset cannot be unpacked: the first of its filters that libhdf5 does not have.
+/// Names the first filter of a dataset that libhdf5 does not have.
 std::string why_unread(const Channel& channel) {
     const hid_t properties = H5Dget_create_plist(channel.dataset);
     const int filters = H5Pget_nfilters(properties);
@@ -210,7 +208,7 @@ std::string why_unread(const Channel& channel) {
     return " cannot be read: it is damaged";
 }
 
-/// `count` steps from `first` on, into their places in rows of `stride` doubles.
+/// Reads `count` steps from `first` on into rows of `stride` doubles.
 void read_block(const Channel& channel, hsize_t first, hsize_t count, double* to,
                 std::size_t stride) {
     const std::size_t n = count * channel.width;
@@ -282,7 +280,7 @@ bool holds_images(hid_t dataset) {
            H5Sget_simple_extent_dims(space, shape, nullptr) == 4 && shape[3] == 3;
 }
 
-/// The datasets of images in a group and below it.
+/// Finds the datasets of images in a group and below it.
 void find_images(hid_t group, const std::string& prefix, int depth,
                  std::vector<std::string>& found) {
     constexpr int kMostNested = 8;

@@ -51,8 +51,8 @@ struct ChunkReader::PageHead {
     std::optional<std::int64_t> checksum;
     std::int64_t values = -1;
     std::int64_t encoding = -1;
-    std::int64_t level_encoding = kRle;  ///< of what is there, the one that is not RLE
-    std::int64_t definition_bytes = 0;   ///< of the second version
+    std::int64_t level_encoding = kRle;  ///< an encoding other than RLE, where a level has one
+    std::int64_t definition_bytes = 0;   ///< in pages of version 2
     std::int64_t repetition_bytes = 0;
     bool is_packed = true;
 };

@@ -3,7 +3,7 @@
 #include <snappy.h>
 #include <zstd.h>
 
-#include "data/parquet/refused.hpp"
+#include "data/parquet/cursor.hpp"
 
 namespace etlc::data::parquet {
 namespace {

@@ -1,6 +1,6 @@
-// How the pages of a Parquet file are packed.
-// Takes: packed bytes and how many they shall be. Gives: these. Keeps true: what a page claims is
-// checked against what its packing says before memory is taken for it.
+// Decompression of the pages of a Parquet file.
+// Keeps true: the size that a page claims is compared with the compressed data before memory is
+// allocated for it.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@ namespace etlc::data::parquet {
 
 inline constexpr std::uint64_t kMaxPageBytes = 256U << 20U;
 
-/// Throws Refused where the codec is not read.
+/// Throws Refused where the codec is not supported.
 void check_codec(std::int64_t codec);
 
-/// Throws Refused where the bytes are damaged, or other than `size`.
+/// Decompresses a page. Throws Refused where it is damaged, or does not have `size` bytes.
 std::string unpacked(std::int64_t codec, std::string_view packed, std::uint64_t size);
 
 }  // namespace etlc::data::parquet

@@ -1,16 +1,32 @@
-// Bytes, read from the front.
-// Takes: a view of bytes. Gives: little-endian numbers and parts of it. Keeps true: what is not
-// there is refused, with a word for what should be.
+// Reads the bytes of a Parquet file from the front: little-endian numbers and parts.
+// Keeps true: missing bytes are refused, with the name of what was expected.
 #pragma once
 
 #include <cstdint>
 #include <cstring>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
-#include "data/parquet/refused.hpp"
+#include "data/records/protocol.hpp"
 
 namespace etlc::data::parquet {
+
+/// Why a Parquet file is not read. Only etlc-read-parquet throws it, and sends the text to etlc.
+class Refused : public std::runtime_error {
+public:
+    Refused(records::Cause cause, const std::string& why)
+        : std::runtime_error(why), cause_(cause) {}
+    records::Cause cause() const { return cause_; }
+
+private:
+    records::Cause cause_;
+};
+
+/// Refuses a file that contradicts itself.
+[[noreturn]] inline void refuse(const std::string& why) {
+    throw Refused(records::Cause::file, why);
+}
 
 class Cursor {
 public:
@@ -30,7 +46,7 @@ public:
 
     std::uint8_t byte(const char* what) { return static_cast<std::uint8_t>(take(1, what)[0]); }
 
-    /// The machine's order is that of the file; CMake builds for no other.
+    /// The byte order of the file is that of the machine.
     template <class T>
     T number(const char* what) {
         T value;
@@ -38,7 +54,7 @@ public:
         return value;
     }
 
-    /// Seven bits a byte, the lowest first.
+    /// Reads seven bits a byte, the lowest first.
     std::uint64_t varint(const char* what) {
         std::uint64_t value = 0;
         for (unsigned shift = 0; shift < 64; shift += 7) {

@@ -24,7 +24,7 @@ struct Element {
     bool is_unsigned = false;
 };
 
-/// Of LogicalType the field that is there; of an integer, whether it has a sign.
+/// Reads the field of LogicalType that is set; for an integer, also its sign.
 void read_logical(Thrift& thrift, Element& element) {
     constexpr std::int64_t kInteger = 10;
     thrift.structure([&](std::int64_t kind, Type type) {
@@ -57,7 +57,7 @@ Element read_element(Thrift& thrift) {
     return element;
 }
 
-/// What stands in place of numbers or text, by the logical type; null: neither.
+/// Names the logical type where it is neither a number nor text; else null.
 const char* foreign(const Element& element) {
     switch (element.logical) {
         case 5: return "decimals";
@@ -80,7 +80,7 @@ const char* foreign(const Element& element) {
     }
 }
 
-/// Whether a group is a list or a map: the names in it are those of the format.
+/// Returns whether a group is a list or a map, whose inner names belong to the format.
 bool is_collection(const Element& element) {
     constexpr std::int64_t kMap = 1, kList = 3;                // of the converted types
     constexpr std::int64_t kLogicalMap = 2, kLogicalList = 3;  // of the logical ones
@@ -89,7 +89,7 @@ bool is_collection(const Element& element) {
            element.logical == kLogicalList;
 }
 
-/// Puts the fields of the table together from the tree, which is written root first.
+/// Builds the columns from the tree of fields, which is stored root first.
 class Fields {
 public:
     explicit Fields(std::vector<Element> elements) : elements_(std::move(elements)) {}
@@ -129,7 +129,7 @@ private:
             add_fields_of(begin, column, columns);
     }
 
-    /// Of the struct at `place` every field has a column of its own, too.
+    /// Adds a column for every field of the struct at `place`.
     void add_fields_of(std::size_t place, const Column& whole, std::vector<Column>& columns) {
         const Element& parent = elements_[place];
         const std::size_t end = std::exchange(at_, place + 1);
@@ -148,7 +148,7 @@ private:
         }
     }
 
-    /// The field at hand and all below it.
+    /// Reads the current field and all below it.
     void walk(Column& column, std::size_t& repeated, int depth) {
         constexpr int kMostNested = 32;
         if (depth > kMostNested) refuse("nests its fields too deep");

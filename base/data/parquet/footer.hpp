@@ -1,6 +1,6 @@
-// What a Parquet file says of itself: its columns and where their values lie.
-// Takes: the bytes of the file. Gives: the columns that can be read, and the reason of each that
-// cannot. Keeps true: every place that it gives lies within the file; nothing is unpacked. Source:
+// The footer of a Parquet file: its columns and the places of their values.
+// Takes: the bytes of the file. Gives: the columns, with a reason for each that cannot be read.
+// Keeps true: every place lies within the file; nothing is decompressed. Source:
 // apache/parquet-format, parquet.thrift and LogicalTypes.md, 2.10.
 #pragma once
 

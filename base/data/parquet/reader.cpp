@@ -1,6 +1,6 @@
-// etlc-read-parquet: reads Parquet files in a process of its own, since they may be hostile.
-// Takes: arguments as parquet/protocol.hpp says. Gives: records on standard output. Keeps true: its
-// own memory, files and time are limited before a byte of the file is looked at.
+// etlc-read-parquet: reads Parquet files in a separate process, since they may be hostile.
+// It speaks the protocol of data/records/protocol.hpp.
+// Keeps true: its own memory, files and time are limited before a byte of the file is looked at.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "data/parquet/chunk.hpp"
-#include "data/parquet/protocol.hpp"
 #include "data/parquet/rows.hpp"
+#include "data/records/protocol.hpp"
 #include "data/records/sender.hpp"
 
 namespace {
@@ -25,7 +25,7 @@ using namespace etlc::data;
 using records::Cause;
 using records::Tag;
 
-/// The whole file; a page of it comes into memory when it is read.
+/// Maps the whole file; its pages are loaded when they are read.
 std::string_view map_file(const char* path) {
     const int descriptor = ::open(path, O_RDONLY | O_CLOEXEC);
     struct stat status {};
@@ -44,7 +44,7 @@ void append(std::string& bytes, T value) {
 }
 
 void append_cell(std::string& bytes, const parquet::Cell& cell, const parquet::Column& column) {
-    if (cell.is_null) return append(bytes, parquet::kNullCell);
+    if (cell.is_null) return append(bytes, records::kNullCell);
     append(bytes, static_cast<std::uint32_t>(cell.count(column)));
     for (const double number : cell.numbers) append(bytes, number);
     for (const std::string& text : cell.texts) {
@@ -53,7 +53,7 @@ void append_cell(std::string& bytes, const parquet::Cell& cell, const parquet::C
     }
 }
 
-/// Of one that is not read nothing is said; its first row says why.
+/// A column that cannot be read is reported with its first row, not here.
 std::string shape_of(const parquet::Column* column) {
     if (column == nullptr) return "absent\n";
     if (!column->why_not.empty()) return "number\n";

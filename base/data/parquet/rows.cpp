@@ -6,7 +6,7 @@
 namespace etlc::data::parquet {
 namespace {
 
-/// A name from the file: what a terminal may be sent of it.
+/// Returns a name from the file without bytes that control a terminal.
 std::string quoted(const std::string& name) {
     constexpr std::size_t kMost = 100;
     std::string text = "'";
@@ -19,7 +19,7 @@ std::string quoted(const std::string& name) {
     return text + (name.size() > kMost ? "...'" : "'");
 }
 
-/// Says which column it is that refuses.
+/// Adds the name of the column to a refusal.
 template <class Read>
 auto of_column(const Column& column, Read read) {
     try {
@@ -29,7 +29,7 @@ auto of_column(const Column& column, Read read) {
     }
 }
 
-/// Where a column lies, if it is read.
+/// Finds a column that can be read.
 const Chunk& chunk_of(const RowGroup& group, const Column& column) {
     if (!column.why_not.empty()) throw Refused(records::Cause::elements, column.why_not);
     return group.chunks[column.leaf];
@@ -61,7 +61,7 @@ void Rows::keep(const std::string& key, double value) {
                       "column " + quoted(key) + " is not of numbers, one a row");
 }
 
-/// The columns of the others need not be read.
+/// Skips the other columns where no row is wanted.
 Rows::Span Rows::kept_in(const RowGroup& group) const {
     if (key_ == nullptr) return {0, group.rows};
     return of_column(*key_, [&] {
@@ -115,7 +115,7 @@ bool Rows::is_kept() {
     });
 }
 
-/// Where all rows were read, there are no more.
+/// Checks that no column has more rows.
 void Rows::end_group() {
     if (end_ < rows_) return;
     std::size_t i = 0;

@@ -3,8 +3,8 @@
 #include <cstring>
 #include <optional>
 
-#include "data/files/lfs.hpp"
-#include "data/parquet/protocol.hpp"
+#include "data/files/file.hpp"
+#include "data/records/protocol.hpp"
 
 namespace etlc::data {
 namespace {
@@ -69,7 +69,7 @@ bool Table::read_cell(const Column& column, Cell& cell) {
     if (!column.is_there) return true;
     std::uint32_t count = 0;
     if (!take(count)) return false;
-    cell.is_null = count == parquet::kNullCell;
+    cell.is_null = count == records::kNullCell;
     if (cell.is_null) return true;
     if (!column.is_list && count != 1) return false;
     if (!column.is_text) {

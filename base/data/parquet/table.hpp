@@ -1,6 +1,6 @@
-// Rows of a Parquet file, as etlc-read-parquet gives them.
-// Takes: a file and the names of columns. Gives: their cells, a row at a time. Keeps true: whatever
-// the file does to the reader, here it is a failure that does not repeat the path; memory does not
+// The rows of a Parquet file, read by etlc-read-parquet.
+// Takes: a file and the names of columns. Gives: their cells, a row at a time. Keeps true: a file
+// that crashes the reader causes a failure here, which does not repeat the path; memory does not
 // grow with the number of rows.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace etlc::data {
 
 class Table {
 public:
-    /// A column that was asked for.
+    /// A requested column.
     struct Column {
         bool is_there = false;
         bool is_text = false;
@@ -24,12 +24,12 @@ public:
         bool is_list = false;
     };
     struct Cell {
-        bool is_null = true;          ///< or its column is not there
-        std::vector<double> numbers;  ///< one, or those of a list; NaN: a null in it
+        bool is_null = true;          ///< also where its column is missing
+        std::vector<double> numbers;  ///< one, or the elements of a list; NaN for a null element
         std::vector<std::string> texts;
     };
 
-    /// `key`: only the rows where this column is `value`; empty: all.
+    /// Opens a file. `key`: only the rows in which this column is `value` are read; empty: all.
     static diag::Result<std::unique_ptr<Table>> open(const std::string& path,
                                                      const std::vector<std::string>& names,
                                                      const std::string& key = "",
@@ -37,7 +37,7 @@ public:
 
     const std::vector<Column>& columns() const { return columns_; }
 
-    /// A cell for each name; false behind the last row.
+    /// Reads a cell for each name; false at the end.
     diag::Result<bool> next(std::vector<Cell>& cells);
 
 private:
@@ -50,7 +50,7 @@ private:
 
     std::shared_ptr<Records> records_;
     std::vector<Column> columns_;
-    std::string_view block_;  ///< what is left of the record
+    std::string_view block_;  ///< the rest of the record
     bool has_ended_ = false;
 };
 

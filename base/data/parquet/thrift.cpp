@@ -2,7 +2,7 @@
 
 namespace etlc::data::parquet {
 
-/// In a list a truth value is a byte, in a struct it is its type.
+/// A bool is a byte in a list, and the type itself in a struct.
 void Thrift::pass_over_element(Type type) {
     if (type == Type::yes || type == Type::no)
         bytes_.byte(kWhat);

@@ -11,7 +11,6 @@
 #include "data/datasets/trace.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/files/paths.hpp"
 #include "data/hdf5/hdf5.hpp"
 #include "data/recordings/open.hpp"
 
@@ -32,7 +31,7 @@ bool is_directory(const std::string& path) {
     return fs::is_directory(path, error);
 }
 
-/// The traces in a folder, not in those below it.
+/// Lists the traces in a folder, without its subfolders.
 diag::Result<std::vector<std::string>> in_folder(const std::string& folder) {
     std::vector<std::string> files;
     std::error_code error;
@@ -50,7 +49,7 @@ diag::Result<std::vector<std::string>> in_folder(const std::string& folder) {
     return files;
 }
 
-/// What matches; folders among it stand for the traces in them.
+/// Lists the paths that match; folders stand for the traces in them.
 diag::Result<std::vector<std::string>> matching(const std::string& pattern, diag::Sink& sink) {
     const auto paths = paths_matching(pattern);
     if (!paths)
@@ -78,7 +77,7 @@ diag::Result<std::vector<std::string>> matching(const std::string& pattern, diag
     return files;
 }
 
-/// A path that exists is what it says, whatever characters are in it.
+/// A path that exists is taken literally, whatever characters it has.
 diag::Result<std::vector<std::string>> expand(const std::string& argument, diag::Sink& sink) {
     if (const auto set = dataset_path(argument)) return find_dataset_episodes(*set, sink);
     if (is_directory(argument)) return in_folder(argument);
@@ -125,7 +124,7 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
 
 namespace {
 
-/// In the order of bytes of a file.
+/// Returns the bits in the byte order of files.
 std::uint32_t bits_of(float number) {
     const auto bits = std::bit_cast<std::uint32_t>(number);
     return std::endian::native == std::endian::big ? __builtin_bswap32(bits) : bits;

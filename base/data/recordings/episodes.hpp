@@ -16,41 +16,40 @@
 
 namespace etlc::data {
 
-/// Every episode of the arguments: a file as it stands; of a data set its episodes, as
-/// FOLDER:NUMBER (FOLDER:FIRST:END names some of them), where what it lacks is a warning; of a
-/// folder the files in it whose ending is that of a trace; of a pattern ("runs/*/ep?.npz", as the
-/// shell's) the files that match. Each argument's are sorted by path, bytewise; a path that comes
-/// up again stands once. `groups`: of .h5 files each group that matches is an episode ("data/*"),
-/// as FILE:GROUP, which open_trace takes; empty: the file is one. An argument without an episode is
-/// reported, E0801.
+/// Returns the episodes of all arguments. An argument is a file; a data set, which stands for its
+/// episodes, FOLDER:NUMBER (FOLDER:FIRST:END for a range), with warnings about incomplete ones; a
+/// folder, which stands for the traces in it; or a pattern of the shell ("runs/*/ep?.npz"). The
+/// episodes of each argument are sorted by path, bytewise; repeated paths are dropped. `groups`:
+/// each group of an .h5 file that matches ("data/*") is an episode, FILE:GROUP for open_trace;
+/// empty: the file is one. Reports an argument without episodes, E0801.
 std::vector<std::string> find_episodes(const std::vector<std::string>& arguments,
                                        const std::string& groups, diag::Sink& sink);
 
-/// An input whose samples tell episodes apart.
+/// An input whose samples distinguish episodes.
 struct HashedInput {
-    std::string name;             ///< what it is compared under
-    std::uint32_t dimension = 1;  ///< numbers of a sample
-    bool tells_alone = false;     ///< one sample is evidence; else a run of them is
+    std::string name;             ///< name under which it is compared
+    std::uint32_t dimension = 1;  ///< numbers per sample
+    bool tells_alone = false;     ///< one sample is evidence; else only a run of samples is
 };
 
-/// The content of an episode, read along: 64 bits as 16 hex digits, the same on every machine and
-/// for the same float32 values in any file format. Order and lengths count; names and the file do
-/// not.
+/// Hashes the content of an episode step by step: 64 bits as 16 hex digits, the same on every
+/// machine and for the same float32 values in any file format. Order and lengths count; names and
+/// the file do not.
 class EpisodeHash {
 public:
     explicit EpisodeHash(std::vector<HashedInput> inputs);
 
-    /// The next step: of each input the sample, finite and no negative zero; empty: missing.
+    /// Adds a step: a sample for each input, finite and without negative zeros; empty: missing.
     void add(const std::vector<std::vector<float>>& samples);
-    /// Of the steps so far.
+    /// Returns the hash of all steps so far.
     std::string text() const;
-    /// The same of each input.
+    /// Returns the content of each input so far.
     EpisodeContent content() const;
 
 private:
     std::vector<HashedInput> inputs_;
     std::vector<ContentReader> readers_;  ///< per input
-    std::vector<std::uint32_t> bits_;     ///< of one step
+    std::vector<std::uint32_t> bits_;     ///< one step
     std::uint64_t steps_ = 0;
     std::uint64_t hash_ = 0;
 };

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "data/arrays/archive.hpp"
-#include "data/arrays/npy.hpp"
+#include "data/arrays/array.hpp"
 #include "data/arrays/npy_header.hpp"
 #include "data/frames/protocol.hpp"
 #include "data/hdf5/hdf5.hpp"
@@ -44,7 +44,7 @@ std::optional<Failure> check_images(const NpyHeader& header) {
         fmt::format("has shape {}, expected (steps, rows, columns, 3)", shape_text(header.shape))};
 }
 
-/// Images of an .npz file.
+/// The images of an .npz file.
 class ArchiveFrames final : public FrameSource {
 public:
     ArchiveFrames(std::unique_ptr<ByteSource> source, const NpyHeader& header, std::string name)
@@ -79,7 +79,7 @@ private:
     std::uint64_t taken_ = 0;
 };
 
-/// The only array of images, where none is named.
+/// Returns the named array, or else the only array of images.
 diag::Result<std::string> camera_in(const Archive& archive, const std::string& name) {
     if (!name.empty()) return name;
     std::vector<std::string> cameras;

@@ -1,7 +1,6 @@
-// Frames that are arrays: T x H x W x 3 of uint8, in .npz and .h5 files.
-// Takes: an archive, or a group of one, and the name of the array. Gives: its frames. Keeps true:
-// memory is that of one frame; an array of another shape or of other elements is a failure (E08)
-// that names it.
+// Frames in arrays, T x H x W x 3 of uint8, in .npz and .h5 files.
+// Keeps true: only one frame is in memory; an array of another shape or element type is a failure
+// (E08) that names it.
 #pragma once
 
 #include <memory>
@@ -11,7 +10,7 @@
 
 namespace etlc::data {
 
-/// `path`: FILE.npz, FILE.h5 or FILE.h5:GROUP. `name`: of the array; empty: the only one that holds
+/// Opens an array of FILE.npz, FILE.h5 or FILE.h5:GROUP; an empty name stands for the only array of
 /// images. Failures do not repeat the path.
 diag::Result<std::unique_ptr<FrameSource>> open_image_array(const std::string& path,
                                                             const std::string& name);

@@ -9,9 +9,10 @@
 #include "data/traces/trace_formats.hpp"
 
 namespace etlc::data {
+
 namespace {
 
-/// Where in "runs.h5:data/demo_0" the colon stands, unless that is the name of a file.
+/// Finds the colon of "runs.h5:data/demo_0", unless that is the name of a file.
 std::size_t group_mark(const std::string& path) {
     std::error_code error;
     if (std::filesystem::exists(path, error)) return std::string::npos;
@@ -38,7 +39,7 @@ Opened open_hdf5(const std::string& path, const std::vector<Channel>& channels) 
     return open_hdf5_trace(path.substr(0, mark), group, channels);
 }
 
-/// What the ending of a file says of its format.
+/// A format and the ending of its files.
 struct Format {
     const char* ending;
     Opened (*open)(const std::string& path, const std::vector<Channel>& channels);
@@ -47,7 +48,7 @@ struct Format {
 constexpr Format kFormats[] = {
     {".csv", open_csv}, {".npz", open_npz}, {".h5", open_hdf5}, {".hdf5", open_hdf5}};
 
-/// Null where the ending is that of no format.
+/// Finds the format of a file; null for other endings.
 const Format* format_of(const std::string& file) {
     for (const Format& format : kFormats)
         if (file.ends_with(format.ending)) return &format;
@@ -94,6 +95,16 @@ diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path,
     return diag::Failure{
         diag::Code::unknown_trace_format,
         with_dataset_meant("unknown kind of trace, expected " + trace_endings(), path)};
+}
+
+std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& names) {
+    for (Channel& channel : channels) channel.name = name_in_file(channel.name, names);
+    return channels;
+}
+
+const std::string& name_in_file(const std::string& name, const NamesInFile& names) {
+    const auto found = names.find(name);
+    return found == names.end() ? name : found->second;
 }
 
 }  // namespace etlc::data

@@ -1,8 +1,9 @@
-// Recorded traces of all formats, opened by their path.
+// Opens recorded traces of all formats by their path.
 // Takes: FILE.csv, FILE.npz, FILE.h5, FILE.h5:GROUP, FOLDER:3 of a data set, or - for CSV on
-// standard input. Gives: the trace. Keeps true: the ending alone says what the format is.
+// standard input. Gives: the trace. Keeps true: the ending alone decides the format.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -12,23 +13,22 @@
 
 namespace etlc::data {
 
-/// Whether the ending of a path is that of a trace.
+/// Returns whether the ending of a path is that of a trace.
 bool is_trace(const std::string& path);
-/// The endings of traces: ".csv, .npz, .h5 or .hdf5".
+/// Returns the endings of traces: ".csv, .npz, .h5 or .hdf5".
 std::string trace_endings();
 
 /// The path of a trace that comes on standard input, as CSV. It is read once.
 inline constexpr std::string_view kStandardInput = "-";
 
-/// Of FILE.h5:GROUP the file, of an episode of a data set its folder, of any other path the path
-/// itself.
+/// Returns the file of FILE.h5:GROUP, the folder of an episode of a data set, and any other path
+/// unchanged.
 std::string trace_file(const std::string& path);
 
-/// A trace that ends before its first step: neither verdicts nor thresholds come of it.
+/// The failure of a trace that has no step.
 diag::Failure no_steps();
 
-/// The finding as a diagnostic whose place is the trace; where something is looked for by the wrong
-/// name, it says how to give another.
+/// Makes a diagnostic about a trace. Where a name was not found, a note says how to give another.
 diag::Diagnostic in_trace(const diag::Failure& failure, const std::string& path);
 
 /// Opens a trace. Every channel that is not optional must be there; extra columns and arrays are
@@ -37,5 +37,10 @@ diag::Diagnostic in_trace(const diag::Failure& failure, const std::string& path)
 /// E08; their messages do not repeat the path: `in_trace` adds it.
 diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path,
                                                 const std::vector<Channel>& channels);
+
+/// Names in the file by the names of the channels, where the two differ: `--map z=obs/z`.
+using NamesInFile = std::map<std::string, std::string>;
+std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& names);
+const std::string& name_in_file(const std::string& name, const NamesInFile& names);
 
 }  // namespace etlc::data

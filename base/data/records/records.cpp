@@ -17,8 +17,8 @@ using diag::Failure;
 using records::Cause;
 using records::Tag;
 
-/// The reader's own words; a name from the file in them has been escaped there, yet it may be under
-/// its control.
+/// Makes the text of a reader printable. The reader has escaped names from the file, but the file
+/// may control the reader.
 std::string escaped(std::string_view text) {
     std::string result;
     for (const char c : text.substr(0, 1000)) result += c >= 0x20 && c < 0x7f ? c : '?';

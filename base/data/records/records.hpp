@@ -1,7 +1,7 @@
-// The records of a reader, a program that reads what may be hostile.
-// Takes: the program, its arguments and a file. Gives: its records. Keeps true: none of them is
-// trusted: whatever the file does to the reader, here it is a failure, whose message is printable
-// and does not repeat the path.
+// The records that a reader sends, a program that reads files which may be hostile.
+// Takes: the program, its arguments and a file. Gives: its records. Keeps true: records are not
+// trusted; a file that crashes the reader causes a failure here, whose message is printable and
+// does not repeat the path.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ namespace etlc::data {
 
 class Records {
 public:
-    /// What the caller calls the failures of a file.
+    /// The caller's codes for the failures of a file.
     struct Codes {
         diag::Code unreadable;
         diag::Code malformed;
@@ -24,16 +24,17 @@ public:
         diag::Code elements;
     };
 
-    /// `what`: the files that it reads, "HDF5"; `variable`: of the environment, which names
-    /// another program.
+    /// Starts a reader of the files `what`, "HDF5". The environment variable `variable` replaces
+    /// the program.
     static diag::Result<std::shared_ptr<Records>> start(std::string_view program,
                                                         const char* variable, const char* what,
                                                         const Codes& codes, const std::string& path,
                                                         const std::vector<std::string>& arguments);
 
-    /// The next record; its bytes are in `bytes()`. What the reader says is wrong is a failure.
+    /// Reads the next record into `bytes()`. A failure that the reader sends is returned as one.
     diag::Result<records::Tag> next();
     const std::string& bytes() const { return bytes_; }
+    /// The failure of a record that makes no sense.
     diag::Failure nonsense() const;
 
 private:

@@ -1,7 +1,6 @@
-// The reader's side of the records.
-// Takes: what is to be sent. Gives: records on standard output. Keeps true: before a file is
-// opened, memory, files and time of the process are limited; each record may take its share of
-// processor time, so that long files may and endless loops may not.
+// The reader's side of the records, which it writes to standard output.
+// Keeps true: memory, files and time of the process are limited before a file is opened; every
+// record renews the limit of processor time, so long files are read and endless loops end.
 #pragma once
 
 #include <string>
@@ -10,13 +9,13 @@
 
 namespace etlc::data::records {
 
-/// `mapped`: bytes of a file that take address space and no memory.
+/// Limits the process. `mapped`: bytes of a mapped file, which take address space only.
 void limit_resources(std::uint64_t mapped = 0);
 
 void send(Tag tag, const char* bytes, std::size_t n);
 void send(Tag tag, const std::string& text);
 
-/// What a damaged file did to a library's own tidying up is of no interest.
+/// Exits without the cleanup of libraries, which a damaged file may have broken.
 [[noreturn]] void quit(int status);
 [[noreturn]] void fail(Cause cause, const std::string& text);
 [[noreturn]] void done();

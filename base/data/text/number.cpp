@@ -1,18 +1,14 @@
 #include "data/text/number.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
-#include <system_error>
 
 namespace etlc::data {
 namespace {
 
-/// True where a decimal number, known to be out of double's range, is too large rather than too
-/// small.
+/// Returns whether a decimal number out of the range of double is too large, not too small.
 bool too_large(std::string_view digits) {
-    // Scientific notation of the first digit that is not zero: its place before (or after) the
-    // point, plus the exponent.
+    // The decimal exponent: the place of the first digit that is not zero, plus the exponent.
     const std::size_t e = digits.find_first_of("eE");
     const std::string_view mantissa = digits.substr(0, e);
     const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
@@ -44,6 +40,13 @@ std::optional<double> parse_number(std::string_view text) {
     const double magnitude =
         too_large(text.substr(negative ? 1 : 0)) ? std::numeric_limits<double>::infinity() : 0.0;
     return negative ? -magnitude : magnitude;
+}
+
+ElementName element_name(std::string_view name) {
+    const std::size_t open = name.find('[');
+    if (open == std::string_view::npos || !name.ends_with(']')) return {std::string(name), {}};
+    const auto element = parse_whole<std::uint32_t>(name.substr(open + 1, name.size() - open - 2));
+    return {std::string(element ? name.substr(0, open) : name), element};
 }
 
 }  // namespace etlc::data

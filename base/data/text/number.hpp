@@ -1,15 +1,36 @@
-// Decimal numbers in data files, whatever the locale.
-// Takes: the whole text of a cell. Gives: the nearest double. Keeps true: `nan`, `inf` and
-// `infinity` in any case are numbers that are not finite; what is too large for a double is
-// infinite, what is too small is zero.
+// Numbers in files and calls, whatever the locale.
 #pragma once
 
+#include <charconv>
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <system_error>
 
 namespace etlc::data {
 
-/// Nothing where `text` is not one number from end to end.
+/// Parses a decimal number that is all of `text`, as the nearest double. `nan`, `inf` and
+/// `infinity` in any case are numbers that are not finite; what is too large for a double is
+/// infinite, what is too small is zero.
 std::optional<double> parse_number(std::string_view text);
+
+/// Parses a whole number in decimal digits that is all of `text` and fits the type.
+template <class Number>
+std::optional<Number> parse_whole(std::string_view text) {
+    Number value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
+}
+
+/// "q" and 3 of "q[3]".
+struct ElementName {
+    std::string array;
+    std::optional<std::uint32_t> element;  ///< nothing: the name has no brackets
+};
+
+/// Splits the name of an element of an array; any other name is that of an array.
+ElementName element_name(std::string_view name);
 
 }  // namespace etlc::data

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "diag/diag.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::data {
@@ -32,6 +33,11 @@ std::string listed(const std::vector<std::string>& names) {
     }
     if (hidden > 0) result += fmt::format(" and {} more", hidden);
     return result;
+}
+
+std::string suggestion(std::string_view name, const std::vector<std::string>& candidates) {
+    const auto nearest = diag::nearest_name(name, candidates);
+    return nearest ? fmt::format("; did you mean {}?", in_quotes(*nearest)) : "";
 }
 
 }  // namespace etlc::data

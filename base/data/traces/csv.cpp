@@ -11,7 +11,7 @@ using diag::Failure;
 
 namespace {
 
-/// 1 for a byte that begins a UTF-8 character, 0 for one within it.
+/// Returns 1 for a byte that begins a UTF-8 character, 0 for one within it.
 std::uint32_t begins_character(char c) {
     return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U ? 1 : 0;
 }
@@ -45,7 +45,7 @@ diag::Result<bool> CsvReader::next() {
     return true;
 }
 
-/// The next byte without taking it; kEnd at the end, kError where the source failed.
+/// Returns the next byte without consuming it; kEnd at the end, kError where the source failed.
 int CsvReader::peek() {
     if (at_ == filled_) {
         if (failure_) return kError;
@@ -71,7 +71,7 @@ void CsvReader::advance() {
     }
 }
 
-/// True at the end of the row, having taken its line end; false before a comma.
+/// Consumes the line end and returns true at the end of a row; returns false before a comma.
 bool CsvReader::take_line_end() {
     const int c = peek();
     if (c == kEnd || c == kError) return true;
@@ -144,7 +144,7 @@ void CsvReader::read_plain() {
     while (cell.begin < cell.end && blank(cell.end - 1)) --cell.end;
 }
 
-/// Cells count too: a row of nothing but commas holds no text.
+/// Cells count as well as bytes, since a row of commas holds no text.
 void CsvReader::check_length() {
     if (row_.size() + cells_.size() > kMaxRowBytes)
         fail(fmt::format("row is longer than {} bytes, the most that is read", kMaxRowBytes),

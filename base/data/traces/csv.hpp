@@ -17,7 +17,7 @@
 
 namespace etlc::data {
 
-/// Of one row, without its line end.
+/// The largest row, without its line end.
 inline constexpr std::size_t kMaxRowBytes = 4U << 20U;
 
 class CsvReader {
@@ -30,7 +30,7 @@ public:
     std::size_t cells() const { return cells_.size(); }
     std::string_view cell(std::size_t i) const;
     bool empty(std::size_t i) const { return cells_[i].begin == cells_[i].end; }
-    /// Where cell `i` begins, both from 1; columns count code points.
+    /// The place where cell `i` begins, from 1; columns count code points.
     std::uint32_t line(std::size_t i) const { return cells_[i].line; }
     std::uint32_t column(std::size_t i) const { return cells_[i].column; }
     /// The line that the row begins on.

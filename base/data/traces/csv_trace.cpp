@@ -19,9 +19,9 @@ using diag::Failure;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kCandidates =
-    1000;  ///< for the name that was meant: a distance is computed to each
+    1000;  ///< for a suggested name: an edit distance is computed to each
 
-/// What a column of the file feeds: element `element` of channel `channel`.
+/// A column of the file and the element of a channel that it feeds.
 struct Slot {
     std::size_t column = 0;
     std::size_t channel = 0;
@@ -33,8 +33,7 @@ std::string column_name(const Channel& channel, std::size_t element) {
                                                  : channel.name;
 }
 
-/// The columns of a header by name: where each stands, the second one too where a name stands
-/// twice.
+/// The columns of a header by name, with the number of columns of each name.
 class Header {
 public:
     explicit Header(const CsvReader& row) {
@@ -46,7 +45,7 @@ public:
         }
     }
 
-    /// Every element of every channel, in order of the columns.
+    /// Returns the columns of all elements of all channels, in their order in the file.
     diag::Result<std::vector<Slot>> slots(const std::vector<Channel>& channels) const {
         std::vector<Slot> result;
         for (std::size_t c = 0; c < channels.size(); ++c) {
@@ -83,17 +82,14 @@ private:
                 fmt::format(", needed by input '{}' of {} elements", channel.name, channel.width);
         std::vector<std::string> candidates = names_;
         candidates.resize(std::min(candidates.size(), kCandidates));
-        // z[15] is no misspelling of z[16]: where the vector is merely shorter, its neighbours are
-        // no suggestion.
+        // z[15] is no misspelling of z[16]: a shorter vector gets no suggestion.
         const bool shorter = vector && columns_.contains(column_name(channel, 0));
-        const auto nearest = shorter ? std::nullopt : diag::nearest_name(name, candidates);
-        message += nearest ? fmt::format("; did you mean {}?", in_quotes(*nearest))
-                           : "; there are " + listed(names_);
+        const std::string meant = shorter ? "" : suggestion(name, candidates);
+        message += meant.empty() ? "; there are " + listed(names_) : meant;
         return {Code::no_such_channel, message, 1, 1};
     }
 
-    /// A column for an element that the vector does not have: then the file was made for another
-    /// width.
+    /// Refuses a column beyond the width of a vector: the file was made for another width.
     std::optional<Failure> beyond(const Channel& channel) const {
         if (channel.kind != Channel::Kind::vector) return {};
         const std::string next = column_name(channel, channel.width);
@@ -108,7 +104,7 @@ private:
     std::map<std::string, Entry> columns_;
 };
 
-/// As programs write bools: Python and pandas True, others true or TRUE.
+/// Parses bools as programs write them: Python and pandas True, others true or TRUE.
 std::optional<double> parse_bool(std::string_view text) {
     if (text == "True" || text == "true" || text == "TRUE") return 1;
     if (text == "False" || text == "false" || text == "FALSE") return 0;

@@ -1,8 +1,7 @@
-// What tells many episodes apart, by the hash of each.
-// Takes: hashes and contents, in any order. Gives: them back in ascending order of the hashes, each
-// once: of those with one hash the last that was added. Keeps true: contents are in temporary
-// files, and memory does not depend on how many there are; a copy costs nothing until one of the
-// two changes. Not for several threads at a time.
+// The contents of many episodes by their hashes.
+// Takes: hashes and contents, in any order. Gives: them in ascending order of the hashes, each
+// once, the last that was added. Keeps true: contents are in temporary files, and memory does not
+// grow with their number; a copy costs nothing until one of the two changes. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -24,16 +23,16 @@ public:
 
     using Visit = std::function<void(std::uint64_t hash, const EpisodeContent& content)>;
     void for_each(const Visit& visit) const;
-    /// Those alone that are among `hashes`, which are sorted.
+    /// Visits only those among `hashes`, which are sorted.
     void for_each_of(const std::vector<std::uint64_t>& hashes, const Visit& visit) const;
 
-    /// Forgets those that are not among `hashes`, which are sorted.
+    /// Forgets all that are not among `hashes`, which are sorted.
     void keep(const std::vector<std::uint64_t>& hashes);
 
 private:
     struct Place {
         std::uint64_t hash;
-        std::uint64_t at;  ///< of its length, which stands before the content
+        std::uint64_t at;  ///< place of its length, which precedes the content
         bool operator<(const Place& other) const {
             return hash != other.hash ? hash < other.hash : at < other.at;
         }
@@ -45,7 +44,7 @@ private:
 
     static EpisodeContent read(const SpillFile& contents, std::uint64_t at);
 
-    std::shared_ptr<All> all_;  ///< of copies too, until one of them changes
+    std::shared_ptr<All> all_;  ///< shared by copies until one of them changes
 };
 
 }  // namespace etlc::data

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kAtLeastKept = 64;
 constexpr std::uint32_t kAlwaysKept = (1U << 28U) - 1;
 
-/// Each unit once, and of them those that a sketch keeps.
+/// Sorts units, removes duplicates, and keeps those of a sketch.
 void sift(std::vector<std::uint32_t>& units) {
     std::sort(units.begin(), units.end());
     units.erase(std::unique(units.begin(), units.end()), units.end());
@@ -24,7 +24,7 @@ void sift(std::vector<std::uint32_t>& units) {
     units.erase(std::upper_bound(units.begin(), units.end(), greatest), units.end());
 }
 
-/// Up to where the sketch has all units.
+/// Returns the bound below which the sketch has all units.
 std::uint32_t complete_to(const Sketch& sketch) {
     return sketch.size() < kAtLeastKept ? UINT32_MAX
                                         : std::max(sketch[kAtLeastKept - 1], kAlwaysKept);
@@ -49,8 +49,7 @@ bool is_complete(const Sketch& sketch) {
     return sketch.size() < kAtLeastKept;
 }
 
-/// In the input in which it is least, of those that tell: such as have enough units or, where none
-/// has, a few.
+/// Returns the least share over the inputs that have enough units or, where none has, a few.
 std::optional<double> share_in_common(const EpisodeContent& a, const EpisodeContent& b) {
     std::optional<double> least;
     std::optional<double> of_few;
@@ -110,8 +109,8 @@ InputContent ContentReader::content() const {
     result.hash = fmt::format("{:016x}", xxh64(fmt::format("{} steps", steps_), hash_));
     result.sketch = units_;
     sift(result.sketch);
-    // A few runs are mostly the same samples over again, and a few samples that come often are
-    // those of a world with few images. A short episode has no more than a few.
+    // A few runs mostly repeat the same samples, and a few frequent samples are those of a world
+    // with few images. A short episode has no more than a few.
     const bool is_short = tells_alone_ && present_ < kLeastUnits;
     if (!is_short && result.sketch.size() < kLeastUnits) result.sketch.clear();
     return result;

@@ -1,14 +1,13 @@
-// Two episodes are compared where one of them is asked about and the other known, or both are asked
-// about and those are looked for among each other. `Recordings` finds one by the other only where
-// they have an input of the same hash, or an input with enough units in common, which is 2 where
-// one of them has few units and 5 where none has: it looks at no others. In the first case each is
-// in the other's group of that hash. In the second let `few` be how many of these units only few
-// episodes have: they are counted for each pair. The others, which both have, are no more than
-// either has of such units. So few + the lesser of these counts is enough, or few is 0 and both
-// counts are: both episodes are suspects, where 2 count as enough as soon as some episode that has
-// few units has them.
-// That Recordings finds the same among the suspects as among all follows: what it finds is decided
-// by order, and they keep theirs.
+// Two episodes are compared if one is asked about and the other known, or if both are asked about
+// and `each_other` is set. `Recordings` finds one by the other only if an input of both has the
+// same hash, or enough units in common: 2 if one of them has few units, else 5. In the first case
+// both are in the group of that hash. In the second case some of the common units occur in few
+// episodes; these are counted for each pair (`few`). The number of other common units is at most
+// the number of frequent units that each of the two has. So if the units are enough, few + the
+// lesser of these two numbers is enough, or few is 0 and both numbers are enough: both episodes
+// become suspects. 2 count as enough if some episode that has them has few units. Recordings finds
+// the same among the suspects as among all episodes, since its result depends on the order only,
+// which suspects keep.
 #include "data/traces/suspects.hpp"
 
 #include <algorithm>
@@ -36,18 +35,18 @@ void for_each_group(Sorted<Value>& all, const Same& is_same, const Visit& visit)
     if (!episodes.empty()) visit(first, episodes);
 }
 
-constexpr std::size_t kFew = 8;  ///< episodes, 28 pairs of them
+constexpr std::size_t kFew = 8;  ///< episodes, which make 28 pairs
 
-/// Units of one input that episodes have in common.
+/// The units of one input that episodes have in common.
 class InCommon {
 public:
-    /// `is_short`: whose units are few; they outlive it.
+    /// `is_short`: episodes with few units; must outlive this.
     explicit InCommon(const std::vector<bool>& is_short)
         : is_short_(is_short), widely_(is_short.size()) {}
 
-    /// Two have one that few have.
+    /// Two episodes have a unit that is rare.
     void add_pair(std::uint32_t a, std::uint32_t b) { pairs_.add({a, b}); }
-    /// One has one that many have.
+    /// An episode has a unit that is frequent.
     void add_wide(std::uint32_t episode) {
         if (widely_[episode] < kEnough) ++widely_[episode];
     }
@@ -80,7 +79,7 @@ private:
     static constexpr std::uint32_t kEnough = kLeastUnits / 2 + 1;
 
     const std::vector<bool>& is_short_;
-    std::vector<std::uint8_t> widely_;  ///< units that many have, up to enough
+    std::vector<std::uint8_t> widely_;  ///< number of frequent units, up to enough
     Sorted<Pair> pairs_;
 };
 

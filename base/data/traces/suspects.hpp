@@ -1,7 +1,7 @@
-// Which of many episodes may be equal to another, or share most of their content with one.
-// Takes: the content of each. Gives: the suspects among them. Keeps true: of two episodes that
-// `Recordings` finds each other by, both are suspects; memory is a few bytes an episode, while
-// that of Recordings is a few kilobytes, so it is given the suspects alone.
+// Preselects the episodes that may be equal to another, or share most of their content with one.
+// Takes: the content of each. Gives: the suspects. Keeps true: if `Recordings` finds one of two
+// episodes by the other, both are suspects; an episode takes a few bytes here and a few kilobytes
+// in Recordings, so only suspects are compared there.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,15 @@ namespace etlc::data {
 
 class Suspects {
 public:
-    /// `each_other`: those that are asked about are looked for among each other too.
+    /// `each_other`: episodes that are asked about are also compared with each other.
     explicit Suspects(bool each_other) : each_other_(each_other) {}
 
-    /// One that is asked about.
+    /// Adds an episode that is asked about.
     void ask(const EpisodeContent& content) { add(content, false); }
-    /// One among which they are looked for.
+    /// Adds an episode that they are compared with.
     void know(const EpisodeContent& content) { add(content, true); }
 
-    /// Of each, in the order in which they came, whether it is one.
+    /// Returns for each episode, in the order of the calls, whether it is a suspect.
     std::vector<bool> find();
 
 private:
@@ -42,15 +42,14 @@ private:
     bool are_compared(std::uint32_t a, std::uint32_t b) const {
         return is_known_[a] != is_known_[b] || (each_other_ && !is_known_[a]);
     }
-    /// Calls `visit(episode)` for those of `same`, which have a key in common with another that
-    /// they are compared with.
+    /// Visits the episodes of `same` that have a key in common with one they are compared with.
     template <class Visit>
     void for_each_shared(const std::vector<std::uint32_t>& same, const Visit& visit) const;
 
     bool each_other_;
     std::vector<bool> is_known_;
     std::vector<bool> is_short_;                   ///< has few units in some input
-    std::map<std::string, std::uint32_t> inputs_;  ///< by name, their numbers
+    std::map<std::string, std::uint32_t> inputs_;  ///< numbers by name
     Sorted<Key> hashes_;
     Sorted<Key> units_;
 };

@@ -25,12 +25,11 @@ struct Channel {
     std::string name;
     Kind kind = Kind::scalar;
     std::uint32_t width = 1;
-    /// Where the file lacks it, it is missing at every step, and `Trace::has` says so.
+    /// Where the file lacks it, all samples are missing, and `Trace::has` returns false.
     bool optional = false;
 };
 
-/// One step of all channels. Values keep the file's precision; narrowing them is the reader's
-/// user's business.
+/// One step of all channels, in the precision of the file.
 struct Sample {
     /// Per channel, `width` numbers; NaN where the cell was not finite.
     std::vector<std::vector<double>> values;
@@ -42,15 +41,10 @@ public:
     virtual ~Trace() = default;
     /// Reads the next step into `sample`; false at the end of the trace.
     virtual diag::Result<bool> next(Sample& sample) = 0;
-    /// Number of steps where the file tells it beforehand, else 0: for progress.
+    /// Returns the number of steps where the file declares it, else 0: for progress.
     virtual std::uint64_t length() const { return 0; }
-    /// Whether the file has this channel; false for optional ones only.
+    /// Returns whether the file has this channel; false for optional ones only.
     virtual bool has(std::size_t channel) const = 0;
 };
-
-/// Names in the file, by the names of the channels, where they differ: `--map z=obs/z`.
-using NamesInFile = std::map<std::string, std::string>;
-std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& names);
-const std::string& name_in_file(const std::string& name, const NamesInFile& names);
 
 }  // namespace etlc::data

@@ -12,7 +12,7 @@
 #include "check/matrices/matrices.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/frames/images.hpp"
+#include "data/frames/frames.hpp"
 
 namespace etlc::check {
 

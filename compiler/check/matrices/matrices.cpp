@@ -8,7 +8,6 @@
 #include "check/context/context.hpp"
 #include "data/arrays/array.hpp"
 #include "data/files/file.hpp"
-#include "data/files/paths.hpp"
 
 namespace etlc::check {
 

@@ -1,6 +1,5 @@
-// `etlc --explain CODE`: what a code of a diagnostic means.
-// Takes: the code. Gives: what codes.def says of it, and an example: a message of tests/spec/error,
-// which are put into etlc at build time.
+// `etlc --explain CODE`: the text of codes.def for a code, and an example, a message from
+// tests/spec/error that is embedded at build time.
 #pragma once
 
 #include <string>
@@ -11,25 +10,25 @@
 
 namespace etlc::driver {
 
-/// What etlc printed in a test of a code.
+/// The output of etlc in a test of a code.
 struct Example {
     std::string_view code;
     std::string_view printed;
 };
 
-/// One of every code.
+/// Returns an example of every code.
 const std::vector<Example>& examples();
 
-/// The diagnostic of this code, with its source and notes; empty where it is not there.
+/// Returns the diagnostic of this code in the output, with its source and notes, or "".
 std::string message_of(std::string_view printed, std::string_view code);
 
-/// For people. Of a code that does not exist nothing.
+/// Explains a code in text; returns "" for an unknown code.
 std::string explain_code(std::string_view code);
 
-/// Whether it is written as a code: E0204, W0801.
+/// Returns whether a word has the form of a code: E0204, W0801.
 bool is_code(std::string_view text);
 
-/// The exit status of `etlc --explain CODE`.
+/// Runs `etlc --explain CODE` and returns the exit status.
 int explain_code_command(std::string_view code);
 
 }  // namespace etlc::driver

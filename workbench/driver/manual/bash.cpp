@@ -1,4 +1,4 @@
-// Completion for bash.
+// The completion script for bash.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,7 +8,7 @@ namespace etlc::driver {
 
 namespace {
 
-/// "--values" of "etlc run" as a pattern of the case statement: 'run --values' | 'run --values='.
+/// Returns the pattern of an option in a case statement: 'run --values' | 'run --values='.
 std::string pattern(const CommandHelp& command, const OptionHelp& option) {
     std::vector<std::string> words;
     for (const std::string& name : option.names) {
@@ -19,7 +19,7 @@ std::string pattern(const CommandHelp& command, const OptionHelp& option) {
     return fmt::format("{}", fmt::join(words, " | "));
 }
 
-/// What comes behind an option.
+/// Returns the function that completes the value of an option.
 std::string values_of(const OptionHelp& option) {
     if (!option.words.empty()) return fmt::format("_etlc_words '{}'", fmt::join(option.words, " "));
     switch (paths_of(option)) {
@@ -28,7 +28,7 @@ std::string values_of(const OptionHelp& option) {
         case Paths::folders: return "_etlc_paths ''";
         case Paths::none: break;
     }
-    return ":";  // the user knows
+    return ":";  // no completion
 }
 
 std::string options_of(const CommandHelp& command) {
@@ -40,7 +40,7 @@ std::string options_of(const CommandHelp& command) {
     return words.substr(1);
 }
 
-/// Where a word stands that belongs to no option: specs, or other files.
+/// Returns the pattern of positional arguments: specs, or other files.
 const char* positional(const CommandHelp& command) {
     for (const OptionHelp& option : command.options)
         if (option.names.empty()) return paths_of(option) == Paths::specs ? "*.etl" : "*";

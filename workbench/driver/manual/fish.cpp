@@ -1,4 +1,4 @@
-// Completion for fish.
+// The completion script for fish.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -20,7 +20,7 @@ std::string quoted(const std::string& text) {
 std::string fish_values(const OptionHelp& option) {
     if (option.is_flag && option.words.empty()) return "";
     if (!option.words.empty()) {
-        // A flag may stand alone.
+        // The value of a flag is optional.
         const char* const needs = option.is_flag ? "-f" : "-x";
         return fmt::format(" {} -a '{}'", needs, fmt::join(option.words, " "));
     }

@@ -11,7 +11,7 @@ namespace etlc::driver {
 
 namespace {
 
-/// For groff: a '-' is one that can be copied, and no line of the text is a request.
+/// Escapes text for groff: '-' can be copied, and no line is a request.
 std::string escaped(const std::string& text) {
     std::string result;
     bool begins_line = true;
@@ -29,7 +29,7 @@ std::string escaped(const std::string& text) {
     return result;
 }
 
-/// Lines stay lines; blanks before them were for --help.
+/// Keeps line breaks and drops indentation, which is for --help.
 std::string lines_of(const std::string& text) {
     std::string result;
     std::size_t begin = 0;

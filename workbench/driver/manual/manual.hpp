@@ -1,42 +1,61 @@
-// `etlc --completion SHELL` and `etlc --man`.
-// Takes: what the commands say of themselves, that of etlc itself first. Gives: text. Keeps true:
-// every command and every option of them is in it.
+// `etlc --completion SHELL`, `etlc --man` and docs/command_line.md, made from the table of options.
+// Keeps true: every command and every option is in each of them.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "driver/manual/help.hpp"
-
 namespace etlc::driver {
 
-/// Scripts that the shells read.
+/// The help for an option, a flag or a positional argument.
+struct OptionHelp {
+    std::vector<std::string> names;  ///< "-o", "--output"; empty: a positional
+    std::string value;  ///< the kind of its value, "FILE"; empty: none, or one of `words`
+    std::vector<std::string> words;  ///< its possible values
+    std::string usual;               ///< default value
+    std::string text;                ///< may have several lines
+    bool is_flag = false;            ///< an optional value follows '='
+    bool repeats = false;
+    bool is_required = false;
+};
+
+struct CommandHelp {
+    std::string name;  ///< "etlc", "etlc run"
+    std::string text;
+    std::string footer;
+    std::vector<OptionHelp> options;
+};
+
+/// Returns the help of all commands, that of etlc itself first.
+std::vector<CommandHelp> all_help();
+
+/// Make the completion scripts of the shells.
 std::string completion_of_bash(const std::vector<CommandHelp>& commands);
 std::string completion_of_zsh(const std::vector<CommandHelp>& commands);
 std::string completion_of_fish(const std::vector<CommandHelp>& commands);
 
-/// The page, for man and groff. `version`: of etlc.
+/// Makes the page for man and groff.
 std::string manual_page(const std::vector<CommandHelp>& commands, const std::string& version);
 
-/// docs/command_line.md
+/// Makes docs/command_line.md.
 std::string command_line_page();
 
-/// The exit status of `etlc --completion SHELL`, and of `etlc --man`.
+/// Run `etlc --completion SHELL` and `etlc --man`, and return the exit status.
 int completion_command(const std::string& shell);
 int manual_command();
 
-/// What an option takes: "FILE", and all others that are paths.
+/// The kinds of paths that an option takes.
 enum class Paths : std::uint8_t { none, files, specs, folders };
 Paths paths_of(const OptionHelp& option);
 
-/// "run" of "etlc run".
+/// Returns "run" for "etlc run".
 std::string word_of(const CommandHelp& command);
 
-/// Up to its first sentence's end, on one line.
+/// Returns the first sentence of a text, on one line.
 std::string first_sentence(const std::string& text);
 
-/// Besides its options, etlc takes these words alone.
+/// Options of etlc that stand alone and are not in the table.
 inline constexpr const char* kOwnWords[] = {"--completion", "--man"};
 inline constexpr const char* kShells[] = {"bash", "zsh", "fish"};
 

@@ -1,4 +1,4 @@
-// docs/command_line.md.
+// The page docs/command_line.md.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,7 +11,7 @@ namespace etlc::driver {
 
 namespace {
 
-/// For a cell of a table, in which no '|' ends it: what --help indents begins a line.
+/// Escapes text for a cell of a table; lines that --help indents begin a new line.
 std::string cell(const std::string& text) {
     std::string result;
     for (std::size_t at = 0; at < text.size();) {
@@ -29,7 +29,7 @@ std::string cell(const std::string& text) {
     return result;
 }
 
-/// Broken into lines of at most 100 columns.
+/// Breaks text into lines of at most 100 columns.
 std::string wrapped(const std::string& text) {
     constexpr std::size_t kColumns = 100;
     std::string result;

@@ -1,4 +1,4 @@
-// Completion for zsh.
+// The completion script for zsh.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,7 +8,7 @@ namespace etlc::driver {
 
 namespace {
 
-/// In quotes for the shell, with what _arguments reads escaped.
+/// Escapes text for a quoted argument of _arguments.
 std::string zsh_quoted(const std::string& text) {
     std::string result;
     for (const char c : text) {
@@ -33,7 +33,7 @@ std::string action_of(const OptionHelp& option) {
     return " ";
 }
 
-/// What _arguments is told of an option; one line for each name.
+/// Returns the arguments of _arguments for an option, one line for each name.
 std::string argument(const OptionHelp& option) {
     const std::string what = option.value.empty() ? "word" : option.value;
     const std::string takes = fmt::format(":{}:{}", zsh_quoted(what), action_of(option));

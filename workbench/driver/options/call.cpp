@@ -1,110 +1,80 @@
 #include "driver/options/call.hpp"
 
+#include <fmt/format.h>
+
+#include <iterator>
+
 namespace etlc::driver {
 
-std::vector<std::string>& Call::data() {
-    switch (command) {
-        case Command::embed: return embed.data;
-        case Command::fit: return fit.data;
-        case Command::calibrate: return calibrate.data;
-        case Command::report: return report.data;
-        default: return evaluate.data;
-    }
+namespace {
+
+struct Row {
+    Command command;
+    std::string_view name;   ///< empty: etlc without a command
+    std::string_view takes;  ///< the least arguments; may be empty
+    std::string_view summary;
+};
+constexpr Row kCommands[] = {
+    {Command::compile, "", "", ""},
+    {Command::run, "run", "SPEC.etl --trace FILE",
+     "Executes a spec's monitors on a recorded trace, without a C++ compiler, in constant memory."},
+    {Command::embed, "embed", "SPEC.etl --data FILE... -o FOLDER",
+     "Encodes the images and videos that a spec names into SPEC.embedded.npz beside it, and "
+     "recordings into\nepisodes for the other commands."},
+    {Command::fit, "fit", "SPEC.etl --data FILE...",
+     "Finds the projections, targets and metrics that a spec declares fitted(...) from labelled "
+     "demonstrations,\none episode a file, and reports how well its predicates then separate."},
+    {Command::calibrate, "calibrate", "SPEC.etl --data FILE...",
+     "Finds the calibrated thresholds of a spec from labelled demonstrations, one episode a file."},
+    {Command::evaluate, "evaluate", "SPEC.etl... --data FILE...",
+     "Compares predicates and monitors of specs with ground truth on recorded episodes."},
+    {Command::crossvalidate, "crossvalidate", "SPEC.etl... --data FILE...",
+     "Calibrates and evaluates specs on the same recorded episodes, in folds: each episode is "
+     "judged\nby monitors that have not seen it."},
+    {Command::lsp, "lsp", "",
+     "The language server, for editors: it speaks the Language Server Protocol on standard input "
+     "and output.\ndocs/editors.md says how editors start it."},
+    {Command::merge, "merge", "PART...",
+     "Combines the parts that all shards of a call wrote into the result of the call."},
+    {Command::explain, "explain", "SPEC.etl --trace FILE",
+     "Explains a monitor's verdict on a recorded trace: the smallest set of samples that decides "
+     "it, the\nsample whose robustness it has, and the smallest change that would flip it."},
+    {Command::incident, "incident", "FILE --spec SPEC.etl",
+     "Prints what the flight recorder of a monitor wrote: the steps around an alarm."},
+    {Command::report, "report", "SPEC.etl --data FILE... -o PAGE.html",
+     "Writes a web page about recorded episodes: the verdicts of a spec's monitors, why, and where "
+     "they are wrong."}};
+static_assert(std::size(kCommands) == kCommandCount);
+
+}  // namespace
+
+CommandText text_of(Command command) {
+    const Row& row = kCommands[static_cast<std::size_t>(command)];
+    if (!row.name.empty()) return {fmt::format("etlc {}", row.name), std::string(row.summary), ""};
+    std::string summary =
+        "etlc, the compiler for Embedding Temporal Logic: SPEC.etl in, one C++ monitor class "
+        "out.\nOther commands:\n";
+    for (const Row& other : kCommands)
+        if (!other.name.empty())
+            summary += fmt::format("  etlc {}{}{}\n", other.name, other.takes.empty() ? "" : " ",
+                                   other.takes);
+    summary += "  etlc --explain CODE\n  etlc --completion bash|zsh|fish\n  etlc --man";
+    return {"etlc", summary,
+            "Exit status: 0, success; 1, failure, which a message explains; 2, the call is wrong; "
+            "3, an internal error of etlc."};
 }
 
-std::string& Call::groups() {
-    switch (command) {
-        case Command::embed: return embed.groups;
-        case Command::fit: return fit.groups;
-        case Command::calibrate: return calibrate.groups;
-        case Command::report: return report.groups;
-        default: return evaluate.groups;
-    }
+std::vector<std::string> command_names() {
+    std::vector<std::string> names;
+    for (const Row& row : kCommands)
+        if (!row.name.empty()) names.emplace_back(row.name);
+    return names;
 }
 
-std::string& Call::allow_overlap() {
-    switch (command) {
-        case Command::fit: return fit.fit.allow_overlap;
-        case Command::calibrate: return calibrate.calibration.allow_overlap;
-        case Command::report: return report.allow_overlap;
-        default: return evaluate.evaluation.allow_overlap;
-    }
-}
-
-unsigned& Call::jobs() {
-    switch (command) {
-        case Command::fit: return fit.fit.jobs;
-        case Command::calibrate: return calibrate.calibration.jobs;
-        case Command::report: return report.report.jobs;
-        default: return evaluate.evaluation.jobs;
-    }
-}
-
-data::NamesInFile& Call::names() {
-    switch (command) {
-        case Command::run: return run.names;
-        case Command::embed: return embed.embed.names;
-        case Command::fit: return fit.fit.names;
-        case Command::calibrate: return calibrate.calibration.names;
-        case Command::explain: return explain.names;
-        case Command::report: return report.report.names;
-        default: return evaluate.evaluation.names;
-    }
-}
-
-std::string& Call::trace() {
-    return command == Command::run ? run.trace : explain.trace;
-}
-
-std::vector<check::Setting>& Call::settings() {
-    switch (command) {
-        case Command::embed: return embed.settings;
-        case Command::fit: return fit.settings;
-        case Command::calibrate: return calibrate.settings;
-        default: return request.check.settings;
-    }
-}
-
-std::string& Call::thresholds() {
-    return command == Command::calibrate ? calibrate.thresholds : request.check.thresholds_path;
-}
-
-std::string& Call::fitted() {
-    return command == Command::calibrate ? calibrate.fitted : request.check.fitted_path;
-}
-
-std::string& Call::embedded() {
-    switch (command) {
-        case Command::embed: return embed.embedded;
-        case Command::fit: return fit.embedded;
-        case Command::calibrate: return calibrate.embedded;
-        default: return request.check.embedded_path;
-    }
-}
-
-std::uint32_t& Call::folds() {
-    return command == Command::calibrate ? calibrate.calibration.folds : evaluate.folds;
-}
-
-ShardRequest& Call::shard() {
-    switch (command) {
-        case Command::embed: return embed.shard;
-        case Command::calibrate: return calibrate.shard;
-        default: return evaluate.shard;
-    }
-}
-
-std::string& Call::written() {
-    switch (command) {
-        case Command::run: return run.output;
-        case Command::embed: return embed.output;
-        case Command::fit: return fit.output;
-        case Command::calibrate: return calibrate.output;
-        case Command::explain: return explain.output;
-        case Command::incident: return incident.output;
-        case Command::report: return report.output;
-        default: return output.result;
-    }
+std::optional<Command> command_named(std::string_view word) {
+    for (const Row& row : kCommands)
+        if (!row.name.empty() && row.name == word) return row.command;
+    return std::nullopt;
 }
 
 }  // namespace etlc::driver

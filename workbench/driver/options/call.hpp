@@ -1,30 +1,20 @@
-// A call of etlc: the command, and all that its options say.
-// Takes: the words of the command line, by the table of options. Gives: the requests of the
-// commands. Keeps true: what no option sets has its default.
+// A call of etlc: the command and its options, parsed from the words of the command line.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "driver/compile/compile.hpp"
-#include "driver/compile/output.hpp"
-#include "driver/embed/embed.hpp"
-#include "driver/evaluate/evaluate.hpp"
-#include "driver/explain/explain.hpp"
-#include "driver/incident/incident.hpp"
-#include "driver/learn/calibrate.hpp"
-#include "driver/learn/fit.hpp"
-#include "driver/report/report.hpp"
-#include "driver/run/run.hpp"
+#include "driver/commands/request.hpp"
 
 namespace etlc::driver {
 
-/// In the order of `etlc --help`; `compile` is etlc without a command.
+/// The commands in the order of `etlc --help`; `compile` is etlc without a command.
 enum class Command : std::uint8_t {
     compile,
     run,
@@ -41,16 +31,16 @@ enum class Command : std::uint8_t {
 };
 inline constexpr std::size_t kCommandCount = 12;
 
-/// Of etlc crossvalidate.
+/// The default of etlc crossvalidate.
 inline constexpr std::uint32_t kUsualFolds = 5;
 
-struct Call {
+struct Call : Request {
     explicit Call(Command of) : command(of) {
-        if (of == Command::crossvalidate) evaluate.folds = kUsualFolds;
+        if (of == Command::crossvalidate) folds = kUsualFolds;
+        if (of == Command::run || of == Command::explain || of == Command::incident) output = "-";
     }
 
     Command command;
-    std::vector<std::string> words;            ///< all of them, from the command on
     std::set<std::string, std::less<>> given;  ///< names of the options in the call: "--output"
 
     std::vector<std::string> specs;
@@ -59,33 +49,28 @@ struct Call {
     std::vector<std::string> warnings;
     bool check_only = false;
     bool on_standard_streams = false;  ///< of lsp
-    OutputPaths output;
-    Request request;
-    RunRequest run;
-    EmbedRequest embed;
-    FitRequest fit;
-    CalibrateRequest calibrate;
-    EvaluateRequest evaluate;
-    ExplainRequest explain;
-    IncidentRequest incident;
-    ReportRequest report;
 
     bool has(std::string_view option) const { return given.contains(option); }
-
-    // Where the options that several commands share go in the command's request.
-    std::vector<std::string>& data();
-    std::string& groups();
-    std::string& allow_overlap();
-    unsigned& jobs();
-    data::NamesInFile& names();
-    std::string& trace();
-    std::vector<check::Setting>& settings();
-    std::string& thresholds();
-    std::string& fitted();
-    std::string& embedded();
-    std::uint32_t& folds();
-    ShardRequest& shard();
-    std::string& written();  ///< -o
 };
+
+struct CommandText {
+    std::string name;     ///< "etlc", "etlc run"
+    std::string summary;  ///< may have several lines
+    std::string footer;
+};
+
+/// Returns how --help presents the command.
+CommandText text_of(Command command);
+
+/// Returns "run", ...
+std::vector<std::string> command_names();
+/// Finds a command by its name.
+std::optional<Command> command_named(std::string_view word);
+
+/// Says what is wrong with the call of "etlc run"; the exit status.
+int complain(const std::string& command, const std::string& mistake);
+
+/// Fills in the call. An exit status where the command ends here: --help, --version, a wrong call.
+std::optional<int> parse(int argc, char** argv, Call& call);
 
 }  // namespace etlc::driver

@@ -9,31 +9,104 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <string_view>
+#include <utility>
 
 #include "check/names/reserved.hpp"
 #include "data/recordings/open.hpp"
+#include "data/text/number.hpp"
 #include "data/text/quote.hpp"
 #include "diag/diag.hpp"
 #include "driver/options/call.hpp"
-#include "driver/options/commands.hpp"
 #include "driver/process/output_file.hpp"
-#include "library/recorder.hpp"
+#include "episodes/shared/part.hpp"
+#include "library/settings.hpp"
 
 namespace etlc::driver {
 
+std::string read_settings(Call& call, const std::vector<std::string>& words) {
+    std::string mistake;
+    if (auto parsed = library::parse_settings(words, mistake))
+        call.check.settings = std::move(*parsed);
+    return mistake;
+}
+
+std::string read_names(Call& call, const std::vector<std::string>& words) {
+    for (const std::string& word : words) {
+        const std::size_t sign = word.find('=');
+        if (sign == std::string::npos || sign == 0 || sign + 1 == word.size())
+            return fmt::format("--map takes NAME=NAME_IN_FILE, not {}", data::in_quotes(word));
+        const std::string name = word.substr(0, sign);
+        if (!call.names.emplace(name, word.substr(sign + 1)).second)
+            return fmt::format("--map names {} twice", data::in_quotes(name));
+    }
+    return "";
+}
+
+std::string read_cameras(Call& call, const std::vector<std::string>& words) {
+    for (const std::string& word : words) {
+        const std::size_t sign = word.find('=');
+        const std::string input = sign == std::string::npos ? "" : word.substr(0, sign);
+        const std::string camera = sign == std::string::npos ? word : word.substr(sign + 1);
+        if (camera.empty() || sign == 0)
+            return fmt::format("--camera takes NAME or INPUT=NAME, not '{}'", word);
+        if (!call.embed.cameras.emplace(input, camera).second)
+            return input.empty() ? "--camera names two cameras"
+                                 : fmt::format("--camera names '{}' twice", input);
+    }
+    return "";
+}
+
+namespace {
+
+bool parse_shard(std::string_view text, ShardRequest& request) {
+    const std::size_t slash = text.find('/');
+    if (slash == std::string_view::npos) return false;
+    request.from_input = text.starts_with("-/");
+    const auto shard = data::parse_whole<std::uint32_t>(text.substr(0, slash));
+    request.shards = data::parse_whole<std::uint32_t>(text.substr(slash + 1)).value_or(0);
+    request.shard = request.from_input ? 0 : shard.value_or(0);
+    return request.shards >= 1 && request.shards <= episodes::kMostShards &&
+           (request.from_input || (request.shard >= 1 && request.shard <= request.shards));
+}
+
+}  // namespace
+
+std::string read_shard(Call& call, const std::vector<std::string>& words) {
+    if (parse_shard(words.front(), call.shard)) return "";
+    return fmt::format("--shard: '{}' is no shard; expected I/N with I from 1 to N: 3/64",
+                       words.front());
+}
+
+std::string read_recorder(Call& call, const std::vector<std::string>& words) {
+    std::string unused;
+    call.recorder = library::parse_recorder(words.front(), unused);
+    return "";
+}
+
+std::string read_seconds(Call& call, const std::vector<std::string>& words) {
+    double seconds = 0;
+    std::from_chars(words.front().data(), words.front().data() + words.front().size(), seconds);
+    call.explain.at = seconds;
+    return "";
+}
+
+std::string read_suggest(Call& call, const std::vector<std::string>& words) {
+    call.fit.suggest = true;
+    for (const std::string& word : words)
+        if (!word.empty()) call.fit.predicates.push_back(word);  // CLI11 passes "" for no value
+    return "";
+}
+
 std::string mistake_in_word(const std::string& found, const std::vector<std::string>& expected) {
     if (std::find(expected.begin(), expected.end(), found) != expected.end()) return "";
-    const auto meant = diag::nearest_name(found, expected);
     return fmt::format("found {}, expected {}{}", data::in_quotes(found),
-                       diag::alternatives(expected),
-                       meant ? fmt::format("; did you mean '{}'?", *meant) : "");
+                       diag::alternatives(expected), data::suggestion(found, expected));
 }
 
 std::string mistake_in_number(const std::string& found, std::uint64_t least, std::uint64_t most) {
-    std::uint64_t number = 0;
-    const char* end = found.data() + found.size();
-    const auto [stop, error] = std::from_chars(found.data(), end, number);
-    if (error == std::errc() && stop == end && least <= number && number <= most) return "";
+    const auto number = data::parse_whole<std::uint64_t>(found);
+    if (number && least <= *number && *number <= most) return "";
     const bool bounded = most < std::numeric_limits<std::uint64_t>::max();
     return fmt::format("found {}, expected a whole number from {}{}", data::in_quotes(found), least,
                        bounded ? fmt::format(" to {}", most) : "");
@@ -84,59 +157,56 @@ std::string mistake_in_seconds(const std::string& found) {
 namespace {
 
 std::string mistake_in_retargetable(const Call& call) {
-    const Request& request = call.request;
+    const Request& request = call;
     if (!request.check.retargetable && request.emit != "params") return "";
     const auto without = [&](const char* option, const char* why) {
-        return fmt::format("{} goes without {}: {}",
+        return fmt::format("{} excludes {}: {}",
                            request.emit == "params" ? "--emit params" : "--retargetable", option,
                            why);
     };
     if (request.values == check::Values::boolean)
-        return without("--values boolean", "its class is made of robustness");
-    if (request.explain)
+        return without("--values boolean", "its class computes robustness");
+    if (request.explains)
         return without("--explain",
-                       "samples of before would be told with the thresholds and rows of now");
+                       "earlier samples would be explained with the present thresholds and rows");
     if (request.recorder)
         return without("--recorder",
-                       "etlc incident would read an incident with the numbers of one spec");
+                       "etlc incident would read incidents with the parameters of one spec");
     if (request.targets_as != plan::Storage::f32)
         return without("--targets-as",
-                       "how far narrowing moves a row is known of the rows of one spec");
+                       "the error of narrow rows is known for the rows of one spec only");
     for (const char* option : {"--inline-targets", "--targets-file"})
-        if (call.has(option))
-            return without(option, "all of its target sets lie in its parameters");
+        if (call.has(option)) return without(option, "all its target sets are in its parameters");
     return "";
 }
 
 std::string mistake_in_compiling(const Call& call) {
-    const OutputPaths& output = call.output;
     const bool prints_stage = call.has("--emit");
-    if (call.check_only && (prints_stage || !output.result.empty()))
+    if (call.check_only && (prints_stage || !call.output.empty()))
         return "--check goes neither with --emit nor with -o";
-    if (!call.check_only && !prints_stage && output.result.empty())
-        return "say where to write the header with -o, or --check";
-    if (!output.depfile.empty() && (output.result.empty() || output.result == "-"))
+    if (!call.check_only && !prints_stage && call.output.empty())
+        return "expected -o FILE for the header, or --check";
+    if (!call.depfile.empty() && (call.output.empty() || call.output == "-"))
         return "--depfile needs -o FILE";
-    if (call.has("--targets-file") &&
-        (output.targets.empty() || output.targets == "-" || output.targets == output.result ||
-         output.targets == output.depfile))
+    if (call.has("--targets-file") && (call.targets.empty() || call.targets == "-" ||
+                                       call.targets == call.output || call.targets == call.depfile))
         return "--targets-file needs a file of its own";
-    if (call.request.explain && call.request.values == check::Values::boolean)
-        return "--explain follows robustness to the sample that it is that of, and --values "
-               "boolean has none: leave one of the two out";
+    if (call.explains && call.values == check::Values::boolean)
+        return "--explain follows robustness to the sample that it comes from, and --values "
+               "boolean has no robustness: leave out one of the two";
     if (std::string mistake = mistake_in_retargetable(call); !mistake.empty()) return mistake;
-    if (call.has("--targets-file") && prints_stage && call.request.emit != "hpp")
+    if (call.has("--targets-file") && prints_stage && call.emit != "hpp")
         return "--targets-file goes with the header, not with other stages";
     return "";
 }
 
 std::string mistake_in_running(const Call& call) {
-    if (call.run.trace == data::kStandardInput && !(call.run.html.empty() && call.run.svg.empty()))
+    if (call.trace == data::kStandardInput && !(call.run.html.empty() && call.run.svg.empty()))
         return "--html and --svg read the trace once more, so it cannot be standard input";
     return mistake_in_retargetable(call);
 }
 
-std::string mistake_in_embedding(const EmbedRequest& request) {
+std::string mistake_in_embedding(const Request& request) {
     if (request.data.empty() != request.output.empty())
         return request.data.empty() ? "-o takes the episodes of --data, which is missing"
                                     : "--data needs -o FOLDER, where the episodes go";
@@ -157,18 +227,18 @@ std::string mistake_in_evaluating(const Call& call) {
     for (auto spec = specs.begin(); spec != specs.end(); ++spec)
         if (std::find(specs.begin(), spec, *spec) != spec)
             return fmt::format("the spec {} is given twice", *spec);
-    if (call.evaluate.shard.shards > 0 && (specs.size() > 1 || call.evaluate.folds > 0))
+    if (call.shard.shards > 0 && (specs.size() > 1 || call.folds > 0))
         return "--shard goes with one spec, and not with folds";
     for (const char* option : {"--thresholds", "--fitted"}) {
         if (!call.has(option)) continue;
-        if (call.evaluate.folds > 0)
-            return fmt::format("{} does not go with folds, which learn theirs from the episodes",
+        if (call.folds > 0)
+            return fmt::format("{} does not go with folds, which are trained on the episodes",
                                option);
         if (specs.size() > 1)
-            return fmt::format("{} goes with one spec; the files of several lie beside them",
+            return fmt::format("{} goes with one spec; several specs use the files beside them",
                                option);
     }
-    return mistake_in_shard(call.evaluate.shard);
+    return mistake_in_shard(call.shard);
 }
 
 }  // namespace
@@ -183,8 +253,8 @@ std::string mistake_in_command(int argc, char** argv) {
     if (word == "help" || word == "version")
         return fmt::format("{}; did you mean '--{}'?", no_command, word);
     const std::vector<std::string> commands = command_names();
-    if (const auto near = diag::nearest_name(word, commands))
-        return fmt::format("{}; did you mean '{}'?", no_command, *near);
+    if (const std::string meant = data::suggestion(word, commands); !meant.empty())
+        return no_command + meant;
     if (argc == 2 || argv[2][0] == '-') return "";
     return fmt::format("{}; the commands are {}; etlc SPEC.etl compiles a spec", no_command,
                        fmt::join(commands, ", "));
@@ -194,8 +264,8 @@ std::string mistake_in(const Call& call) {
     switch (call.command) {
         case Command::compile: return mistake_in_compiling(call);
         case Command::run: return mistake_in_running(call);
-        case Command::embed: return mistake_in_embedding(call.embed);
-        case Command::calibrate: return mistake_in_shard(call.calibrate.shard);
+        case Command::embed: return mistake_in_embedding(call);
+        case Command::calibrate: return mistake_in_shard(call.shard);
         case Command::evaluate:
         case Command::crossvalidate: return mistake_in_evaluating(call);
         default: return "";

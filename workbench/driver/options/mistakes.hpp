@@ -1,13 +1,29 @@
-// What is wrong with a value of an option, or with several options together.
-// Takes: words of the call. Gives: a sentence that names what was found and what was expected;
-// empty where nothing is wrong.
+// Parses the values of options that have their own syntax, and checks values and calls.
+// Every function returns an error that says what was found and what was expected, or "".
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "driver/options/call.hpp"
+
 namespace etlc::driver {
+
+/// --set NAME=VALUE
+std::string read_settings(Call& call, const std::vector<std::string>& words);
+/// --map NAME=OTHER
+std::string read_names(Call& call, const std::vector<std::string>& words);
+/// --camera NAME for all inputs, or INPUT=NAME
+std::string read_cameras(Call& call, const std::vector<std::string>& words);
+/// --shard 3/64, or -/64 in a rank of an MPI job
+std::string read_shard(Call& call, const std::vector<std::string>& words);
+/// --recorder BEFORE,AFTER,INCIDENTS, after mistake_in_recorder()
+std::string read_recorder(Call& call, const std::vector<std::string>& words);
+/// --at SECONDS, after mistake_in_seconds()
+std::string read_seconds(Call& call, const std::vector<std::string>& words);
+/// --suggest [PREDICATE...]
+std::string read_suggest(Call& call, const std::vector<std::string>& words);
 
 struct Call;
 
@@ -15,20 +31,19 @@ struct Call;
 std::string mistake_in_word(const std::string& found, const std::vector<std::string>& expected);
 /// Expected: a whole number in [least, most], in decimal digits.
 std::string mistake_in_number(const std::string& found, std::uint64_t least, std::uint64_t most);
-/// Expected: a reason in words, on one line, for it is written into files.
+/// Expected: a reason in words on one line, since it is written into files.
 std::string mistake_in_reason(const std::string& found);
 /// Expected: BEFORE,AFTER,INCIDENTS: two numbers of steps or durations, and a number from 1 on.
 std::string mistake_in_recorder(const std::string& found);
-/// Expected: a or a::b, none of them reserved.
+/// Expected: a or a::b without reserved names.
 std::string mistake_in_namespace(const std::string& name);
 /// Expected: seconds from 0.
 std::string mistake_in_seconds(const std::string& found);
 
-/// A first word that is neither an option nor a spec, but was meant as a command; empty where it
-/// may be a spec.
+/// Checks whether the first word is meant as a command that does not exist.
 std::string mistake_in_command(int argc, char** argv);
 
-/// Of the options of the call together.
+/// Checks the options of a call together.
 std::string mistake_in(const Call& call);
 
 }  // namespace etlc::driver

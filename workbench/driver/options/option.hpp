@@ -1,7 +1,7 @@
-// A row of the table of options: what an option is called, what it takes, and what it sets.
-// Takes: places in a call. Gives: rows, which the parser, --help, the manual page, the completions
-// and docs/command_line.md read. Keeps true: a value is taken as it is written or refused, never
-// rounded or wrapped; a refusal says what was found and what was expected.
+// The rows of the table of options: the name of an option, its values, and the member that it sets.
+// The parser, --help, the manual page, the completions and docs/command_line.md read them.
+// Keeps true: a value is taken exactly or refused, never rounded or wrapped; an error says what was
+// found and what was expected.
 #pragma once
 
 #include <cstdint>
@@ -30,25 +30,26 @@ private:
     unsigned bits_;
 };
 
-/// What an option takes, and what it does with that.
+/// The values of an option, and what it does with them.
 struct Takes {
     using Words = std::vector<std::string>;
 
-    std::string value;          ///< "FILE"; empty: nothing, or one of `choices`
-    Words choices;              ///< the words that it takes
-    std::string usual;          ///< what counts where it is absent, for --help
-    bool is_flag = false;       ///< its value, if any, stands behind a '='
-    bool repeats = false;       ///< several values behind one name
-    bool once_a_name = false;   ///< may stand again, each time with one value
-    bool may_be_empty = false;  ///< no value behind the name is a value too
-    std::function<std::string(const std::string&)> check;  ///< "" or what is wrong with one value
-    /// Sets it; "" or what is wrong with the values together.
+    std::string value;          ///< "FILE"; empty: none, or one of `choices`
+    Words choices;              ///< its possible values
+    std::string usual;          ///< default value, for --help
+    bool is_flag = false;       ///< an optional value follows '='
+    bool repeats = false;       ///< takes several values
+    bool once_a_name = false;   ///< may be repeated, with one value each time
+    bool may_be_empty = false;  ///< may stand without a value
+    std::function<std::string(const std::string&)> check;  ///< returns the error of a value, or ""
+    /// Sets the member; returns the error of the values together, or "".
     std::function<std::string(Call&, const Words&)> set;
 };
 
 struct Option {
     Commands commands;
-    std::string names;  ///< "-o,--output"; "spec": a positional; "--x{word}": what --x alone means
+    std::string
+        names;  ///< "-o,--output"; "spec": a positional; "--x{word}": the value of --x alone
     Takes takes;
     std::string help;
     enum class Need : std::uint8_t { none, required } need = Need::none;
@@ -56,10 +57,10 @@ struct Option {
     std::string needs{};
 };
 
-/// All options of all commands, each command's in the order in which it shows them.
+/// Returns the options of all commands, in the order of --help.
 const std::vector<Option>& options();
 
-/// Where an option goes: in(&Call::run, &RunRequest::html).
+/// Returns the place that an option sets: in(&Call::run, &Call::Run::html).
 template <class... Members>
 auto in(Members... members) {
     return [=](Call & call) -> auto& {
@@ -78,7 +79,7 @@ Takes flag(At at) {
     return takes;
 }
 
-/// One text. `usual`: what stands there before.
+/// A text. `usual`: the default.
 template <class At>
 Takes text(std::string value, At at, std::string usual = "") {
     Takes takes;
@@ -108,7 +109,7 @@ Takes texts(std::string value, At at) {
     return takes;
 }
 
-/// One of these words, kept as it is.
+/// One of these words, stored as text.
 template <class At>
 Takes one_of(Takes::Words choices, At at, std::string usual = "") {
     Takes takes = text("", at, std::move(usual));
@@ -117,7 +118,7 @@ Takes one_of(Takes::Words choices, At at, std::string usual = "") {
     return takes;
 }
 
-/// One of these words, which mean values; the first where the option is absent.
+/// One of these words, each of which stands for a value; the first is the default.
 template <class Value, class At>
 Takes choice(std::vector<std::pair<std::string, Value>> meanings, At at) {
     Takes takes;
@@ -150,7 +151,7 @@ Takes number(At at, std::uint64_t least = 0,
     return takes;
 }
 
-/// A form of its own, which `set` reads.
+/// A value with its own syntax, which `set` parses.
 inline Takes form(std::string value, decltype(Takes::set) set) {
     Takes takes;
     takes.value = std::move(value);

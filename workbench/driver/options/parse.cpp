@@ -1,4 +1,3 @@
-#include "driver/options/parse.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,11 +8,10 @@
 #include <vector>
 
 #include "diag/diag.hpp"
-#include "driver/options/commands.hpp"
+#include "driver/options/call.hpp"
 #include "driver/options/option.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
-#include "driver/process/telling.hpp"
 #include "library/version.hpp"
 #include "source/escape.hpp"
 
@@ -48,7 +46,7 @@ CLI::Option* add(CLI::App& app, const Option& option) {
     return added;
 }
 
-/// --help, --version
+/// Prints --help or --version.
 int fulfil(const CLI::App& app, const CLI::Success& wish) {
     std::ostringstream text;
     app.exit(wish, text, text);

@@ -24,8 +24,7 @@ std::string words(const std::string& path, bool is_input) {
     return path == kStandardOutput ? "standard output" : path;
 }
 
-/// What tells a file from all others: where it is stored, or, of one that is still to be made, its
-/// folder and name.
+/// Identifies a file by its inode, or a new file by its folder and name.
 struct Identity {
     dev_t device = 0;
     ino_t inode = 0;
@@ -34,7 +33,7 @@ struct Identity {
     auto operator<=>(const Identity&) const = default;
 };
 
-/// `standard`: the descriptor that "-" stands for.
+/// Returns the identity of a regular or new file. `standard`: the descriptor of "-".
 std::optional<Identity> identity(const std::string& path, int standard) {
     struct stat status {};
     const bool is_standard = path == kStandardOutput;

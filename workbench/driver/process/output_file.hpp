@@ -1,6 +1,6 @@
-// The files that a call writes, and what it prints.
-// Takes: paths and bytes. Keeps true: all files of a call appear or none, each whole; what cannot
-// be written is reported; no output is a file that the call reads, nor two outputs one file.
+// The output files of a call, and its standard output.
+// Keeps true: all files of a call appear or none, each whole; write errors are reported; no output
+// is a file that the call reads, and no two outputs are the same file.
 #pragma once
 
 #include <list>
@@ -14,12 +14,11 @@
 
 namespace etlc::driver {
 
-/// Standard output, where a path is asked for.
+/// The path that stands for standard output.
 inline constexpr std::string_view kStandardOutput = "-";
 
-/// Reports outputs that are the same file as an input or as each other; empty paths are none. Only
-/// what is stored counts: terminals, pipes and devices may be given twice. False where it has
-/// reported something.
+/// Reports outputs that are the same file as an input or as each other; false where it did. Empty
+/// paths are skipped; terminals, pipes and devices may be given twice.
 bool check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
                    diag::Sink& sink);
 
@@ -27,14 +26,14 @@ class OutputFiles {
 public:
     explicit OutputFiles(diag::Sink& sink) : sink_(sink) {}
 
-    /// Begins the next file; `write` goes to it. What goes to `-`, standard output, is seen at
-    /// once. These return false, and have reported why, where something cannot be written.
+    /// Begins the next file, which `write` then writes to. Output to `-`, standard output, is
+    /// visible at once. All functions return false after they have reported an error.
     bool begin(const std::string& path);
     bool write(std::string_view bytes);
     bool add(const std::string& path, std::string_view bytes) {
         return begin(path) && write(bytes);
     }
-    /// All files take their names, in the order of their beginnings, or none.
+    /// Gives all files their names, in the order in which they were begun, or none.
     bool commit();
 
 private:
@@ -48,7 +47,7 @@ private:
     std::list<File> files_;
 };
 
-/// On standard output, at once. False, and reported, where not all of it can be written.
+/// Writes to standard output at once; reports an error and returns false where that fails.
 bool print(std::string_view text, diag::Sink& sink);
 
 }  // namespace etlc::driver

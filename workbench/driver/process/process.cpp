@@ -10,6 +10,7 @@
 
 #include "data/files/descriptor.hpp"
 #include "data/spill/file.hpp"
+#include "diag/render.hpp"
 
 namespace etlc::driver {
 
@@ -39,9 +40,9 @@ int say_what_failed() noexcept {
 
 namespace {
 
-/// Libraries have functions that may not throw and need memory all the same: destructors of
-/// nlohmann::json, iterators of std::filesystem. An exception that such a function is left by is no
-/// current one, and can only be that.
+/// Ends the process in std::terminate. Some noexcept functions of libraries allocate memory:
+/// destructors of nlohmann::json, iterators of std::filesystem. An exception that leaves one is not
+/// the current exception, and can only be std::bad_alloc.
 [[noreturn]] void end() noexcept {
     if (std::current_exception()) ::_exit(say_what_failed());
     if (std::uncaught_exceptions() == 0) ::abort();
@@ -54,7 +55,7 @@ namespace {
 void prepare_process() {
     std::set_terminate(end);
     ::signal(SIGXFSZ, SIG_IGN);
-    // The lowest number that is free is the one that open() gives.
+    // open() returns the lowest free descriptor.
     for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (::fcntl(standard, F_GETFD) < 0)
             static_cast<void>(::open("/dev/null", standard == STDERR_FILENO ? O_WRONLY : O_RDONLY));
@@ -62,6 +63,13 @@ void prepare_process() {
 
 bool print_error(std::string_view text) {
     return data::write_all(STDERR_FILENO, text);
+}
+
+int conclude(const std::string& form, const source::File& file, const diag::Sink& sink) {
+    const auto colour = isatty(STDERR_FILENO) != 0 ? diag::Colour::ansi : diag::Colour::none;
+    const bool told = print_error(form == "json" ? diag::render_json(file, sink)
+                                                 : diag::render_text(file, sink, colour));
+    return sink.refused() || !told ? kFailed : kDone;
 }
 
 }  // namespace etlc::driver

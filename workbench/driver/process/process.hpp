@@ -1,31 +1,56 @@
-// What the system gives a process: its standard streams, its signals.
-// Keeps true: nothing here throws; what an input, an output or the system does, ends no process of
-// ours by a signal but SIGPIPE, which ends it quietly when nobody reads its output any more, as is
-// usual.
+// The process of etlc: standard streams, signals, exit statuses and progress.
+// Keeps true: nothing here throws; no input, output or lack of resources ends the process by a
+// signal, except SIGPIPE, which ends it quietly when nobody reads its output any more. Progress is
+// shown on terminals only, and erased at the end.
 #pragma once
 
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <functional>
+#include <string>
 #include <string_view>
+
+#include "diag/diag.hpp"
+#include "source/source.hpp"
 
 namespace etlc::driver {
 
 // The exit statuses of etlc.
 inline constexpr int kDone = 0;
 inline constexpr int kFailed =
-    1;  ///< a diagnostic says why: a wrong spec, or what a process can lack
+    1;  ///< a diagnostic explains it: a wrong spec, wrong data, or a lack of resources
 inline constexpr int kWrongCall = 2;
-inline constexpr int kOwnFault = 3;  ///< of etlc
+inline constexpr int kOwnFault = 3;  ///< an internal error
 
-/// To be called before a file is opened. Takes the standard descriptors that are closed, so that no
-/// file of ours gets their numbers: standard output then cannot be written, what goes to standard
-/// error vanishes. A file that grows beyond its limit is an error and no signal.
+/// Prepares the process; call it before a file is opened. Opens closed standard descriptors, so
+/// that no file gets their numbers: standard output then cannot be written, and standard error goes
+/// nowhere. Makes a file that grows beyond its limit an error in place of a signal.
 void prepare_process();
 
-/// Says what the exception that is being handled means, without memory of its own. Gives: the exit
-/// status. Takes part where nobody can catch one any more, too: prepare_process() makes it what
-/// std::terminate calls.
+/// Prints what the current exception means, without allocating memory, and returns the exit status.
+/// prepare_process() also makes std::terminate call it.
 int say_what_failed() noexcept;
 
-/// On standard error. False where not all of it can be written.
+/// Writes to standard error; false where that fails.
 bool print_error(std::string_view text);
+
+/// Prints the findings as "text" or "json" and returns the exit status.
+int conclude(const std::string& form, const source::File& file, const diag::Sink& sink);
+
+constexpr char kEraseProgress[] = "\r                                        \r";
+
+inline bool progress_is_seen() {
+    return isatty(STDERR_FILENO) != 0;
+}
+
+/// Returns a function that shows how many episodes are done; empty where nobody would see it.
+inline std::function<void(std::size_t done, std::size_t total)> episodes_progress() {
+    if (!progress_is_seen()) return {};
+    return [](std::size_t done, std::size_t total) {
+        print_error(fmt::format("\r{} of {} episodes", done, total));
+        if (done == total) print_error(kEraseProgress);
+    };
+}
 
 }  // namespace etlc::driver

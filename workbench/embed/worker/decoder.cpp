@@ -12,7 +12,7 @@ namespace {
 
 using data::frames::kRefused;
 
-/// Fewer pictures than these are decoded rather than looked for.
+/// Skipping fewer pictures than these is slower than decoding them.
 constexpr std::int64_t kFewPictures = 50;
 
 std::string words_of(int error) {
@@ -21,13 +21,13 @@ std::string words_of(int error) {
     return words;
 }
 
-/// Whether every packet of such a video is one picture that is shown.
+/// Returns whether every packet of such a video is one picture that is shown.
 bool is_shown_by_packets(AVCodecID codec) {
     return codec == AV_CODEC_ID_H264 || codec == AV_CODEC_ID_HEVC || codec == AV_CODEC_ID_AV1 ||
            codec == AV_CODEC_ID_VP9;
 }
 
-/// The pictures that Matroska files of some programs promise.
+/// Returns the number of pictures that some programs declare in Matroska files.
 std::int64_t promised_by_tag(const AVStream* stream) {
     const AVDictionaryEntry* tag =
         av_dict_get(stream->metadata, "NUMBER_OF_FRAMES", nullptr, AV_DICT_IGNORE_SUFFIX);
@@ -43,7 +43,7 @@ Decoder::Decoder(const std::string& path) : path_(path), packet_(av_packet_alloc
 void Decoder::open(const std::string& path) {
     AVFormatContext* format = nullptr;
     AVDictionary* limits = nullptr;
-    av_dict_set(&limits, "protocol_whitelist", "file", 0);  // a play list may name others
+    av_dict_set(&limits, "protocol_whitelist", "file", 0);  // a playlist may name other files
     int error = avformat_open_input(&format, path.c_str(), nullptr, &limits);
     av_dict_free(&limits);
     if (error < 0) refuse(kRefused, "is no video, or a damaged one: " + words_of(error));
@@ -75,7 +75,7 @@ bool Decoder::next(AVFrame* picture) {
         if (has_jumped_) {
             const auto at = static_cast<std::size_t>(shown_);
             const bool has_time = is_whole && at < times_.size();
-            // One that is shown before the key frame may need what is before that.
+            // A picture shown before the key frame may need earlier packets.
             if (has_time && picture->best_effort_timestamp < times_[at]) continue;
             const bool is_expected = at < times_.size()
                                          ? has_time && picture->best_effort_timestamp == times_[at]
@@ -148,7 +148,7 @@ void Decoder::send() {
     if (error < 0) damaged(error);
 }
 
-/// Reads all packets once, for their time stamps.
+/// Reads the time stamps of all packets once.
 void Decoder::note_packets() {
     if (has_noted_) return;
     has_noted_ = true;
@@ -177,8 +177,8 @@ void Decoder::note_packets() {
     if (!tells) times_.clear();
 }
 
-/// What came behind a key frame is not what its time stamps promised: all is decoded, up to where
-/// it was.
+/// Starts again and decodes everything up to the current picture: the pictures after a key frame
+/// contradict their time stamps.
 void Decoder::start_again() {
     const std::int64_t shown = shown_;
     times_.clear();

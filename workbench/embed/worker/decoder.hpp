@@ -1,18 +1,39 @@
-// The pictures of a video, in the order in which they are shown.
-// Takes: a file. Gives: one picture after the other; or from a later one on, without those before
-// the key frame that it needs. Keeps true: a picture has the same pixels and number either way;
-// where time stamps do not tell pictures apart, all are decoded. A file that is damaged or cut ends
-// the process.
+// Decodes the pictures of a video in the order in which they are shown.
+// Keeps true: a picture has the same pixels and number whether or not earlier ones were skipped;
+// where time stamps are ambiguous, all pictures are decoded. A damaged or cut file ends the
+// process.
 #pragma once
 
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libswscale/swscale.h>
+}
+
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "embed/worker/ffmpeg.hpp"
-
 namespace etlc::embed::worker {
+
+/// Frees what FFmpeg allocated.
+template <auto free>
+struct Free {
+    template <class T>
+    void operator()(T* pointer) const {
+        free(&pointer);
+    }
+};
+using Format = std::unique_ptr<AVFormatContext, Free<avformat_close_input>>;
+using Codec = std::unique_ptr<AVCodecContext, Free<avcodec_free_context>>;
+using Packet = std::unique_ptr<AVPacket, Free<av_packet_free>>;
+using Picture = std::unique_ptr<AVFrame, Free<av_frame_free>>;
+struct FreeScaler {
+    void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
+};
+using Scaler = std::unique_ptr<SwsContext, FreeScaler>;
 
 class Decoder {
 public:
@@ -20,19 +41,19 @@ public:
 
     const AVStream* stream() const { return format_->streams[stream_]; }
 
-    /// False at the end.
+    /// Decodes the next picture; false at the end.
     bool next(AVFrame* picture);
 
-    /// Goes on before `frame`, which `shown` then says is not far away; or stays where it is.
+    /// Skips to the last key frame before `frame` where that is ahead; see `shown`.
     void go_towards(std::int64_t frame);
 
-    /// How many pictures there should be: what the container says; 0 where it says nothing.
+    /// Returns the number of pictures that the container declares; 0 where it declares none.
     std::int64_t promised() const;
-    /// How many there are, where that is known without decoding them.
+    /// Returns the number of pictures, where it is known without decoding them.
     std::optional<std::int64_t> counted();
-    /// The number of the next picture, counted from 0.
+    /// Returns the number of the next picture, counted from 0.
     std::int64_t shown() const { return shown_; }
-    /// The time stamp of the first picture, where pictures before this one were left out.
+    /// Returns the time stamp of the first picture, where pictures were skipped.
     std::int64_t first_time() const { return times_.empty() ? AV_NOPTS_VALUE : times_.front(); }
 
 private:
@@ -54,8 +75,8 @@ private:
     std::optional<std::int64_t> noted_;  ///< packets of pictures that are shown
     bool has_noted_ = false;
     bool has_jumped_ = false;
-    std::vector<std::int64_t> times_;   ///< of all pictures, ascending; empty: they do not tell
-    std::vector<std::int64_t> starts_;  ///< of the key frames among them
+    std::vector<std::int64_t> times_;   ///< times of all pictures, ascending; empty: ambiguous
+    std::vector<std::int64_t> starts_;  ///< times of the key frames
 };
 
 }  // namespace etlc::embed::worker

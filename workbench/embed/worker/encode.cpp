@@ -1,11 +1,10 @@
-// Frames in, embeddings out.
+// Encodes frames from standard input.
 #include <bit>
 #include <fstream>
 #include <iterator>
 
 #include "data/frames/protocol.hpp"
 #include "embed/worker/network.hpp"
-#include "embed/worker/prepare.hpp"
 #include "embed/worker/worker.hpp"
 
 namespace etlc::embed::worker {
@@ -32,7 +31,7 @@ std::string described(const Value& value) {
     return "'" + value.name + "' of " + (value.is_float ? "" : "not float, ") + shape_of(value);
 }
 
-/// Of one image to one embedding; else a refusal.
+/// Checks that a model maps one image to one embedding.
 void check_interface(const Interface& model) {
     if (model.inputs.size() != 1)
         refuse(kRefused, "takes " + std::to_string(model.inputs.size()) +
@@ -94,7 +93,7 @@ Model read_model(const std::string& path) {
     return model;
 }
 
-/// False at the end.
+/// Reads the next frame; false at the end.
 bool read_frame(Frame& frame) {
     char head[8];
     if (!read_in(head, sizeof head)) return false;

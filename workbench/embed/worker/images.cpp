@@ -1,4 +1,4 @@
-// Images through libpng and libjpeg: turned as their EXIF orientation says.
+// Decodes images with libpng and libjpeg, and applies their EXIF orientation.
 #include <png.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <iterator>
 #include <span>
 
-// They need the above, each those before.
+// These headers need the ones before them.
 #include <jpeglib.h>
 
 #include <jerror.h>
@@ -36,12 +36,12 @@ struct Image {
     std::size_t height = 0;
     std::size_t width = 0;
     Bytes rgb;
-    unsigned orientation = 1;  ///< of EXIF: 1 to 8
+    unsigned orientation = 1;  ///< EXIF orientation, 1 to 8
 };
 
 Bytes bytes_of(const std::string& path) {
     std::error_code error;
-    const bool is_file = std::filesystem::is_regular_file(path, error);  // a pipe may never begin
+    const bool is_file = std::filesystem::is_regular_file(path, error);  // a pipe may block
     std::ifstream file(is_file ? path : "", std::ios::binary);
     if (!file) refuse(kRefused, "cannot be read as a file");
     return Bytes(std::istreambuf_iterator<char>(file), {});
@@ -55,7 +55,7 @@ Bytes bytes_of(const std::string& path) {
     refuse(kRefused, "is cut: its end is missing");
 }
 
-/// Before anything is allocated for its pixels.
+/// Checks the size of an image before its pixels are allocated.
 void check_size(std::uint64_t width, std::uint64_t height) {
     if (std::max(width, height) <= kMaxExtent && width * height <= kMaxPixels) return;
     refuse(kRefused, "has " + std::to_string(width) + " x " + std::to_string(height) +
@@ -63,7 +63,7 @@ void check_size(std::uint64_t width, std::uint64_t height) {
                          " in a row or column and " + std::to_string(kMaxPixels) + " in all");
 }
 
-/// 1 where nothing says another. `tiff`: what EXIF data are, entries of 12 bytes in a list.
+/// Reads the orientation from EXIF data, a list of entries of 12 bytes; 1 where there is none.
 unsigned orientation_in(View tiff) {
     constexpr std::uint64_t kOrientation = 0x0112, kShort = 3;
     const bool little = tiff.size() >= 2 && tiff[0] == 'I' && tiff[1] == 'I';
@@ -89,7 +89,7 @@ public:
     explicit Png(View bytes) : rest_(bytes) {
         png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, fail, ignore);
         info_ = png_create_info_struct(png_);
-        png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // check_size says more
+        png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // check_size() reports more
         png_set_read_fn(png_, this, read);
     }
     Png(const Png&) = delete;
@@ -203,7 +203,7 @@ private:
         refuse_damaged(why);
     }
 
-    /// Of what the library goes on from, only that is taken which leaves the pixels as they were.
+    /// Accepts only those warnings of the library that leave the pixels unchanged.
     static void judge(j_common_ptr state, int level) {
         const int code = state->err->msg_code;
         if (level >= 0 || code == JWRN_EXTRANEOUS_DATA || code == JWRN_JFIF_MAJOR ||
@@ -217,7 +217,7 @@ private:
     jpeg_error_mgr errors_{};
 };
 
-/// As its EXIF orientation says: the side that is stored first may be any, in either direction.
+/// Rotates and mirrors an image by its EXIF orientation.
 Image upright(Image image) {
     const unsigned kind = image.orientation;
     if (kind == 1) return image;

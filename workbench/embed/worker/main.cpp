@@ -80,7 +80,8 @@ std::string Words::text(std::string_view name, std::string usual) const {
 
 namespace {
 
-/// What a damaged file may cost. `memory`: in bytes, 0 for no limit: a model is the user's own.
+/// Limits the process, since a file may be damaged. `memory`: bytes; 0 for no limit, since models
+/// are trusted.
 void limit_resources(rlim_t memory) {
     const rlimit space{memory, memory};
     const rlimit nothing{0, 0};
@@ -126,7 +127,7 @@ int main(int argc, char** argv) {
     try {
         const int status = run({argv + 1, argv + argc});
         std::fflush(nullptr);
-        ::_exit(status);  // threads of libraries need not be waited for
+        ::_exit(status);  // without waiting for threads of libraries
     } catch (const std::bad_alloc&) {
         refuse(etlc::data::frames::kRefused, "takes more memory than reading it may");
     } catch (const std::exception& error) {

@@ -7,15 +7,11 @@
 #include <regex>
 
 #include "data/frames/protocol.hpp"
-#include "embed/worker/prepare.hpp"
 #include "embed/worker/worker.hpp"
 
 namespace etlc::embed::worker {
 
-namespace {
-
-using data::frames::kRefused;
-
+/// Frees what ONNX Runtime allocated.
 template <auto release>
 struct Release {
     template <class T>
@@ -32,7 +28,60 @@ using Memory = std::unique_ptr<ort::Memory, Release<ort::release_memory>>;
 using Tensor = std::unique_ptr<ort::Tensor, Release<ort::release_tensor>>;
 using Shape = std::unique_ptr<ort::Shape, Release<ort::release_shape>>;
 
-/// On one line, without the places in its sources: "NAME.h:91 void Type::function(int, float) ".
+namespace {
+
+/// The position of a pixel between two of the image, along an axis; pixel centres are at half
+/// numbers.
+struct Between {
+    int low = 0;
+    int high = 0;
+    float part = 0;  ///< fraction of the distance
+};
+
+std::vector<Between> between(int of_image, int wanted) {
+    std::vector<Between> result;
+    for (int i = 0; i < wanted; ++i) {
+        const double at = std::max((i + 0.5) * of_image / wanted - 0.5, 0.0);
+        const int low = std::min(static_cast<int>(at), of_image - 1);
+        result.push_back({low, std::min(low + 1, of_image - 1), static_cast<float>(at - low)});
+    }
+    return result;
+}
+
+}  // namespace
+
+/// Reads only the pixels that contribute.
+void prepare(const Frame& frame, const Settings& settings, std::vector<float>& image) {
+    const std::vector<Between> rows = between(frame.height, settings.height);
+    const std::vector<Between> columns = between(frame.width, settings.width);
+    const std::size_t pixels = rows.size() * columns.size();
+    const std::size_t line_bytes = std::size_t(kChannels) * std::size_t(frame.width);
+    float* to = image.data();
+    for (const Between& row : rows) {
+        const std::uint8_t* const upper = frame.rgb.data() + std::size_t(row.low) * line_bytes;
+        const std::uint8_t* const lower = frame.rgb.data() + std::size_t(row.high) * line_bytes;
+        for (const Between& column : columns) {
+            for (int c = 0; c < kChannels; ++c) {
+                const auto mixed = [&](const std::uint8_t* line) {
+                    const float left = line[kChannels * column.low + c];
+                    return left + column.part * (line[kChannels * column.high + c] - left);
+                };
+                const float above = mixed(upper);
+                const float value = above + row.part * (mixed(lower) - above);
+                to[static_cast<std::size_t>(c) * pixels] =
+                    (value / 255.0F - settings.mean[c]) / settings.deviation[c];
+            }
+            ++to;
+        }
+    }
+}
+
+namespace {
+
+using data::frames::kRefused;
+
+/// Puts a message of ONNX Runtime on one line, without its source locations: "NAME.h:91 void
+/// Type::function(int, float) ".
 std::string said(std::string why) {
     static const std::regex place(R"(\S+\.(h|cc):\d+ [^()]*\([^()]*\)( const)? )");
     constexpr std::size_t kLongest = 2000;
@@ -43,7 +92,7 @@ std::string said(std::string why) {
     return why.substr(0, why.find_last_not_of(' ') + 1);
 }
 
-/// Standard error has what goes wrong, on one line.
+/// Drops the log of ONNX Runtime: errors are one line on standard error.
 void say_nothing(void* /*unused*/, int /*unused*/, const char* /*unused*/, const char* /*unused*/,
                  const char* /*unused*/, const char* /*unused*/) {}
 
@@ -66,11 +115,10 @@ struct Network::Parts {
               return ort::create_memory(ort::kArena, ort::kUsual, result);
           })) {
         const auto options = made<Options>(kLoading, ort::create_options);
-        // Neither the number of cores nor what else runs shall change a sum.
+        // One thread, so that the order of additions does not depend on the machine.
         done(kLoading, ort::set_threads(options.get(), 1));
-        // Without these, products of 8 bits are added up in 16, where processors have no better
-        // instruction, and what overflows is cut; and what a model computes in float32 between
-        // quantised numbers is computed in 8 bits.
+        // Without these options, processors without a better instruction add products of 8 bits in
+        // 16 bits with saturation, and float32 operations between quantised numbers run in 8 bits.
         done(kLoading, ort::set_optimization(options.get(), ort::kAllOptimizations));
         done(kLoading, ort::configure(options.get(), "session.x64quantprecision", "1"));
         done(kLoading, ort::configure(options.get(), "session.disable_quant_qdq", "1"));
@@ -80,7 +128,7 @@ struct Network::Parts {
         });
     }
 
-    /// Its message names the node.
+    /// Runs the network; a failure names the node.
     [[noreturn]] void refuse_for(const ort::Status& status, const std::string& doing) const {
         if (ort::error_code(&status) == ort::kInvalidProtobuf)
             refuse(kRefused, "is no ONNX model, or a damaged one");
@@ -90,7 +138,7 @@ struct Network::Parts {
                              "(docs/encoders.md)");
     }
 
-    /// What a call makes; ends the process, `doing` being what was not done, where it fails.
+    /// Returns what a call creates; ends the process with `doing` in the message where it fails.
     template <class Holder, class Call>
     Holder made(const std::string& doing, const Call& call) const {
         typename Holder::pointer result = nullptr;
@@ -102,7 +150,7 @@ struct Network::Parts {
         if (const Status failed(status); failed) refuse_for(*failed, doing);
     }
 
-    /// Of the shape that the model declares, as far as it does.
+    /// Checks the shape that the model declares.
     std::span<const float> floats_of(ort::Tensor& value) const {
         const auto described = made<Shape>(
             kRunning, [&](ort::Shape** result) { return ort::shape_of(&value, result); });

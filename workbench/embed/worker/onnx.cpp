@@ -19,7 +19,7 @@ constexpr std::uint64_t kDimension = 1;                               // TensorS
 constexpr std::uint64_t kDimensionValue = 1;                          // its Dimension
 constexpr std::uint64_t kFloat = 1;                                   // TensorProto.DataType
 
-/// The messages that tensors lie in, one in the other.
+/// The nesting of messages that contain tensors.
 enum class Part { model, function, graph, node, attribute, sparse, tensor };
 struct Inner {
     Part of;
@@ -42,12 +42,12 @@ constexpr Inner kInner[] = {{Part::model, kGraph, Part::graph},
                             {Part::sparse, 1, Part::tensor},
                             {Part::sparse, 2, Part::tensor}};
 
-/// One message: its fields in order.
+/// The fields of a message, in order.
 class Message {
 public:
     explicit Message(std::string_view all) : rest_(all) {}
 
-    /// The next field; false at the end, or where the bytes are no message.
+    /// Reads the next field; false at the end, or where the bytes are no message.
     bool next() {
         if (rest_.empty() || !sound_) return false;
         const std::uint64_t key = varint();
@@ -66,7 +66,7 @@ public:
     bool sound() const { return sound_; }
 
     std::uint64_t field = 0;
-    std::uint64_t number = 0;  ///< where it has no bytes
+    std::uint64_t number = 0;  ///< value of a field without bytes
     std::string_view bytes;
 
 private:
@@ -129,7 +129,7 @@ Value value_of(std::string_view bytes) {
     return value;
 }
 
-/// The text of a field of a message.
+/// Returns the text of a field.
 std::string_view text_in(std::string_view bytes, std::uint64_t field) {
     std::string_view text;
     for (Message message(bytes); message.next();)
@@ -137,7 +137,7 @@ std::string_view text_in(std::string_view bytes, std::uint64_t field) {
     return text;
 }
 
-/// A file that the numbers of a tensor lie in; empty: it holds them itself.
+/// Returns the external file of a tensor's numbers; empty where the tensor contains them.
 std::string file_of(std::string_view tensor) {
     for (Message message(tensor); message.next();)
         if (message.field == kTensorFile && text_in(message.bytes, kKey) == "location")
@@ -145,8 +145,8 @@ std::string file_of(std::string_view tensor) {
     return "";
 }
 
-/// A file that the numbers of a tensor lie in, wherever that is; empty: there is none. `levels`: of
-/// messages one in the other; protocol buffers with more are none.
+/// Finds an external file of any tensor; empty where there is none. `levels`: the deepest nesting
+/// of messages that protocol buffers allow.
 std::string file_beside(Part part, std::string_view bytes, unsigned levels = 100) {
     if (part == Part::tensor) return file_of(bytes);
     for (Message message(bytes); levels > 0 && message.next();)

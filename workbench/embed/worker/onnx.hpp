@@ -1,6 +1,5 @@
-// What an ONNX model takes and gives, read from its protocol buffer.
-// Takes: the bytes of the file. Gives: the names and shapes of its inputs and outputs as the file
-// declares them. Keeps true: no field is read beyond the bytes; a file that is none gives nothing.
+// The interface of an ONNX model, read from its protocol buffer: the names and shapes of its inputs
+// and outputs. Keeps true: no field is read beyond the bytes.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +15,22 @@ using Extents = std::vector<std::int64_t>;  ///< 0: any number
 struct Value {
     std::string name;
     bool is_float = false;
-    std::optional<Extents> shape;  ///< nothing: any
+    std::optional<Extents> shape;  ///< nothing: any shape
 };
 
 struct Interface {
-    std::vector<Value> inputs;  ///< without the weights, which older files list here too
+    std::vector<Value> inputs;  ///< without the weights, which older files list as inputs
     std::vector<Value> outputs;
-    std::string file_beside;  ///< one that holds weights; empty: there is none
+    std::string file_beside;  ///< an external file of weights; empty: none
 };
 
+/// Reads the interface of a model; nothing where the bytes are no ONNX model.
 std::optional<Interface> interface_of(std::string_view model);
 
-/// Whether what is there is as declared.
+/// Returns whether a shape is as declared.
 bool fits(const Extents& shape, const Value& declared);
 
-/// "1 x 3 x ? x ?"
+/// Returns "1 x 3 x ? x ?".
 std::string shape_text(const Extents& shape);
 
 }  // namespace etlc::embed::worker

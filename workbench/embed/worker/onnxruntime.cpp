@@ -39,7 +39,7 @@ constexpr std::string_view kNodeMachine = "x64";
     refuse(kNoRuntime, "is not run: " + what);
 }
 
-/// What a folder holds under names that begin so, the highest version first.
+/// Lists the entries of a folder whose names have a prefix, the highest version first.
 Paths named(const fs::path& folder, std::string_view beginning) {
     Paths found;
     std::error_code none;
@@ -55,7 +55,7 @@ void add(Paths& to, const Paths& more) {
     to.insert(to.end(), more.begin(), more.end());
 }
 
-/// Of the python3 on the PATH, which knows where its packages lie.
+/// Returns the package folders of the python3 on the PATH.
 Paths of_pip() {
     constexpr char kAsk[] =
         "python3 -c 'import importlib.util as u, sys; sys.path = [p for p in sys.path if p]; "
@@ -71,8 +71,8 @@ Paths of_pip() {
     return folder.empty() ? Paths{} : named(fs::path(folder) / "capi", kLibrary);
 }
 
-/// The folders in which node looks for packages, and npm installs them: here and further up, and
-/// beside the node on the PATH.
+/// Returns the package folders of node and npm: in the working directory and above, and beside the
+/// node on the PATH.
 Paths folders_of_npm() {
     Paths folders;
     std::error_code none;
@@ -97,7 +97,7 @@ Paths of_npm() {
     return found;
 }
 
-/// Of packages of the system, whose names may end in any version.
+/// Finds libraries of system packages, whose names may end in any version.
 Paths of_system() {
     Paths found;
     for (const char* const folder :
@@ -106,7 +106,7 @@ Paths of_system() {
     return found;
 }
 
-/// The library that a path names: itself, or one in the folder, as releases and packages have it.
+/// Finds the library that a path names: a file, or one in a folder of a release or package.
 fs::path library_at(const std::string& where) {
     std::error_code none;
     if (!fs::exists(where, none)) refuse_library("there is no '" + where + "'");
@@ -119,7 +119,7 @@ fs::path library_at(const std::string& where) {
 
 using Head = ElfW(Ehdr);
 
-/// Of an ELF file; nothing where it is none.
+/// Returns the machine of an ELF file; nothing for other files.
 std::optional<Head> head_of(const fs::path& path) {
     Head head{};
     std::ifstream file(path, std::ios::binary);
@@ -128,7 +128,7 @@ std::optional<Head> head_of(const fs::path& path) {
     return head;
 }
 
-/// Whether programs of both kinds run on one machine.
+/// Returns whether programs for both machines run on one.
 bool are_alike(const Head& one, const Head& other) {
     return one.e_ident[EI_CLASS] == other.e_ident[EI_CLASS] &&
            one.e_ident[EI_DATA] == other.e_ident[EI_DATA] && one.e_machine == other.e_machine;
@@ -140,13 +140,13 @@ struct Opened {
 };
 
 Opened open(const fs::path& found) {
-    const fs::path path = fs::absolute(found);  // a name alone is looked for elsewhere
+    const fs::path path = fs::absolute(found);  // dlopen() searches elsewhere for a bare name
     const std::string name = "'" + path.string() + "'";
     const auto head = head_of(path);
     if (!head) refuse_library(name + " is no shared library" + kExpected);
     if (!are_alike(*head, head_of("/proc/self/exe").value_or(*head)))
         refuse_library(name + " is for another processor than this etlc");
-    // The table of sections is its end, without which the loader would be stopped by a signal.
+    // The table of sections is at its end; without it a signal would stop the loader.
     if (head->e_shoff + std::size_t{head->e_shnum} * head->e_shentsize > fs::file_size(path))
         refuse_library(name + " is cut: its end is missing");
     void* const library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -154,7 +154,7 @@ Opened open(const fs::path& found) {
     return {library, name};
 }
 
-/// What no path names: by pip, by npm, by the system.
+/// Finds the library without a path: installed by pip, npm or the system.
 Opened find() {
     for (const auto& where : {of_pip, of_npm})
         if (const Paths found = where(); !found.empty()) return open(found.front());

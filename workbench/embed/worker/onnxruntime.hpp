@@ -1,7 +1,6 @@
-// ONNX Runtime, which runs networks: the library that this machine has, and what is called of it.
-// Takes: the path of a library, or none. Gives: its version, and its functions. Keeps true: nothing
-// of it is needed to build etlc; a library that is none, or another's, ends the process with a line
-// that says what it is and what is expected.
+// ONNX Runtime, loaded from this machine: its version, and the functions that etlc-embed calls.
+// Keeps true: etlc builds without it; a file that is not ONNX Runtime ends the process with a line
+// that says what was found and what was expected.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +14,8 @@ struct Library {
     std::string version;  ///< "1.30.0"
 };
 
-/// Loads the library `where`, or one in the folder `where`; where that is empty, what the
-/// environment names (ETLC_ONNXRUNTIME), or what pip, npm or the system have installed.
+/// Loads the library `where`, or one in the folder `where`. An empty path stands for
+/// ETLC_ONNXRUNTIME, or for what pip, npm or the system have installed.
 Library load_onnxruntime(const std::string& where);
 
 namespace ort {
@@ -42,11 +41,11 @@ inline constexpr int kAllOptimizations = 99;  // GraphOptimizationLevel
 inline constexpr int kFloat = 1;              // ONNXTensorElementDataType
 inline constexpr int kArena = 1, kUsual = 0;  // OrtAllocatorType, OrtMemType
 
-/// The table of the library that is loaded.
+/// The table of the loaded library.
 using Function = void (*)();
 const Function* table();
 
-/// The function at a place of the table.
+/// Returns the function at a place of the table.
 template <std::size_t place, class Signature>
 struct Call;
 template <std::size_t place, class Result, class... Arguments>

@@ -1,4 +1,4 @@
-// Video through FFmpeg's libraries. Frames have the bytes of
+// Decodes video with FFmpeg's libraries. Frames have the bytes of
 // `ffmpeg -i FILE -fps_mode passthrough -f rawvideo -pix_fmt rgb24 -`.
 extern "C" {
 #include <libavutil/display.h>
@@ -7,12 +7,18 @@ extern "C" {
 }
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "data/frames/protocol.hpp"
-#include "embed/worker/container.hpp"
 #include "embed/worker/decoder.hpp"
 #include "embed/worker/worker.hpp"
 
@@ -22,21 +28,86 @@ namespace {
 
 using namespace data::frames;
 
+// https://www.rfc-editor.org/rfc/rfc8794 (EBML), section 11, and RFC 9559 (Matroska)
+constexpr std::uint64_t kHead = 0x1A45DFA3;
+constexpr std::uint64_t kSegment = 0x18538067;
+
+/// Reads elements of EBML: an identifier, a size, and the content.
+class Elements {
+public:
+    explicit Elements(std::istream& from) : from_(from) {}
+
+    std::optional<std::uint64_t> identifier() { return number(true); }
+    /// Reads a size; nothing where it is unknown, as in a live stream.
+    std::optional<std::uint64_t> size() { return number(false); }
+
+private:
+    /// Reads a number, whose first byte has as many leading zeros as bytes follow.
+    std::optional<std::uint64_t> number(bool with_mark) {
+        const int first = from_.get();
+        if (first <= 0) return std::nullopt;
+        const auto more = static_cast<unsigned>(std::countl_zero(static_cast<std::uint8_t>(first)));
+        std::uint64_t value = static_cast<unsigned>(first) & (with_mark ? 0xFFU : 0x7FU >> more);
+        for (unsigned i = 0; i < more; ++i) {
+            const int byte = from_.get();
+            if (byte < 0) return std::nullopt;
+            value = value << 8U | static_cast<unsigned>(byte);
+        }
+        const std::uint64_t unknown = (std::uint64_t{1} << 7U * (more + 1)) - 1;
+        if (!with_mark && value == unknown) return std::nullopt;
+        return value;
+    }
+
+    std::istream& from_;
+};
+
+std::string why_cut_matroska(std::ifstream& file, std::uint64_t length) {
+    Elements elements(file);
+    if (elements.identifier() != kHead) return "";
+    const auto head = elements.size();
+    if (!head || *head > length) return "";
+    file.seekg(static_cast<std::streamoff>(*head), std::ios::cur);
+    if (elements.identifier() != kSegment) return "";
+    const auto segment = elements.size();
+    if (!segment) return "";
+    const std::uint64_t end = static_cast<std::uint64_t>(file.tellg()) + *segment;
+    if (end <= length) return "";
+    return "is cut: it has " + std::to_string(length) + " bytes, expected " + std::to_string(end);
+}
+
+/// Says why a file is cut, where its head (Matroska, WebM) or its end (GIF) shows it; else "". The
+/// frames of other containers are counted.
+std::string why_cut(const std::string& path) {
+    std::error_code error;
+    const std::uint64_t length = std::filesystem::file_size(path, error);
+    std::ifstream file(path, std::ios::binary);
+    if (error || !file) return "";
+    std::array<char, 4> begin{};
+    file.read(begin.data(), begin.size());
+    if (std::string_view(begin.data(), begin.size()) == "GIF8") {
+        file.seekg(-1, std::ios::end);
+        return file.get() == ';' ? "" : "is cut: its end is missing";
+    }
+    file.clear();
+    file.seekg(0);
+    return why_cut_matroska(file, length);
+}
+
 std::string number(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", value);
     return text;
 }
 
-/// Which frames are wanted.
+/// The frames that are wanted.
 struct Choice {
     std::vector<std::int64_t> only;
     std::int64_t first = 0;
     std::int64_t count = INT64_MAX;
     double rate = 0;
-    std::optional<std::int64_t> total;  ///< frames that the video has to have
+    std::optional<std::int64_t> total;  ///< number of frames that the video must have
 
-    /// One that needs no frame from this one on.
+    /// Returns whether no frame from this one on is wanted.
     bool ends_before(std::int64_t frame) const {
         if (!only.empty()) return frame > only.back();
         return frame >= first && frame - first >= count;
@@ -45,7 +116,7 @@ struct Choice {
         if (!only.empty()) return std::binary_search(only.begin(), only.end(), frame);
         return frame >= first && !ends_before(frame) && (frame - first) % stride == 0;
     }
-    /// The next frame that is wanted, from this one on.
+    /// Returns the next wanted frame, from this one on.
     std::int64_t next_from(std::int64_t frame) const {
         if (only.empty()) return std::max(first, frame);
         return *std::lower_bound(only.begin(), only.end(), frame);
@@ -64,7 +135,7 @@ Choice choice_of(const Words& options) {
     return choice;
 }
 
-/// To red, green and blue as ffmpeg converts by default.
+/// Converts to red, green and blue as ffmpeg does by default.
 class Converter {
 public:
     const std::vector<std::uint8_t>& rgb(const AVFrame& picture, std::int64_t frame) {
@@ -74,7 +145,7 @@ public:
                                  size_text(width_, height_) + " to " +
                                  size_text(picture.width, picture.height) +
                                  " or its pixels, expected one size");
-        // Rows that end on a boundary of 64 bytes: the scaler's loops leave out the ends of others.
+        // Rows are padded to 64 bytes: the loops of the scaler skip the ends of others.
         std::uint8_t* const planes[] = {rows_.data()};
         const int strides[] = {stride_};
         sws_scale(scaler_.get(), picture.data, picture.linesize, 0, height_, planes, strides);
@@ -146,7 +217,7 @@ private:
     std::vector<std::uint8_t> rgb_;
 };
 
-/// Quarter turns clockwise that the file asks for, as cameras of phones write it.
+/// Returns the quarter turns clockwise that the file requests, as phones write it.
 int quarter_turns(const AVStream* stream) {
     const auto* const matrix = reinterpret_cast<const std::int32_t*>(
         av_stream_get_side_data(stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr));
@@ -155,7 +226,7 @@ int quarter_turns(const AVStream* stream) {
     return std::isnan(angle) ? 0 : (static_cast<int>(std::lround(angle / 90)) % 4 + 4) % 4;
 }
 
-/// One quarter turn clockwise; swaps height and width.
+/// Turns a frame clockwise by a quarter; swaps height and width.
 void turn(std::vector<std::uint8_t>& rgb, int& height, int& width) {
     std::vector<std::uint8_t> turned(rgb.size());
     for (int row = 0; row < height; ++row)
@@ -182,7 +253,7 @@ void send(const AVFrame& picture, Converter& converter, int turns, std::int64_t 
     write_frame(std::uint32_t(height), std::uint32_t(width), turned.data());
 }
 
-/// Holds frames to the rate of the steps.
+/// Checks that frames come at the rate of the steps.
 class Clock {
 public:
     Clock(const AVStream* stream, double rate) : seconds_(av_q2d(stream->time_base)), rate_(rate) {
@@ -203,7 +274,7 @@ public:
 
     std::int64_t stride() const { return stride_; }
 
-    /// The time stamp of frame 0.
+    /// Sets the time stamp of frame 0.
     void begin(std::int64_t stamp) { begin_ = double(stamp) * seconds_; }
 
     /// Refuses a frame that is more than half a frame from its place.
@@ -219,7 +290,7 @@ public:
     }
 
 private:
-    double seconds_;  ///< of a unit of time stamps
+    double seconds_;  ///< seconds per unit of time stamps
     double rate_;
     double frames_a_second_ = 0;
     double begin_ = 0;

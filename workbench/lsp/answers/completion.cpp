@@ -1,12 +1,17 @@
-#include "lsp/answers/completion.hpp"
+#include "lsp/answers/answers.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
-#include "lsp/answers/durations.hpp"
-#include "lsp/answers/facts.hpp"
+#include "check/numbers/duration.hpp"
 #include "lsp/answers/words.hpp"
+#include "lsp/spec/analysis.hpp"
 #include "parse/continuations.hpp"
 
 namespace etlc::lsp {
@@ -16,9 +21,81 @@ namespace {
 using check::NameKind;
 using parse::Role;
 
+/// A duration that a bound can have at the rate of the spec.
+struct Duration {
+    std::string text;    ///< "0.5 s"
+    std::string detail;  ///< "10 steps"
+};
+
+using check::Decimal;
+using check::Quantity;
+
+/// Usual durations, from short to long.
+constexpr std::pair<std::string_view, std::string_view> kUsual[] = {
+    {"1", "ms"},   {"10", "ms"}, {"20", "ms"}, {"50", "ms"}, {"100", "ms"},
+    {"200", "ms"}, {"0.5", "s"}, {"1", "s"},   {"2", "s"},   {"5", "s"},
+    {"10", "s"},   {"30", "s"},  {"1", "min"}, {"5", "min"}};
+
+constexpr std::array<std::string_view, 4> kUnits{"us", "ms", "s", "min"};
+
+Quantity step_of(const Analysis& analysis) {
+    return {Decimal::parse(analysis.checked.step_number), analysis.checked.step_unit};
+}
+
+class Found {
+public:
+    void add(std::string text, std::uint64_t steps, bool rounded) {
+        const bool known = std::any_of(all_.begin(), all_.end(),
+                                       [&](const Duration& d) { return d.text == text; });
+        if (steps == 0 || known || text.starts_with("about")) return;
+        if (text.find('/') != std::string::npos) return;  // it is not a finite decimal
+        all_.push_back(
+            {std::move(text), (rounded ? "rounded to " : "") + diag::counted(steps, "step")});
+    }
+    std::vector<Duration> take() { return std::move(all_); }
+
+private:
+    std::vector<Duration> all_;
+};
+
+/// Adds a duration that is a whole number of steps, or is rounded to one.
+void add_written(Found& found, const Analysis& analysis, std::string_view number,
+                 std::string_view unit, bool with_neighbours) {
+    const Quantity step = step_of(analysis);
+    const check::StepCount count = check::count_steps({Decimal::parse(number), unit}, step);
+    if (count.too_many) return;
+    const std::string text = check::with_unit(number, unit);
+    const std::string& rounding = analysis.checked.model.rounding;
+    if (count.whole) return found.add(text, count.floor, false);
+    if (!rounding.empty()) {
+        const bool up = rounding == "up" || (rounding == "to the nearest" && count.upper_half);
+        return found.add(text, count.floor + (up ? 1 : 0), true);
+    }
+    if (!with_neighbours || count.floor == 0) return;
+    for (const std::uint64_t steps : {count.floor, count.floor + 1})
+        found.add(check::duration_text(steps, step, unit), steps, false);
+}
+
+/// Returns usual durations; none where the spec has no rate.
+std::vector<Duration> durations(const Analysis& analysis) {
+    if (analysis.checked.step_number.empty()) return {};
+    Found found;
+    for (const auto& [number, unit] : kUsual) add_written(found, analysis, number, unit, false);
+    return found.take();
+}
+
+/// Returns the number with each unit; where that is no whole number of steps, the two neighbours.
+std::vector<Duration> durations_near(const Analysis& analysis, const std::string& number) {
+    if (analysis.checked.step_number.empty()) return {};
+    if (Decimal::parse(number).digits.size() > check::kMaxTimeDigits) return {};
+    Found found;
+    for (const std::string_view unit : kUnits) add_written(found, analysis, number, unit, true);
+    return found.take();
+}
+
 constexpr int kKeyword = 14;
 
-/// The protocol's numbers of kinds of items.
+/// Returns the protocol's number of a kind of item.
 int item_kind(WordInfo::Kind kind) {
     constexpr int kFunction = 3;
     constexpr int kUnit = 11;
@@ -82,7 +159,7 @@ bool fits(const Declared& declared, Role role, const std::string& declaration) {
     return false;
 }
 
-/// Words that are none of the grammar: check/ knows them.
+/// Returns the words that the grammar does not list: check/ defines them.
 std::vector<std::string> words_of(Role role) {
     if (role == Role::calibration_argument) return {"alpha", "against", "gamma", "lo", "hi"};
     if (role == Role::fitting_argument) return {"k", "r", "away"};
@@ -94,8 +171,7 @@ std::vector<std::string> words_of(Role role) {
 
 class Items {
 public:
-    Items(const Analysis& analysis, source::Span typed)
-        : range_(json_of(analysis.lines.range(typed))) {}
+    Items(const Analysis& analysis, source::Span typed) : range_(analysis.lines.range(typed)) {}
 
     void add(const std::string& label, int kind, const std::string& detail,
              const std::vector<std::string>& sentences = {}) {
@@ -106,9 +182,9 @@ public:
         items_.back()["documentation"] = text;
     }
 
-    /// In place of another range than the word that is typed.
+    /// Adds an item that replaces another range than the typed word.
     void add_at(const Json& range, const std::string& label, int kind, const std::string& detail) {
-        // What comes first is meant first.
+        // Items keep their order.
         items_.push_back({{"label", label},
                           {"kind", kind},
                           {"detail", detail},
@@ -123,7 +199,7 @@ private:
     Json items_ = Json::array();
 };
 
-/// Every declaration of the place's kind but the one that is being written.
+/// Adds the names that fit, except that of the declaration that is being written.
 void add_names(Items& items, const Analysis& analysis, const parse::Continuations& at) {
     for (const Declared& declared : analysis.names.declared) {
         if (!declared.kind || !fits(declared, at.role, at.declaration)) continue;
@@ -142,7 +218,7 @@ void add_durations(Items& items, const Analysis& analysis, const parse::Continua
         for (const Duration& duration : durations(analysis))
             items.add(duration.text, kValue, duration.detail);
     if (at.number_before.empty()) return;
-    // In place of the number that is there already.
+    // Items replace the number before the cursor.
     const auto size = static_cast<std::uint32_t>(at.number_before.size());
     std::uint32_t begin = at.typed.begin;
     while (begin > 0 && analysis.file.text({begin - 1, begin}) == " ") --begin;
@@ -150,15 +226,16 @@ void add_durations(Items& items, const Analysis& analysis, const parse::Continua
     const bool takes_unit = std::find(at.words.begin(), at.words.end(), "ms") != at.words.end() &&
                             at.declaration != "const" && at.declaration != "period";
     if (!takes_unit) return;
-    const Json range = json_of(analysis.lines.range({begin - size, at.typed.end}));
+    const Json range = analysis.lines.range({begin - size, at.typed.end});
     for (const Duration& duration : durations_near(analysis, at.number_before))
         items.add_at(range, duration.text, kValue, duration.detail);
 }
 
 }  // namespace
 
-Json completion(const Analysis& analysis, std::uint32_t offset) {
-    const parse::Continuations at = parse::continuations_at(analysis.file, offset);
+Json completion(const Question& question) {
+    const Analysis& analysis = question.analysis();
+    const parse::Continuations at = parse::continuations_at(analysis.file, question.offset());
     Items items(analysis, at.typed);
     add_names(items, analysis, at);
     const bool method = at.role == Role::calibration || at.role == Role::fitting;
@@ -166,7 +243,7 @@ Json completion(const Analysis& analysis, std::uint32_t offset) {
         items.add(word, kKeyword, method ? "method" : "argument");
     add_durations(items, analysis, at);
     for (const std::string& word : at.words) {
-        // The grammar takes formulas there, and the language none.
+        // The grammar allows formulas here, the language does not.
         if (at.declaration == "predicate" && (word == "true" || word == "false")) continue;
         if (const WordInfo* const info = find_word(word))
             items.add(word, item_kind(info->kind), std::string(info->form),

@@ -1,4 +1,4 @@
-#include "lsp/answers/diagnostics.hpp"
+#include "lsp/answers/answers.hpp"
 
 #include <fmt/format.h>
 
@@ -21,14 +21,13 @@ int number_of(diag::Severity severity) {
     return 3;  // information
 }
 
-/// As the spec would name it.
+/// Returns a path relative to the folder of the spec.
 std::string shown_path(const std::string& path, const source::File& spec) {
     const std::filesystem::path folder = std::filesystem::path(spec.path()).parent_path();
     return source::visible(std::filesystem::path(path).lexically_proximate(folder).string());
 }
 
-/// Messages name files by their whole paths, since that is how etlc was called; the spec names them
-/// from its own folder.
+/// Makes the paths in a message relative to the folder of the spec, as the spec names them.
 std::string without_folder(std::string message, const source::File& spec) {
     const std::string folder = std::filesystem::path(spec.path()).parent_path().string() + "/";
     if (folder.size() == 1) return message;
@@ -62,19 +61,18 @@ Json related_to(const diag::Diagnostic& found, const Analysis& analysis, const s
     if (!found.file.empty()) {
         const Position at{std::max(found.line, 1U) - 1, std::max(found.column, 1U) - 1};
         related.push_back(
-            {{"location", {{"uri", uri_of_path(found.file)}, {"range", json_of(Range{at, at})}}},
+            {{"location", {{"uri", uri_of_path(found.file)}, {"range", Range{at, at}}}},
              {"message", "found in this file"}});
     }
     for (const diag::Note& note : found.notes)
         if (note.span)
             related.push_back(
-                {{"location", {{"uri", uri}, {"range", json_of(analysis.lines.range(*note.span))}}},
+                {{"location", {{"uri", uri}, {"range", analysis.lines.range(*note.span)}}},
                  {"message", note.text}});
     return related;
 }
 
-}  // namespace
-
+/// Returns the place at which a finding is shown.
 source::Span place_of(const diag::Diagnostic& found, const Analysis& analysis) {
     if (found.span) return *found.span;
     for (const diag::Note& note : found.notes)
@@ -84,8 +82,11 @@ source::Span place_of(const diag::Diagnostic& found, const Analysis& analysis) {
     return {0, 0};
 }
 
+}  // namespace
+
 Json diagnostics_of(const Analysis& analysis, const Planned* planned, const std::string& uri,
-                    bool with_related) {
+                    const Client& client) {
+    const bool with_related = client.related_places;
     diag::Sink all;
     all.add(analysis.sink, "");
     if (planned != nullptr) all.add(planned->sink, "");
@@ -95,7 +96,7 @@ Json diagnostics_of(const Analysis& analysis, const Planned* planned, const std:
     });
     Json result = Json::array();
     for (const diag::Diagnostic& found : sorted) {
-        Json diagnostic{{"range", json_of(analysis.lines.range(place_of(found, analysis)))},
+        Json diagnostic{{"range", analysis.lines.range(place_of(found, analysis))},
                         {"severity", number_of(found.severity())},
                         {"code", diag::info(found.code).code},
                         {"source", "etlc"},

@@ -1,4 +1,4 @@
-#include "lsp/answers/facts.hpp"
+#include "lsp/answers/answers.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,7 @@
-#include "lsp/answers/hover.hpp"
+#include "lsp/answers/answers.hpp"
 
 #include <algorithm>
 
-#include "lsp/answers/facts.hpp"
 #include "lsp/answers/words.hpp"
 #include "parse/words.hpp"
 #include "source/escape.hpp"
@@ -11,7 +10,7 @@ namespace etlc::lsp {
 
 namespace {
 
-/// A declaration as it is written, its beginning where it is long: matrices are.
+/// Returns the text of a declaration, or the beginning of a long one, such as a matrix.
 std::string written(const Analysis& analysis, const Declared& declared) {
     constexpr std::size_t kLongest = 400;
     std::string text(analysis.file.text(declared.span));
@@ -22,7 +21,7 @@ std::string written(const Analysis& analysis, const Declared& declared) {
     return text.substr(0, end) + " ...";
 }
 
-/// Sentences hold names of files, and formulas, whose * and _ would be marks.
+/// Escapes the marks of Markdown in sentences, which contain names of files and formulas.
 std::string escaped(const std::string& text) {
     std::string result;
     for (const char c : source::visible(text)) {
@@ -32,7 +31,7 @@ std::string escaped(const std::string& text) {
     return result;
 }
 
-/// A block of code, and sentences.
+/// The content of a hover: code and sentences.
 struct Explained {
     std::string code;
     std::vector<std::string> sentences;
@@ -46,13 +45,16 @@ Json markup_of(const Explained& explained, bool with_markdown) {
 }
 
 Json found(const Explained& explained, Range range, bool with_markdown) {
-    return {{"contents", markup_of(explained, with_markdown)}, {"range", json_of(range)}};
+    return {{"contents", markup_of(explained, with_markdown)}, {"range", range}};
 }
 
 }  // namespace
 
-Json hover(Document& document, std::uint32_t offset, bool with_markdown) {
+Json hover(const Question& question) {
+    Document& document = question.document;
     const Analysis& analysis = document.analysis();
+    const std::uint32_t offset = question.offset();
+    const bool with_markdown = question.client.hover_in_markdown;
     if (const Occurrence* const at = occurrence_at(analysis.names, offset)) {
         const Declared* const declared = declaration_of(analysis.names, *at);
         if (declared == nullptr) return nullptr;

@@ -1,4 +1,4 @@
-#include "lsp/answers/navigation.hpp"
+#include "lsp/answers/answers.hpp"
 
 #include <filesystem>
 
@@ -9,10 +9,10 @@ namespace etlc::lsp {
 namespace {
 
 Json location(const std::string& uri, Range range) {
-    return {{"uri", uri}, {"range", json_of(range)}};
+    return {{"uri", uri}, {"range", range}};
 }
 
-/// The protocol's numbers.
+/// Returns the protocol's number of a kind of symbol.
 int symbol_kind(const Declared& declared) {
     constexpr int kNamespace = 3;
     constexpr int kField = 8;
@@ -43,11 +43,13 @@ std::string detail_of(const Declared& declared) {
 
 }  // namespace
 
-Json definition(const Analysis& analysis, std::uint32_t offset, const std::string& uri) {
+Json definition(const Question& question) {
+    const Analysis& analysis = question.analysis();
+    const std::uint32_t offset = question.offset();
     if (const Occurrence* const at = occurrence_at(analysis.names, offset)) {
         const Declared* const declared = declaration_of(analysis.names, *at);
         if (declared == nullptr) return nullptr;
-        return location(uri, analysis.lines.range(declared->name_span));
+        return location(question.uri(), analysis.lines.range(declared->name_span));
     }
     for (const NamedFile& named : analysis.names.files) {
         if (offset < named.span.begin || offset > named.span.end) continue;
@@ -60,41 +62,45 @@ Json definition(const Analysis& analysis, std::uint32_t offset, const std::strin
     return nullptr;
 }
 
-Json references(const Analysis& analysis, std::uint32_t offset, const std::string& uri,
-                bool with_declaration) {
-    const Occurrence* const at = occurrence_at(analysis.names, offset);
+Json references(const Question& question) {
+    const Analysis& analysis = question.analysis();
+    const Json* const asked = find_path(question.params, "context/includeDeclaration");
+    const bool with_declaration = asked == nullptr || *asked == true;
+    const Occurrence* const at = occurrence_at(analysis.names, question.offset());
     if (at == nullptr) return nullptr;
     Json all = Json::array();
     for (const Occurrence& occurrence : analysis.names.occurrences)
         if (occurrence.means_the_same(*at) && (with_declaration || !occurrence.declares))
-            all.push_back(location(uri, analysis.lines.range(occurrence.span)));
+            all.push_back(location(question.uri(), analysis.lines.range(occurrence.span)));
     return all;
 }
 
-Json highlights(const Analysis& analysis, std::uint32_t offset) {
-    const Occurrence* const at = occurrence_at(analysis.names, offset);
+Json highlights(const Question& question) {
+    const Analysis& analysis = question.analysis();
+    const Occurrence* const at = occurrence_at(analysis.names, question.offset());
     if (at == nullptr) return nullptr;
     constexpr int kRead = 2;
     constexpr int kWrite = 3;
     Json all = Json::array();
     for (const Occurrence& occurrence : analysis.names.occurrences)
         if (occurrence.means_the_same(*at))
-            all.push_back({{"range", json_of(analysis.lines.range(occurrence.span))},
+            all.push_back({{"range", analysis.lines.range(occurrence.span)},
                            {"kind", occurrence.declares ? kWrite : kRead}});
     return all;
 }
 
-Json symbols(const Analysis& analysis, const std::string& uri, bool hierarchical) {
+Json symbols(const Question& question) {
+    const Analysis& analysis = question.analysis();
     Json all = Json::array();
     for (const Declared& declared : analysis.names.declared) {
         Json symbol{{"name", declared.name}, {"kind", symbol_kind(declared)}};
         const Range whole = analysis.lines.range(declared.span);
-        if (hierarchical) {
+        if (question.client.hierarchical_symbols) {
             symbol["detail"] = detail_of(declared);
-            symbol["range"] = json_of(whole);
-            symbol["selectionRange"] = json_of(analysis.lines.range(declared.name_span));
+            symbol["range"] = whole;
+            symbol["selectionRange"] = analysis.lines.range(declared.name_span);
         } else {
-            symbol["location"] = location(uri, whole);
+            symbol["location"] = location(question.uri(), whole);
         }
         all.push_back(std::move(symbol));
     }

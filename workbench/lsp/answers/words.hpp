@@ -1,4 +1,4 @@
-// What the words of the language mean, in a line each.
+// The words of the language and their meanings, one line each.
 #pragma once
 
 #include <cstdint>
@@ -20,12 +20,12 @@ struct WordInfo {
     };
     std::string_view word;
     Kind kind;
-    std::string_view form;  ///< how it is written: "F[a, b] f"
+    std::string_view form;  ///< syntax: "F[a, b] f"
     std::string_view meaning;
 };
 
 const std::vector<WordInfo>& all_words();
-/// Null: no word of the language.
+/// Finds a word of the language; null for any other word.
 const WordInfo* find_word(std::string_view word);
 
 }  // namespace etlc::lsp

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cctype>
 
+#include "data/text/number.hpp"
+
 namespace etlc::lsp {
 
 namespace {
 
-/// Far more than any header; of longer lines the end is kept, where a header may begin.
+/// Longer than any header; the end of a longer line is kept, since a header may begin there.
 constexpr std::size_t kLongestLine = 4096;
 constexpr std::string_view kLength = "content-length";
 constexpr std::string_view kType = "content-type";
@@ -24,16 +26,6 @@ std::string_view trimmed(std::string_view text) {
     const auto first = text.find_first_not_of(" \t");
     if (first == std::string_view::npos) return {};
     return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-std::optional<std::uint64_t> number(std::string_view digits) {
-    if (digits.empty() || digits.size() > 18) return std::nullopt;
-    std::uint64_t value = 0;
-    for (const char c : digits) {
-        if (c < '0' || c > '9') return std::nullopt;
-        value = 10 * value + static_cast<std::uint64_t>(c - '0');
-    }
-    return value;
 }
 
 }  // namespace
@@ -83,7 +75,7 @@ std::optional<std::string> Reader::line() {
 
 void Reader::take_header(std::string header) {
     has_headers_ = true;
-    // Behind a broken frame the next header may stand on the line of what is left of it.
+    // After a broken frame the next header may share a line with the rest of it.
     const std::size_t begin = lower(header).rfind(std::string(kLength) + ":");
     if (begin != std::string::npos && begin > 0) {
         mistake_ = "expected a header, found something else";
@@ -97,7 +89,7 @@ void Reader::take_header(std::string header) {
     const std::string name = lower(trimmed(std::string_view(header).substr(0, colon)));
     const std::string_view value = trimmed(std::string_view(header).substr(colon + 1));
     if (name == kLength) {
-        length_ = number(value);
+        length_ = data::parse_whole<std::uint64_t>(value);
         if (!length_) mistake_ = "Content-Length is not a number of bytes";
     } else if (name == kType) {
         const std::string type = lower(value);
@@ -118,7 +110,7 @@ std::optional<Frame> Reader::end_of_headers() {
         mistake_ =
             fmt::format("a message of {} bytes; at most {} are read", *length_, kMostContent);
     if (mistake_.empty()) return std::nullopt;
-    // Its content follows all the same, as a message of its own.
+    // Its content still follows, as a separate message.
     Frame broken{{}, std::move(mistake_)};
     mistake_.clear();
     return broken;

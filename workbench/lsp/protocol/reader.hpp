@@ -1,7 +1,7 @@
-// The frames in which messages come: headers, an empty line, content.
-// Takes: bytes, in pieces of any size. Gives: the content of each message, or what is wrong with a
-// frame. Keeps true: any bytes can be read, in linear time; no more than kMostContent bytes are
-// kept; after a broken frame it goes on with the next Content-Length.
+// Splits the input of the server into messages: headers, an empty line, content.
+// Takes: bytes, in pieces of any size. Gives: the content of each message, or an error in a frame.
+// Keeps true: any bytes are accepted, in linear time; at most kMostContent bytes are kept; after a
+// broken frame it continues with the next Content-Length.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@ inline constexpr std::uint64_t kMostContent = 8U << 20U;
 
 struct Frame {
     std::string content;
-    std::string mistake;  ///< "" for a good one
+    std::string mistake;  ///< error; "" for a valid frame
 };
 
 class Reader {
 public:
     void add(std::string_view bytes);
-    /// Nothing: more bytes are needed.
+    /// Returns the next frame; nothing where more bytes are needed.
     std::optional<Frame> next();
 
 private:
@@ -33,12 +33,12 @@ private:
     void forget_consumed();
 
     std::string bytes_;
-    std::size_t at_ = 0;        ///< of `bytes_`: what has been consumed
-    std::size_t searched_ = 0;  ///< up to here there is no line end
+    std::size_t at_ = 0;        ///< consumed bytes of `bytes_`
+    std::size_t searched_ = 0;  ///< no line end before this place
     bool in_content_ = false;
     std::optional<std::uint64_t> length_;
-    std::uint64_t skipped_ = 0;  ///< of content that is too long
-    std::string mistake_;        ///< in the headers so far
+    std::uint64_t skipped_ = 0;  ///< remaining bytes of content that is too long
+    std::string mistake_;        ///< error in the headers so far
     bool has_headers_ = false;
 };
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "data/spill/file.hpp"
-#include "lsp/answers/diagnostics.hpp"
 
 namespace etlc::lsp {
 
@@ -19,7 +18,7 @@ bool is_true(const Json* found) {
     return found != nullptr && found->is_boolean() && found->get<bool>();
 }
 
-/// The client's encodings are in the order of its wishes; bytes are what etlc counts in.
+/// Chooses bytes where the client supports them, whatever it prefers: etlc counts in bytes.
 Encoding encoding_for(const Json& params) {
     const Json* const offered = find_path(params, "capabilities/general/positionEncodings");
     if (offered == nullptr || !offered->is_array()) return Encoding::utf16;
@@ -56,6 +55,23 @@ Client client_of(const Json& params) {
     return client;
 }
 
+/// The answers to requests about documents.
+const std::map<std::string_view, Json (*)(const Question&)>& answers() {
+    static const std::map<std::string_view, Json (*)(const Question&)> all{
+        {"textDocument/hover", hover},
+        {"textDocument/definition", definition},
+        {"textDocument/references", references},
+        {"textDocument/documentHighlight", highlights},
+        {"textDocument/prepareRename", prepare_rename},
+        {"textDocument/rename", rename},
+        {"textDocument/completion", completion},
+        {"textDocument/documentSymbol", symbols},
+        {"textDocument/codeAction", code_actions},
+        {"textDocument/formatting", formatting},
+    };
+    return all;
+}
+
 }  // namespace
 
 void Session::receive(const Frame& frame) {
@@ -75,7 +91,8 @@ void Session::receive(const Json& message) {
     const Json* const version = find(message, "jsonrpc");
     const bool is_response =
         find(message, "result") != nullptr || find(message, "error") != nullptr;
-    if (method == nullptr && id != nullptr && is_response) return;  // of nothing that we asked
+    if (method == nullptr && id != nullptr && is_response)
+        return;  // a response to a request that was never sent
     const Json known_id = id != nullptr && is_id(*id) ? *id : Json();
     const bool is_sound = version != nullptr && *version == "2.0" && method != nullptr &&
                           method->is_string() && (id == nullptr || is_id(*id));
@@ -109,10 +126,12 @@ Json Session::result_of(const std::string& method, const Json& params) {
         throw Refusal{ErrorCode::server_not_initialized, "expected 'initialize' first"};
     if (life_ == Life::shut_down)
         throw Refusal{ErrorCode::invalid_request, "expected 'exit' after 'shutdown'"};
-    const auto found = requests().find(method);
-    if (found == requests().end())
+    if (method == "initialize") return initialize(params);
+    if (method == "shutdown") return shutdown();
+    const auto found = answers().find(method);
+    if (found == answers().end())
         throw Refusal{ErrorCode::method_not_found, fmt::format("there is no '{}' here", method)};
-    return (this->*found->second)(params);
+    return found->second({document_of(params), params, client_});
 }
 
 void Session::take_note(const std::string& method, const Json& params) {
@@ -143,24 +162,6 @@ void Session::log(const std::string& message) {
            {"params", {{"type", 2}, {"message", message}}}});
 }
 
-const std::map<std::string_view, Session::Request>& Session::requests() {
-    static const std::map<std::string_view, Request> all{
-        {"initialize", &Session::initialize},
-        {"shutdown", &Session::shutdown},
-        {"textDocument/hover", &Session::hover},
-        {"textDocument/definition", &Session::definition},
-        {"textDocument/references", &Session::references},
-        {"textDocument/documentHighlight", &Session::highlights},
-        {"textDocument/prepareRename", &Session::prepare_rename},
-        {"textDocument/rename", &Session::rename},
-        {"textDocument/completion", &Session::completion},
-        {"textDocument/documentSymbol", &Session::symbols},
-        {"textDocument/codeAction", &Session::code_actions},
-        {"textDocument/formatting", &Session::formatting},
-    };
-    return all;
-}
-
 const std::map<std::string_view, Session::Notification>& Session::notifications() {
     static const std::map<std::string_view, Notification> all{
         {"textDocument/didOpen", &Session::opened},
@@ -172,7 +173,7 @@ const std::map<std::string_view, Session::Notification>& Session::notifications(
     return all;
 }
 
-// ---- the life of a session ----------------------------------------------------------------------
+// ---- state of the session -----------------------------------------------------------------------
 
 Json Session::initialize(const Json& params) {
     if (life_ != Life::new_born)
@@ -183,7 +184,7 @@ Json Session::initialize(const Json& params) {
     return {{"capabilities", capabilities(encoding_)}, {"serverInfo", {{"name", "etlc"}}}};
 }
 
-Json Session::shutdown(const Json& /*params*/) {
+Json Session::shutdown() {
     life_ = Life::shut_down;
     return nullptr;
 }
@@ -203,7 +204,7 @@ Document& Session::document_of(const Json& params) {
 
 namespace {
 
-/// Versions are for the client alone.
+/// Returns the version of a document, which only the client uses.
 std::int64_t version_of(const Json& document) {
     const Json* const found = find(document, "version");
     return found != nullptr && found->is_number_integer() ? found->get<std::int64_t>() : 0;
@@ -235,7 +236,7 @@ void Session::changed(const Json& params) {
 }
 
 void Session::saved(const Json& params) {
-    document_of(params).forget();  // thresholds may have been made for it since
+    document_of(params).forget();  // its thresholds may have been calibrated since
 }
 
 void Session::closed(const Json& params) {
@@ -258,8 +259,8 @@ void Session::publish(Document& document) {
            {"params",
             {{"uri", document.uri()},
              {"version", document.version()},
-             {"diagnostics", diagnostics_of(analysis, document.planned(), document.uri(),
-                                            client_.related_places)}}}});
+             {"diagnostics",
+              diagnostics_of(analysis, document.planned(), document.uri(), client_)}}}});
 }
 
 void Session::catch_up() {
@@ -287,7 +288,7 @@ void Session::do_idle_work() {
         document.plan();
         last_planning_ =
             std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - start);
-        break;  // messages may have come
+        break;  // messages may be waiting
     }
     catch_up();
 }

@@ -13,7 +13,7 @@ namespace {
 using check::NameKind;
 using source::Span;
 
-/// Walks through one declaration.
+/// Collects the names of a declaration.
 class Walk {
 public:
     explicit Walk(Names& names) : names_(names) {}
@@ -24,7 +24,7 @@ public:
         if (!name.empty()) names_.occurrences.push_back({name, span});
     }
 
-    /// A constant ends the number that it stands for: it may follow a sign.
+    /// A constant may follow the sign of a number: it is at its end.
     void visit(const ast::Number& number) {
         if (number.constant.empty()) return;
         const auto size = static_cast<std::uint32_t>(number.constant.size());
@@ -93,7 +93,7 @@ public:
         visit(formula.operands);
         if (formula.interval) {
             visit(formula.interval->low.number);
-            // held[D] has one bound, written once.
+            // held[D] has one bound.
             if (formula.kind != ast::Formula::Kind::held ||
                 formula.interval->high.span.begin != formula.interval->low.span.begin)
                 visit(formula.interval->high.number);

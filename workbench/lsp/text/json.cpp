@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <limits>
 
 namespace etlc::lsp {
@@ -21,14 +20,9 @@ const Json* find(const Json& object, std::string_view key) {
     return found == object.end() ? nullptr : &*found;
 }
 
-const Json* find_path(const Json& object, std::string_view path) {
-    const Json* at = &object;
-    while (at != nullptr && !path.empty()) {
-        const std::size_t slash = std::min(path.find('/'), path.size());
-        at = find(*at, path.substr(0, slash));
-        path.remove_prefix(std::min(path.size(), slash + 1));
-    }
-    return at;
+const Json* find_path(const Json& object, const std::string& path) {
+    const Json::json_pointer pointer("/" + path);
+    return object.contains(pointer) ? &object[pointer] : nullptr;
 }
 
 const Json& member(const Json& object, std::string_view key) {
@@ -64,12 +58,12 @@ const std::string& uri_of(const Json& params) {
     return text_of(member(params, "textDocument"), "uri");
 }
 
-Json json_of(Position position) {
-    return {{"line", position.line}, {"character", position.character}};
+void to_json(Json& json, const Position& position) {
+    json = {{"line", position.line}, {"character", position.character}};
 }
 
-Json json_of(Range range) {
-    return {{"start", json_of(range.start)}, {"end", json_of(range.end)}};
+void to_json(Json& json, const Range& range) {
+    json = {{"start", range.start}, {"end", range.end}};
 }
 
 bool nests_too_deep(std::string_view text) {

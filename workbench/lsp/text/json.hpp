@@ -1,6 +1,5 @@
-// Messages as JSON, and what a client may have got wrong in them.
-// Takes: params of any shape. Gives: their members, checked. Throws Refusal where one is not there
-// or is of another type. Keeps true: nothing that a client sends is trusted to have a shape.
+// Checked access to the JSON of messages, whose shape is not trusted. Throws Refusal where a member
+// is missing or has another type.
 #pragma once
 
 #include <cstdint>
@@ -32,26 +31,27 @@ struct Refusal {
     std::string message;
 };
 
-/// Null where `object` is none or has no such member.
+/// Finds a member; null where `object` is not an object or lacks it.
 const Json* find(const Json& object, std::string_view key);
-/// The member at the end of a path, "general/positionEncodings"; null where there is none.
-const Json* find_path(const Json& object, std::string_view path);
+/// Finds the member at the end of a path, "general/positionEncodings"; null where it is missing.
+const Json* find_path(const Json& object, const std::string& path);
 
 const Json& member(const Json& object, std::string_view key);
 const std::string& text_of(const Json& object, std::string_view key);
 std::uint32_t number_of(const Json& object, std::string_view key);
 Position position_of(const Json& object);
 Range range_of(const Json& object);
-/// params.textDocument.uri
+/// Returns params.textDocument.uri.
 const std::string& uri_of(const Json& params);
 
-Json json_of(Position position);
-Json json_of(Range range);
+void to_json(Json& json, const Position& position);
+void to_json(Json& json, const Range& range);
 
-/// Whether brackets nest so deep that reading or forgetting the text would take too much.
+/// Returns whether brackets nest so deep that parsing the text, or freeing the result, would
+/// overflow the stack.
 bool nests_too_deep(std::string_view text);
 
-/// With its header, as it is sent. Bytes that are not UTF-8 become U+FFFD.
+/// Returns a message with its header. Bytes that are not UTF-8 become U+FFFD.
 std::string framed(const Json& message);
 
 }  // namespace etlc::lsp

@@ -8,12 +8,12 @@ namespace etlc::lsp {
 
 namespace {
 
-/// Of the character that begins `text`; a byte that is not UTF-8 stands for itself.
+/// Returns the size of the first character; a byte that is not UTF-8 counts as one.
 std::size_t bytes_of_first(std::string_view text) {
     return std::max<std::size_t>(1, source::utf8_length(text));
 }
 
-/// Characters beyond the basic plane take four bytes, and two units.
+/// Characters beyond the basic plane have four bytes and two UTF-16 units.
 std::uint32_t units_of(std::size_t bytes, Encoding encoding) {
     if (encoding == Encoding::utf8) return static_cast<std::uint32_t>(bytes);
     return bytes == 4 ? 2 : 1;

@@ -1,8 +1,7 @@
-// Places of a text as the protocol counts them.
-// Takes: UTF-8 text. Gives: lines and characters from 0 for byte offsets, and back.
+// Converts byte offsets of UTF-8 text to the protocol's lines and characters, and back.
 // Keeps true: lines end at \n, \r\n or \r; a character is a UTF-16 unit, or a byte where the client
-// agreed to that; every position has an offset: one beyond a line is its end, one beyond the text
-// is the end of the text, one inside a character is its beginning.
+// agreed to that; every position has an offset: a position beyond a line maps to its end, one
+// beyond the text to the end of the text, one inside a character to its beginning.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +28,7 @@ struct Range {
     bool operator==(const Range&) const = default;
 };
 
-/// The lines of one text, which has to outlive them.
+/// The lines of a text, which must outlive them.
 class Lines {
 public:
     Lines(std::string_view text, Encoding encoding);
@@ -41,7 +40,7 @@ public:
     source::Span span(Range range) const { return {offset(range.start), offset(range.end)}; }
 
 private:
-    /// Where the words of a line end, before its line end.
+    /// Returns the end of a line, before its line break.
     std::uint32_t end_of(std::size_t line) const;
 
     std::string_view text_;

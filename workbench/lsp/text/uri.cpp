@@ -16,7 +16,7 @@ int hexadecimal(char c) {
     return letter >= 'a' && letter <= 'f' ? letter - 'a' + 10 : -1;
 }
 
-/// %20 becomes a blank; what only looks like it stays.
+/// Decodes %20 and the like; incomplete sequences stay.
 std::string decoded(std::string_view text) {
     std::string result;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -38,7 +38,7 @@ std::string path_of_uri(std::string_view uri) {
     constexpr std::string_view kScheme = "file://";
     if (uri.starts_with(kScheme)) {
         uri.remove_prefix(kScheme.size());
-        const std::size_t path = uri.find('/');  // behind the host, which is mostly empty
+        const std::size_t path = uri.find('/');  // after the host, which is usually empty
         return path == std::string_view::npos ? "" : decoded(uri.substr(path));
     }
     const std::size_t last = uri.find_last_of("/:");

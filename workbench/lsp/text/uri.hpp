@@ -1,4 +1,4 @@
-// Names of documents: what the client calls them, and which files they are.
+// Converts between the URIs of documents and the paths of files.
 #pragma once
 
 #include <string>
@@ -6,11 +6,11 @@
 
 namespace etlc::lsp {
 
-/// The path of a file: URI; of another, such as an unsaved text, its last part, so that what the
-/// spec loads is looked for where etlc runs.
+/// Returns the path of a file: URI. For any other, such as that of an unsaved text, returns the
+/// last part, so that files of the spec are looked for in the working directory.
 std::string path_of_uri(std::string_view uri);
 
-/// The file: URI of a path, which is made absolute.
+/// Returns the file: URI of a path, which is made absolute.
 std::string uri_of_path(const std::string& path);
 
 }  // namespace etlc::lsp

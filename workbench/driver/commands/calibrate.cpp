@@ -1,0 +1,113 @@
+#include "calibrate/calibrate.hpp"
+#include "calibrate/shift.hpp"
+#include "check/check.hpp"
+#include "data/files/file.hpp"
+#include "data/recordings/open.hpp"
+#include "driver/commands/commands.hpp"
+#include "driver/process/output_file.hpp"
+#include "driver/process/process.hpp"
+#include "library/version.hpp"
+#include "parse/parse.hpp"
+#include "source/escape.hpp"
+
+namespace etlc::driver {
+
+namespace {
+
+using calibrate::Calibration;
+
+/// Calibrates the predicates; or, with their thresholds, the monitors on other episodes.
+std::optional<Calibration> calibrate_model(const check::Model& model, const Request& request,
+                                           const calibrate::Request& calibration,
+                                           diag::Sink& sink) {
+    const bool has_monitors = !calibrate::calibrated_monitors(model).empty();
+    const bool has_predicates = !calibrate::calibrated_predicates(model).empty();
+    if (request.check.thresholds_path.empty()) {
+        if (has_monitors && !has_predicates)
+            return calibrate::calibrate_monitors(model, {}, calibration, sink);
+        auto result = calibrate::calibrate(model, calibration, sink);
+        if (result && has_monitors)
+            result->report +=
+                "\nMonitors that are calibrated as a whole come next, on other episodes: etlc "
+                "calibrate --thresholds FILE\n";
+        return result;
+    }
+    if (!has_monitors) {
+        sink.report(
+            diag::Code::nothing_to_calibrate, model.monitors.front().span,
+            "no monitor of this spec is calibrated as a whole, which is what --thresholds is for");
+        return std::nullopt;
+    }
+    auto before = thresholds::read(request.check.thresholds_path);
+    if (!before) {
+        sink.report(data::in_file(before.failure(), request.check.thresholds_path));
+        return std::nullopt;
+    }
+    return calibrate::calibrate_monitors(model, std::move(*before), calibration, sink);
+}
+
+/// Returns the files that may not be overwritten. The file of thresholds may: those of the monitors
+/// are added to it.
+std::vector<std::string> inputs(const check::Model& model, const source::File& file,
+                                const Request& request, const calibrate::Request& calibration) {
+    std::vector<std::string> paths = merged_files(calibration.sharing);
+    for (const std::string& episode : calibration.episodes)
+        paths.push_back(data::trace_file(episode));
+    paths.push_back(file.path());
+    for (const std::string& path : model.dependencies)
+        if (path != request.check.thresholds_path) paths.push_back(path);
+    return paths;
+}
+
+/// Returns the files that scores depend on, besides the episodes.
+std::vector<std::string> loaded(const check::Model& model, const source::File& file,
+                                const std::string& output) {
+    std::vector<std::string> paths = {file.path()};
+    for (const std::string& path : model.dependencies)
+        if (path != output) paths.push_back(path);
+    return paths;
+}
+
+}  // namespace
+
+bool calibrate(const source::File& file, const Request& request, diag::Sink& sink) {
+    ast::Spec spec = parse::parse(file, sink);
+    check::Options options = request.check;
+    options.allow_uncalibrated = options.thresholds_path.empty();
+    options.allow_uncalibrated_monitors = true;
+    const auto model = check::check(std::move(spec), file, options, sink);
+    if (!model || sink.refused()) return false;
+
+    auto shard = sharing_of(request);
+    auto calibration = asked_of<calibrate::Request>(request);
+    calibration.sharing = shard ? &*shard : request.merged;
+    calibration.allow_overlap = request.allow_overlap;
+    calibration.folds = request.folds;
+    if (!check_names({&*model}, calibration.names, sink)) return false;
+    calibration.episodes =
+        find_shared_episodes(calibration.sharing, request.data, request.groups, sink);
+    if (sink.has_errors()) return false;
+    calibration.version = library::kVersion;
+    calibration.fitted = fitted_file(*model, file.path(), request);
+    const std::string output =
+        request.output.empty() ? check::default_thresholds_path(file.path()) : request.output;
+    if (!check_outputs({is_shard(calibration.sharing) ? request.shard.part : output},
+                       inputs(*model, file, request, calibration), sink))
+        return false;
+    if (!note_loaded(calibration.sharing, loaded(*model, file, output), sink)) return false;
+    const auto result = calibrate_model(*model, request, calibration, sink);
+    if (is_shard(calibration.sharing))
+        return write_part(*calibration.sharing, request.shard.part, sink);
+    if (!result || sink.refused()) return false;
+
+    // The report is written before the file takes its name: where that fails, nothing has changed.
+    OutputFiles files(sink);
+    return files.begin(output) &&
+           thresholds::write(result->file,
+                             [&](std::string_view piece) { return files.write(piece); }) &&
+           files.add(output == kStandardOutput ? "/dev/stderr" : std::string(kStandardOutput),
+                     source::visible_lines(result->report)) &&
+           files.commit();
+}
+
+}  // namespace etlc::driver

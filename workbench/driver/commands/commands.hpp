@@ -1,0 +1,146 @@
+// The commands of etlc, each a function from a spec and a request to files and findings.
+// Takes: the text of the spec, or its plan. Keeps true: all output files of a command appear or
+// none, each whole; a function that returns false or nothing has reported why.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "artifacts/fitted.hpp"
+#include "artifacts/thresholds.hpp"
+#include "diag/diag.hpp"
+#include "driver/commands/request.hpp"
+#include "driver/process/process.hpp"
+#include "episodes/shared/sharing.hpp"
+#include "evaluate/evaluate.hpp"
+#include "pipeline/compile.hpp"
+#include "source/source.hpp"
+
+namespace etlc::driver {
+
+using pipeline::Compiled;
+
+// ---- compiling ----------------------------------------------------------------------------------
+
+/// Compiles a spec through all stages: text, tree, model, graph, plan.
+std::optional<Compiled> compile(const source::File& file, const Request& request, diag::Sink& sink);
+
+/// `etlc SPEC.etl`: writes the header or another stage, the files of large target sets and of
+/// parameters, and the rule of their dependencies.
+bool emit(const source::File& file, const Request& request, diag::Sink& sink);
+
+/// Returns the values of --emit, each with a summary for --help.
+std::vector<std::pair<std::string, std::string>> emittable();
+
+// ---- commands that need the plan ----------------------------------------------------------------
+
+/// `etlc run`: executes the plan on a recorded trace, in constant memory and linear time. Writes a
+/// CSV row for each step and monitor, or a summary.
+bool run(const source::File& spec, const Compiled& compiled, const Request& request,
+         diag::Sink& sink);
+/// `etlc explain`: explains a verdict on a recorded trace.
+bool explain(const source::File& spec, const Compiled& compiled, const Request& request,
+             diag::Sink& sink);
+/// `etlc incident`: prints what the flight recorder of a monitor wrote. Refuses a file that is
+/// damaged, or that was written by a monitor of another spec, other data or other thresholds.
+bool incident(const source::File& spec, const Compiled& compiled, const Request& request,
+              diag::Sink& sink);
+/// `etlc report`: writes a page about recorded episodes, with the figures of `etlc evaluate`.
+bool report(const source::File& spec, const Compiled& compiled, const Request& request,
+            diag::Sink& sink);
+
+/// Makes the page of one trace, without truths.
+std::optional<std::string> page_of_trace(const source::File& spec, const Compiled& compiled,
+                                         const std::string& trace, const data::NamesInFile& names,
+                                         diag::Sink& sink);
+
+// ---- commands that fill in what a spec lacks ----------------------------------------------------
+
+/// `etlc embed`: writes the file of embeddings, and an episode for each recording (of its shard).
+bool embed(const source::File& file, const Request& request, diag::Sink& sink);
+/// `etlc fit`: writes the file of fitted entries. The report goes to standard output, or to
+/// standard error where the file goes to standard output; so does that of `etlc calibrate`.
+bool fit(const source::File& file, const Request& request, diag::Sink& sink);
+/// `etlc calibrate`: writes the file of thresholds.
+bool calibrate(const source::File& file, const Request& request, diag::Sink& sink);
+
+// ---- evaluation ---------------------------------------------------------------------------------
+
+/// A spec and what is found in it.
+struct SpecToJudge {
+    const source::File& file;
+    diag::Sink& sink;
+};
+
+/// `etlc evaluate` and `etlc crossvalidate`: compares the monitors of specs with ground truth.
+/// Every episode is judged by monitors that have not seen it.
+bool evaluate(const std::vector<SpecToJudge>& specs, const Request& request);
+
+/// Judges a compiled spec by the thresholds that it has.
+std::optional<evaluate::Judgement> judge_as_it_is(const Compiled& compiled, const std::string& spec,
+                                                  const Request& request,
+                                                  const evaluate::Request& asked, diag::Sink& sink);
+
+// ---- shared -------------------------------------------------------------------------------------
+
+/// Reads the file of the spec's thresholds; nothing where no threshold is calibrated.
+std::optional<thresholds::File> thresholds_of(const check::Model& model, const std::string& spec,
+                                              const Request& request);
+/// Reads the file of the spec's fitted entries; empty where the spec has none.
+fitted::File fitted_file(const check::Model& model, const std::string& spec,
+                         const Request& request);
+
+/// Reports the names of --map that no spec has, E0804; false where there are any.
+bool check_names(const std::vector<const check::Model*>& models, const data::NamesInFile& names,
+                 diag::Sink& sink);
+
+/// Returns the files that a call reads: the spec, its dependencies, and recordings.
+std::vector<std::string> files_read(const check::Model& model, const source::File& spec,
+                                    const std::vector<std::string>& recordings);
+
+/// Copies what the requests of fit, calibrate, evaluate and report have in common.
+template <class Asked>
+Asked asked_of(const Request& request) {
+    Asked asked;
+    asked.names = request.names;
+    asked.jobs = request.jobs;
+    asked.progress = episodes_progress();
+    return asked;
+}
+
+// ---- --shard I/N and etlc merge -----------------------------------------------------------------
+
+/// Returns the sharing of a call that reads one shard, or the shards that standard input lists;
+/// nothing where the call reads all episodes.
+std::optional<episodes::Sharing> sharing_of(const Request& request);
+
+/// Finds the episodes of the call, or takes them from the parts that are merged.
+std::vector<std::string> find_shared_episodes(episodes::Sharing* sharing,
+                                              const std::vector<std::string>& data,
+                                              const std::string& groups, diag::Sink& sink);
+
+/// Records hashes of the spec and its dependencies in the part; where parts are merged, compares
+/// them and reports a difference.
+bool note_loaded(episodes::Sharing* sharing, std::vector<std::string> loaded, diag::Sink& sink);
+
+/// Returns the files of the parts that are merged.
+std::vector<std::string> merged_files(const episodes::Sharing* sharing);
+
+/// Returns whether the call reads a shard and writes a part in place of a result.
+bool is_shard(const episodes::Sharing* sharing);
+bool write_part(episodes::Sharing& sharing, const std::string& path, diag::Sink& sink);
+
+/// Continues as etlc-mpi where this process is one of several ranks of an MPI job and the command
+/// is one that ranks share. Returns false where etlc-mpi cannot be run.
+bool go_on_in_ranks(char** argv);
+
+/// Reads all parts of a call.
+std::optional<episodes::Sharing> read_parts(const std::vector<std::string>& paths,
+                                            diag::Sink& sink);
+
+/// Returns the call without shards, with its result in `output` unless that is empty.
+std::vector<std::string> merged_call(const episodes::Part& part, const std::string& output);
+
+}  // namespace etlc::driver

@@ -1,0 +1,192 @@
+#include "driver/commands/crossvalidate.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <set>
+
+#include "calibrate/shift.hpp"
+#include "episodes/admission/admission.hpp"
+#include "episodes/folds.hpp"
+#include "episodes/parallel.hpp"
+#include "fit/fit.hpp"
+#include "parse/parse.hpp"
+
+namespace etlc::driver {
+
+namespace {
+
+using Paths = std::vector<std::string>;
+
+/// Deals the episodes into `count` parts whose sizes differ by at most one.
+std::vector<Paths> parts(const Paths& episodes, std::size_t count) {
+    std::vector<Paths> result(count);
+    for (std::size_t i = 0; i < episodes.size(); ++i) result[i % count].push_back(episodes[i]);
+    return result;
+}
+
+/// Reports errors, and warnings that no earlier fold had. The warning about episodes without a
+/// named encoder is left to their evaluation.
+class Telling {
+public:
+    explicit Telling(diag::Sink& sink) : sink_(sink) {}
+
+    void tell(const diag::Sink& found, const std::string& note) {
+        diag::Sink first;
+        for (const diag::Diagnostic& one : found.sorted()) {
+            const std::uint32_t place = one.span ? one.span->begin : 0;
+            const bool is_new =
+                one.code != diag::Code::unmarked_episode && told_.emplace(one.code, place).second;
+            if (is_new || one.severity() == diag::Severity::error) first.report(one);
+        }
+        sink_.add(first, note);
+    }
+
+private:
+    diag::Sink& sink_;
+    std::set<std::pair<diag::Code, std::uint32_t>> told_;
+};
+
+/// Trains a spec on the episodes of the other folds. The results of a stage are used to check the
+/// spec for the next stage.
+class Chain {
+public:
+    Chain(const source::File& file, const Request& request, calibrate::Request calibration,
+          diag::Sink& sink)
+        : file_(file), request_(request), calibration_(std::move(calibration)), sink_(sink) {}
+
+    std::optional<Trained> train(const Paths& episodes) {
+        const auto untrained = check({true, true, true});
+        if (!untrained) return std::nullopt;
+        const std::vector<Stage> stages = stages_of(*untrained);
+        if (episodes.size() < stages.size()) {
+            sink_.report(
+                diag::Code::too_few_for_folds, untrained->monitors.front().span,
+                fmt::format("fitting and calibration take {} besides those of a fold; there {} {}",
+                            diag::counted(stages.size(), "episode"),
+                            episodes.size() == 1 ? "is" : "are", episodes.size()));
+            return std::nullopt;
+        }
+        const std::vector<Paths> of_stages = parts(episodes, stages.size());
+        for (std::size_t s = 0; s < stages.size(); ++s)
+            if (!(this->*stages[s])(of_stages[s])) return std::nullopt;
+        auto model = check({});
+        if (!model) return std::nullopt;
+        auto compiled = pipeline::compile(std::move(*model), request_, sink_);
+        if (!compiled) return std::nullopt;
+        return Trained{std::move(*compiled), std::move(calibration_.fitted),
+                       std::move(thresholds_)};
+    }
+
+private:
+    using Stage = bool (Chain::*)(const Paths& episodes);
+
+    struct Lacks {
+        bool fitted = false;
+        bool predicates = false;  ///< their thresholds
+        bool monitors = false;    ///< their shifts
+    };
+
+    /// Returns the stages that the spec needs. Where it needs none, that of the predicates reports
+    /// it.
+    static std::vector<Stage> stages_of(const check::Model& model) {
+        std::vector<Stage> stages;
+        const bool has_monitors = !calibrate::calibrated_monitors(model).empty();
+        if (!model.fitted.empty()) stages.push_back(&Chain::fit);
+        if (!calibrate::calibrated_predicates(model).empty() || (stages.empty() && !has_monitors))
+            stages.push_back(&Chain::calibrate_predicates);
+        if (has_monitors) stages.push_back(&Chain::calibrate_monitors);
+        return stages;
+    }
+
+    bool fit(const Paths& episodes) {
+        const auto model = check({true, true, true});
+        fit::Request request{episodes,          calibration_.names,   calibration_.allow_overlap,
+                             calibration_.jobs, calibration_.version, calibration_.progress};
+        if (!model) return false;
+        auto found = fit::fit(*model, request, sink_);
+        if (!found) return false;
+        calibration_.fitted = std::move(found->file);
+        calibration_.fitted.path = kOthers;
+        return true;
+    }
+
+    bool calibrate_predicates(const Paths& episodes) {
+        const auto model = check({false, true, true});
+        calibration_.episodes = episodes;
+        return model && take(calibrate::calibrate(*model, calibration_, sink_));
+    }
+
+    bool calibrate_monitors(const Paths& episodes) {
+        const auto model = check({false, false, true});
+        calibration_.episodes = episodes;
+        return model && take(calibrate::calibrate_monitors(*model, std::move(thresholds_),
+                                                           calibration_, sink_));
+    }
+
+    bool take(std::optional<calibrate::Calibration> found) {
+        if (!found) return false;
+        thresholds_ = std::move(found->file);
+        thresholds_.path = kOthers;
+        return true;
+    }
+
+    std::optional<check::Model> check(const Lacks& lacks) {
+        check::Options options = request_.check;
+        options.allow_unfitted = lacks.fitted;
+        options.allow_uncalibrated = lacks.predicates;
+        options.allow_uncalibrated_monitors = lacks.monitors;
+        options.fitted = &calibration_.fitted;
+        options.thresholds = &thresholds_;
+        diag::Sink told_before;  // findings about the spec itself, which are reported already
+        auto model = check::check(parse::parse(file_, told_before), file_, options, told_before);
+        if (!model) sink_.add(told_before, "");
+        return model;
+    }
+
+    static constexpr const char* kOthers = "the other folds";  ///< stands for a file in messages
+
+    const source::File& file_;
+    const Request& request_;
+    calibrate::Request calibration_;  ///< with the fitted entries, once they exist
+    diag::Sink& sink_;
+    thresholds::File thresholds_;
+};
+
+}  // namespace
+
+std::optional<Folds> deal(const check::Model& model, const calibrate::Request& request,
+                          std::uint32_t folds, diag::Sink& sink) {
+    if (!episodes::can_be_dealt(request.episodes.size(), folds, model, sink)) return std::nullopt;
+    const auto read = episodes::over_episodes<episodes::Recorded>(
+        request.episodes, request, sink,
+        [&] { return std::make_unique<episodes::ContentScorer>(model, request.names); });
+    if (!read) return std::nullopt;
+    const auto recorded = episodes::recorded(*read);
+    Folds result{folds, episodes::folds_of(recorded, folds), episodes::by_content(recorded), {}};
+    // Entries in the file of fitted entries do not matter here.
+    result.allowance = episodes::admit(model, recorded, {}, {}, request.allow_overlap, sink);
+    if (sink.has_errors()) return std::nullopt;
+    return result;
+}
+
+std::optional<std::vector<Trained>> train(const source::File& file, const Request& request,
+                                          const calibrate::Request& calibration, const Folds& folds,
+                                          diag::Sink& sink) {
+    std::vector<Trained> all;
+    Telling telling(sink);
+    for (std::uint32_t fold = 0; fold < folds.count; ++fold) {
+        Paths others;
+        for (const std::size_t e : folds.order)
+            if (folds.of[e] != fold) others.push_back(calibration.episodes[e]);
+        diag::Sink found;
+        auto trained = Chain(file, request, calibration, found).train(others);
+        telling.tell(found, fmt::format("fold {} of {}: trained on {}", fold + 1, folds.count,
+                                        diag::counted(others.size(), "other episode")));
+        if (!trained) return std::nullopt;
+        all.push_back(std::move(*trained));
+    }
+    return all;
+}
+
+}  // namespace etlc::driver

@@ -1,0 +1,44 @@
+// Trains a spec once for every fold of the labelled episodes: fit, calibrate, compile.
+// Takes: a spec that lacks thresholds, and the episodes. Gives: per fold the spec compiled from the
+// other folds. Keeps true: no episode of a fold contributes to its monitors; stages that may not
+// share episodes get disjoint ones.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "artifacts/fitted.hpp"
+#include "artifacts/thresholds.hpp"
+#include "calibrate/calibrate.hpp"
+#include "diag/diag.hpp"
+#include "driver/commands/request.hpp"
+
+namespace etlc::driver {
+
+struct Folds {
+    std::uint32_t count = 0;
+    std::vector<std::uint32_t> of;    ///< the fold of each episode, from 0
+    std::vector<std::size_t> order;   ///< the episodes in the order of their content
+    thresholds::Allowance allowance;  ///< accepted overlaps between episodes
+};
+
+/// What was trained on all folds but one.
+struct Trained {
+    pipeline::Compiled spec;
+    fitted::File fitted;
+    thresholds::File thresholds;
+};
+
+/// Deals the episodes of the request into folds. Reports an error and returns nothing where
+/// episodes are copies of each other.
+std::optional<Folds> deal(const check::Model& model, const calibrate::Request& request,
+                          std::uint32_t folds, diag::Sink& sink);
+
+/// Trains the spec for each fold, in their order. Reports errors with their fold.
+std::optional<std::vector<Trained>> train(const source::File& file, const Request& request,
+                                          const calibrate::Request& calibration, const Folds& folds,
+                                          diag::Sink& sink);
+
+}  // namespace etlc::driver

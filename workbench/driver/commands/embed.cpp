@@ -1,0 +1,189 @@
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "data/files/file.hpp"
+#include "data/files/hash.hpp"
+#include "data/recordings/open.hpp"
+#include "driver/commands/commands.hpp"
+#include "driver/process/output_file.hpp"
+#include "embed/embed.hpp"
+#include "library/version.hpp"
+#include "parse/parse.hpp"
+#include "source/escape.hpp"
+
+namespace etlc::driver {
+
+namespace {
+
+namespace fs = std::filesystem;
+using check::kNone;
+using diag::Code;
+
+bool has_encoded_input(const check::Model& model) {
+    return std::any_of(model.inputs.begin(), model.inputs.end(),
+                       [](const check::Input& input) { return input.encoder != kNone; });
+}
+
+/// Reports a spec without encoders where there are no recordings either.
+bool has_work(const check::Model& model, bool with_recordings, diag::Sink& sink) {
+    if (!model.encoders.empty() || with_recordings) return true;
+    const source::Span place = model.file.text().empty() ? source::Span{} : source::Span{0, 1};
+    sink.report(Code::nothing_to_embed, place, "the spec declares no encoder")
+        .note(
+            "add a line such as 'encoder dino = load(\"dino.onnx\"), image [224, 224];', and "
+            "'by dino' behind an input and behind targets of images");
+    return false;
+}
+
+/// Reports recordings of which the spec uses nothing.
+bool has_inputs(const check::Model& model, const std::vector<embed::Recording>& recordings,
+                diag::Sink& sink) {
+    const bool have_columns =
+        std::none_of(recordings.begin(), recordings.end(),
+                     [](const embed::Recording& recording) { return recording.columns.empty(); });
+    if (recordings.empty() || has_encoded_input(model) || (have_columns && !model.inputs.empty()))
+        return true;
+    const source::Span place = model.file.text().empty() ? source::Span{} : source::Span{0, 1};
+    const bool has_encoder = !model.encoders.empty();
+    sink.report(Code::nothing_to_embed, has_encoder ? model.encoders[0].span : place,
+                "no input is made by an encoder, so recordings yield nothing")
+        .note(fmt::format("declare what makes an input: input z : f32[D] by {};",
+                          has_encoder ? model.encoders[0].name : "ENCODER"));
+    return false;
+}
+
+/// Reports names of --map and --camera that are not inputs.
+bool check_inputs(const check::Model& model, const Request& request, diag::Sink& sink) {
+    data::NamesInFile of_inputs;  // without labels, which embedding ignores
+    for (const auto& [name, in_file] : request.names)
+        if (!name.starts_with("truth.")) of_inputs.emplace(name, in_file);
+    if (!check_names({&model}, of_inputs, sink)) return false;
+    for (const auto& [input, camera] : request.embed.cameras) {
+        const auto made = [&, name = input](const check::Input& known) {
+            return known.name == name && known.encoder != kNone;
+        };
+        if (input.empty() || std::any_of(model.inputs.begin(), model.inputs.end(), made)) continue;
+        sink.report(data::in_file(
+            {Code::no_such_camera, fmt::format("no input '{}' is by an encoder", input)},
+            fmt::format("--camera {}={}", input, camera)));
+        return false;
+    }
+    return true;
+}
+
+embed::Search search_of(const check::Model& model, const Request& request) {
+    embed::Search search{request.data, request.groups, 0, request.embed.cameras, {}};
+    if (model.step_seconds > 0) search.rate = 1 / model.step_seconds;
+    for (const check::Input& input : model.inputs)
+        if (input.encoder != kNone) search.inputs.push_back(input.name);
+    return search;
+}
+
+std::string episode_path(const std::string& folder, const embed::Recording& recording) {
+    return (fs::path(folder) / (recording.episode + ".npz")).string();
+}
+
+/// Raises the limit of open files: all episodes are open until they get their names together.
+void allow_many_files() {
+    rlimit files{};
+    if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return;
+    files.rlim_cur = files.rlim_max;
+    static_cast<void>(::setrlimit(RLIMIT_NOFILE, &files));
+}
+
+bool make_folder(const std::string& folder, diag::Sink& sink) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (!error) return true;
+    sink.report(data::in_file(
+        {Code::unwritable_output, fmt::format("cannot be made: {}", error.message())}, folder));
+    return false;
+}
+
+/// Assigns a recording to a shard by the content of its first and last file, so that neither names
+/// nor the order matter; one of many recordings in a file is assigned by its name.
+std::uint32_t shard_of(const embed::Recording& recording, std::uint32_t shards) {
+    const auto& files = recording.files;
+    const std::string content =
+        files.empty() ? recording.episode
+                      : fmt::format("{} {}{}", files.size(), data::ends_of_file(files.front()),
+                                    data::ends_of_file(files.back()));
+    return static_cast<std::uint32_t>(data::xxh64(content) % shards) + 1;
+}
+
+std::string report(const check::Model& model, const embedded::File& file,
+                   const std::vector<embed::Recording>& recordings, const std::string& folder) {
+    std::string text;
+    for (const auto& [name, encoder] : file.encoders)
+        text += fmt::format("encoder {}: dimension {}, {} {}\n", name, encoder.dimension,
+                            encoder.kind, embedded::fingerprint(encoder));
+    for (const check::Encoded& encoded : model.encoded)
+        if (const auto entry = file.entries.find(encoded.text); entry != file.entries.end())
+            text += fmt::format("{}: {}\n", encoded.text, diag::counted(entry->second.rows, "row"));
+    std::map<std::string, std::uint64_t> tasks;
+    for (const embed::Recording& recording : recordings)
+        for (const std::string& task : recording.tasks) ++tasks[task];
+    for (const auto& [task, episodes] : tasks)
+        text += fmt::format("task '{}': {}\n", task, diag::counted(episodes, "episode"));
+    if (!recordings.empty())
+        text += fmt::format("{} in {}\n", diag::counted(recordings.size(), "episode"), folder);
+    return text;
+}
+
+}  // namespace
+
+bool embed(const source::File& file, const Request& request, diag::Sink& sink) {
+    ast::Spec spec = parse::parse(file, sink);
+    check::Options options;
+    options.settings = request.check.settings;
+    auto model = check::check_encoded(std::move(spec), file, options, sink);
+    if (!model || !has_work(*model, !request.data.empty(), sink) || sink.refused()) return false;
+
+    if (!check_inputs(*model, request, sink)) return false;
+    auto recordings = embed::find_recordings(search_of(*model, request), sink);
+    if (sink.refused() || !has_inputs(*model, recordings, sink)) return false;
+    embed::Request asked{request.embed.running, library::kVersion, request.names};
+    auto embeddings = embed::describe_encoders(*model, asked, sink);
+    if (!embeddings) return false;
+    const ShardRequest& shard = request.shard;
+    if (shard.shards > 0)
+        std::erase_if(recordings, [&](const embed::Recording& recording) {
+            return shard_of(recording, shard.shards) != shard.shard;
+        });
+
+    const std::string& embedded_file = request.check.embedded_path;
+    const std::string result =
+        embedded_file.empty() ? embedded::default_path(file.path()) : embedded_file;
+    const bool has_targets = !model->encoders.empty() && (shard.shards == 0 || shard.shard == 1);
+    std::vector<std::string> outputs;
+    if (has_targets) outputs.push_back(result);
+    std::vector<std::string> inputs = {file.path()};
+    for (const check::Encoder& encoder : model->encoders)
+        inputs.push_back((fs::path(file.path()).parent_path() / encoder.model).string());
+    for (const embed::Recording& recording : recordings) {
+        outputs.push_back(episode_path(request.output, recording));
+        inputs.push_back(data::trace_file(recording.path));
+        if (!recording.beside.empty()) inputs.push_back(recording.beside);
+    }
+    if (!recordings.empty() && !make_folder(request.output, sink)) return false;
+    if (!check_outputs(outputs, inputs, sink)) return false;
+
+    allow_many_files();
+    OutputFiles files(sink);
+    const auto keep = [&](const embed::Recording& recording, const std::string& bytes) {
+        return files.add(episode_path(request.output, recording), bytes);
+    };
+    return (!has_targets || embed::embed_targets(*model, asked, *embeddings, sink)) &&
+           embed::embed_recordings(*model, *embeddings, recordings, asked, keep, sink) &&
+           (!has_targets || files.add(result, embedded::write(*embeddings))) &&
+           files.add(
+               std::string(kStandardOutput),
+               source::visible_lines(report(*model, *embeddings, recordings, request.output))) &&
+           files.commit();
+}
+
+}  // namespace etlc::driver

@@ -1,0 +1,203 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "data/files/file.hpp"
+#include "data/recordings/open.hpp"
+#include "driver/commands/commands.hpp"
+#include "driver/commands/crossvalidate.hpp"
+#include "driver/process/output_file.hpp"
+#include "driver/process/process.hpp"
+#include "library/version.hpp"
+#include "parse/parse.hpp"
+#include "source/escape.hpp"
+
+namespace etlc::driver {
+
+namespace {
+
+/// A spec to be evaluated: compiled, or without thresholds where folds provide them.
+struct Candidate {
+    SpecToJudge spec;
+    std::optional<Compiled> compiled;
+    std::optional<check::Model> untrained;
+
+    const check::Model& model() const { return compiled ? *compiled->model : *untrained; }
+};
+
+std::optional<Candidate> candidate(const SpecToJudge& spec, const Request& request, bool trains) {
+    Candidate result{spec, {}, {}};
+    if (trains) {
+        check::Options options = request.check;
+        options.allow_uncalibrated = true;
+        options.allow_uncalibrated_monitors = true;
+        options.allow_unfitted = true;
+        result.untrained =
+            check::check(parse::parse(spec.file, spec.sink), spec.file, options, spec.sink);
+    } else {
+        result.compiled = compile(spec.file, request, spec.sink);
+    }
+    if (spec.sink.refused() || (!result.compiled && !result.untrained)) return std::nullopt;
+    return result;
+}
+
+std::vector<std::string> inputs(const std::vector<Candidate>& candidates,
+                                const std::vector<std::string>& episodes) {
+    std::vector<std::string> paths;
+    for (const Candidate& one : candidates) {
+        const auto& loaded = one.model().dependencies;
+        paths.insert(paths.end(), loaded.begin(), loaded.end());
+        paths.push_back(one.spec.file.path());
+    }
+    for (const std::string& episode : episodes) paths.push_back(data::trace_file(episode));
+    return paths;
+}
+
+/// Returns the episodes of a fold in order.
+std::vector<std::size_t> episodes_of(const Folds& folds, std::uint32_t fold) {
+    std::vector<std::size_t> episodes;
+    for (std::size_t e = 0; e < folds.of.size(); ++e)
+        if (folds.of[e] == fold) episodes.push_back(e);
+    return episodes;
+}
+
+class Judging {
+public:
+    Judging(const Request& request, const evaluate::Request& asked)
+        : request_(request), asked_(asked) {
+        calibration_.episodes = asked.episodes;
+        calibration_.names = asked.names;
+        calibration_.allow_overlap = asked.allow_overlap;
+        calibration_.jobs = asked.jobs;
+        calibration_.version = library::kVersion;
+        calibration_.progress = asked.progress;
+    }
+
+    /// Judges every fold by monitors trained on the others. All specs use the folds of the first.
+    std::optional<evaluate::Judgement> in_folds(const Candidate& one, std::uint32_t count,
+                                                diag::Sink& sink) {
+        if (!folds_) folds_ = deal(one.model(), calibration_, count, sink);
+        if (!folds_) return std::nullopt;
+        const auto trained = train(one.spec.file, request_, calibration_, *folds_, sink);
+        if (!trained) return std::nullopt;
+        std::vector<evaluate::Trial> trials;
+        for (std::uint32_t fold = 0; fold < count; ++fold) {
+            const Trained& others = (*trained)[fold];
+            trials.push_back(
+                {others.spec, others.thresholds, episodes_of(*folds_, fold), others.fitted});
+        }
+        auto result = evaluate::judge(trials, asked_, sink);
+        if (result && folds_->allowance.overlapping > 0)
+            result->reservations.push_back(thresholds::text(folds_->allowance));
+        return result;
+    }
+
+private:
+    const Request& request_;
+    const evaluate::Request& asked_;
+    calibrate::Request calibration_;
+    std::optional<Folds> folds_;
+};
+
+std::optional<evaluate::SideBySide> judged(const std::vector<Candidate>& candidates,
+                                           const Request& request, const evaluate::Request& asked) {
+    Judging judging(request, asked);
+    evaluate::SideBySide result;
+    std::optional<evaluate::Judgement> first;
+    for (const Candidate& one : candidates) {
+        const std::string& path = one.spec.file.path();
+        diag::Sink found;  // also about episodes, with the spec in a note
+        auto judgement = request.folds > 0
+                             ? judging.in_folds(one, request.folds, found)
+                             : judge_as_it_is(*one.compiled, path, request, asked, found);
+        std::optional<evaluate::Evaluation> summary;
+        if (judgement) summary = evaluate::summarise(*judgement);
+        if (summary) evaluate::warn_of_doubts(one.model(), *summary, found);
+        one.spec.sink.add(found, candidates.size() > 1 ? fmt::format("for the spec {}", path) : "");
+        if (!summary) return std::nullopt;
+        auto& spec = result.specs.emplace_back();
+        spec.path = path;
+        spec.evaluation = std::move(*summary);
+        if (request.evaluate.by_episode)
+            spec.evaluation.by_episode = evaluate::by_episode(*judgement);
+        if (first)
+            spec.differences = evaluate::differences(*first, *judgement);
+        else
+            first = std::move(judgement);
+    }
+    return result;
+}
+
+/// The table is printed before the files take their names: where that fails, nothing has changed.
+bool write(const evaluate::SideBySide& specs, const Request& request, diag::Sink& sink) {
+    const Request::Evaluate& asked = request.evaluate;
+    OutputFiles files(sink);
+    const bool prints = asked.json != kStandardOutput && asked.csv != kStandardOutput;
+    const auto csv = [&] {
+        return asked.by_episode ? evaluate::csv_by_episode(specs) : evaluate::csv(specs);
+    };
+    return (asked.json.empty() || files.add(asked.json, evaluate::json(specs))) &&
+           (asked.csv.empty() || files.add(asked.csv, csv())) &&
+           (!prints || files.add(std::string(kStandardOutput),
+                                 source::visible_lines(evaluate::table(specs)))) &&
+           files.commit();
+}
+
+}  // namespace
+
+std::optional<thresholds::File> thresholds_of(const check::Model& model, const std::string& spec,
+                                              const Request& request) {
+    const std::string& given = request.check.thresholds_path;
+    const std::string path = given.empty() ? check::default_thresholds_path(spec) : given;
+    if (std::find(model.dependencies.begin(), model.dependencies.end(), path) ==
+        model.dependencies.end())
+        return std::nullopt;
+    auto file = thresholds::read(path);
+    if (!file) return std::nullopt;  // check/ has read it and reported errors
+    return std::move(*file);
+}
+
+std::optional<evaluate::Judgement> judge_as_it_is(const Compiled& compiled, const std::string& spec,
+                                                  const Request& request,
+                                                  const evaluate::Request& asked,
+                                                  diag::Sink& sink) {
+    std::vector<std::size_t> all(asked.episodes.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return evaluate::judge({{compiled, thresholds_of(*compiled.model, spec, request),
+                             std::move(all), fitted_file(*compiled.model, spec, request)}},
+                           asked, sink);
+}
+
+bool evaluate(const std::vector<SpecToJudge>& specs, const Request& request) {
+    std::vector<Candidate> candidates;
+    std::vector<const check::Model*> models;
+    for (const SpecToJudge& spec : specs) {
+        auto next = candidate(spec, request, request.folds > 0);
+        if (!next) return false;
+        candidates.push_back(std::move(*next));
+    }
+    for (const Candidate& one : candidates) models.push_back(&one.model());
+    diag::Sink& sink = specs[0].sink;
+    auto shard = sharing_of(request);
+    auto asked = asked_of<evaluate::Request>(request);
+    asked.sharing = shard ? &*shard : request.merged;
+    asked.allow_overlap = request.allow_overlap;
+    asked.limits = request.limits;
+    if (!check_names(models, asked.names, sink)) return false;
+    asked.episodes = find_shared_episodes(asked.sharing, request.data, request.groups, sink);
+    if (sink.has_errors()) return false;
+    const auto outputs = is_shard(asked.sharing) ? std::vector<std::string>{request.shard.part}
+                                                 : std::vector<std::string>{request.evaluate.json,
+                                                                            request.evaluate.csv};
+    auto read = inputs(candidates, asked.episodes);
+    const auto parts = merged_files(asked.sharing);
+    read.insert(read.end(), parts.begin(), parts.end());
+    if (!check_outputs(outputs, read, sink)) return false;
+    if (!note_loaded(asked.sharing, inputs(candidates, {}), sink)) return false;
+    const auto result = judged(candidates, request, asked);
+    if (is_shard(asked.sharing)) return write_part(*asked.sharing, request.shard.part, sink);
+    return result && write(*result, request, sink);
+}
+
+}  // namespace etlc::driver

@@ -1,0 +1,105 @@
+// What a call of etlc asks for: what all commands read, and what each one is told besides.
+// Takes: the options of the call. Keeps true: a member that no option sets has its default.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "check/check.hpp"
+#include "data/recordings/open.hpp"
+#include "embed/encoder.hpp"
+#include "episodes/shared/sharing.hpp"
+#include "pipeline/compile.hpp"
+#include "report/report.hpp"
+
+namespace etlc::driver {
+
+enum class ExplanationFormat : std::uint8_t { text, json };
+enum class IncidentFormat : std::uint8_t { table, csv, trace, spec };
+
+/// Which part of the episodes a call reads: `--shard I/N`.
+struct ShardRequest {
+    std::uint32_t shard = 0;   ///< 1 to `shards`
+    std::uint32_t shards = 0;  ///< 0: all episodes
+    std::string part;          ///< the file that this shard writes
+    /// Standard input lists the shards, a number a line. Each goes to NUMBER.part in the folder
+    /// `part`, and its number to standard output. `shard` is 0.
+    bool from_input = false;
+};
+
+struct Request : pipeline::Options {
+    /// Settings of constants, and the files of thresholds, fitted entries and embeddings; an empty
+    /// path stands for the file beside the spec.
+    check::Options check;
+    std::string output;  ///< -o; "-" is standard output, empty the usual place of the command
+
+    std::vector<std::string> data;  ///< episodes or recordings: files, folders and patterns
+    std::string groups;             ///< pattern of the groups of .h5 files that are episodes
+    std::string trace;
+    data::NamesInFile names;    ///< names of inputs and labels in the files
+    std::string allow_overlap;  ///< why overlaps are accepted; empty: they are refused
+    unsigned jobs = 0;          ///< threads; 0: as many as the machine has
+    std::uint32_t folds = 0;    ///< 0: none
+    ShardRequest shard;
+    std::vector<std::string> words;       ///< the call itself, from the command on
+    episodes::Sharing* merged = nullptr;  ///< the parts of all shards; null: episodes are read
+
+    // The compiler.
+    bool explains = false;     ///< the class has why_NAME()
+    std::string emit = "hpp";  ///< ast, graph, plan, or a backend of emit/backends.cpp
+    std::string name_space;
+    std::string standalone;      ///< emit::Options::standalone
+    std::string depfile;         ///< empty: none
+    std::string targets;         ///< where large target sets go; empty: nowhere
+    std::string params;          ///< where the parameters of a retargetable class go
+    bool targets_named = false;  ///< the call names `targets`, which is written even when empty
+
+    struct Run {
+        bool summary = false;    ///< a line for each monitor, on standard output
+        bool distances = false;  ///< a column for the distance or expression of each predicate
+        bool finish = false;     ///< also the positions reported after the end of the trace
+        std::string html;        ///< page of the trace; empty: none
+        std::string svg;         ///< picture of its timelines; empty: none
+    } run;
+
+    struct Embed {
+        embed::Running running;
+        /// Cameras of data sets and arrays by input; "" stands for all inputs.
+        std::map<std::string, std::string> cameras;
+    } embed;
+
+    struct Fit {
+        bool suggest = false;                 ///< print candidates for `predicates`, write no file
+        std::vector<std::string> predicates;  ///< empty: all that have labels
+        bool json = false;
+    } fit;
+
+    struct Evaluate {
+        std::string json;  ///< file; empty: none
+        std::string csv;
+        bool by_episode = false;  ///< also a row for each episode, the only rows of the CSV
+    } evaluate;
+
+    struct Explain {
+        std::string monitor;                ///< empty: the first alarm, else the first monitor
+        std::optional<std::uint64_t> step;  ///< nothing: the usual step
+        std::optional<double> at;           ///< the step by its time in seconds
+        ExplanationFormat format = ExplanationFormat::text;
+    } explain;
+
+    struct Incident {
+        std::string file;
+        IncidentFormat format = IncidentFormat::table;
+    } incident;
+
+    struct Report {
+        report::FramesOption frames;
+        std::uint64_t megabytes = report::kUsualMegabytes;  ///< size of the page
+        bool without_truths = false;                        ///< compare verdicts with nothing
+    } report;
+};
+
+}  // namespace etlc::driver

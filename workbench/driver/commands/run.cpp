@@ -1,0 +1,351 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "data/files/file.hpp"
+#include "data/recordings/open.hpp"
+#include "diag/diag.hpp"
+#include "driver/commands/commands.hpp"
+#include "driver/process/output_file.hpp"
+#include "driver/process/process.hpp"
+#include "episodes/data_warnings.hpp"
+#include "episodes/replay.hpp"
+#include "etlmon/temporal/verdict.hpp"
+#include "plan/evaluate/evaluator.hpp"
+#include "plan/recorder_plan.hpp"
+#include "source/escape.hpp"
+
+namespace etlc::driver {
+
+namespace {
+
+using etlmon::Verdict;
+
+/// The figures of `etlc run --summary`, in constant memory.
+class RunSummary {
+public:
+    explicit RunSummary(const plan::Plan& plan) : plan_(plan), monitors_(plan.monitors.size()) {}
+
+    /// Adds a verdict about a new position of the monitor.
+    void add(std::size_t monitor, std::uint64_t step, const etlmon::Verdict& verdict);
+
+    std::string text(std::uint64_t steps, const plan::Evaluator& evaluator) const;
+
+private:
+    /// A robustness and its step.
+    struct At {
+        std::uint64_t step = 0;
+        float robustness = 0;
+    };
+    struct OfMonitor {
+        std::uint64_t decided = 0;
+        std::uint64_t violated = 0;
+        std::uint64_t unknown = 0;
+        std::optional<std::uint64_t> first_violated;
+        std::optional<At> worst;  ///< least known robustness
+        std::optional<std::uint64_t> final_since;
+        std::uint64_t alarms = 0;
+        std::uint64_t fulfilled = 0;
+        std::optional<std::uint64_t> first_alarm;
+        etlmon::Verdict last;
+    };
+    std::string of_prefix(const OfMonitor& monitor) const;
+    std::string of_repeating(const OfMonitor& monitor) const;
+    std::string of_sliding(const OfMonitor& monitor, std::uint64_t horizon) const;
+    std::string of_input(check::Index input, const plan::SampleCounts& counts) const;
+    std::string when(std::uint64_t step) const;
+
+    const plan::Plan& plan_;
+    std::vector<OfMonitor> monitors_;
+};
+
+/// Returns "satisfied", "violated", "unknown" or "undecided".
+const char* status(const etlmon::Verdict& verdict) {
+    if (!verdict.decided()) return "undecided";
+    return verdict.satisfied() ? "satisfied" : verdict.violated() ? "violated" : "unknown";
+}
+
+void RunSummary::add(std::size_t monitor, std::uint64_t step, const etlmon::Verdict& verdict) {
+    if (!verdict.decided()) return;
+    OfMonitor& m = monitors_[monitor];
+    const At here{step, verdict.robustness};
+    ++m.decided;
+    if (verdict.unknown()) ++m.unknown;
+    if (verdict.violated()) {
+        ++m.violated;
+        if (!m.first_violated) m.first_violated = step;
+    }
+    const bool known = !verdict.unknown();  // the robustness of an unknown verdict is only a bound
+    if (known && (!m.worst || here.robustness < m.worst->robustness)) m.worst = here;
+    if (!verdict.final())
+        m.final_since.reset();
+    else if (!m.final_since)
+        m.final_since = step;
+    if (verdict.fulfilled()) ++m.fulfilled;
+    if (verdict.alarm()) {
+        ++m.alarms;
+        if (!m.first_alarm) m.first_alarm = step;
+    }
+    m.last = verdict;
+}
+
+/// Returns "step 5 (1.25 s)".
+std::string RunSummary::when(std::uint64_t step) const {
+    const double length = plan_.model->step_seconds;
+    if (length == 0) return fmt::format("step {}", step);
+    return fmt::format("step {} ({:.6g} s)", step, static_cast<double>(step) * length);
+}
+
+std::string RunSummary::of_prefix(const OfMonitor& m) const {
+    std::string text = fmt::format("{} so far", status(m.last));
+    if (m.final_since)
+        text = fmt::format("{} for good from {} on", status(m.last), when(*m.final_since));
+    return text + fmt::format(", robustness {:.6g}", m.last.robustness);
+}
+
+std::string RunSummary::of_repeating(const OfMonitor& m) const {
+    std::string text = diag::counted(m.alarms, "alarm");
+    if (m.first_alarm) text += fmt::format(", the first at {}", when(*m.first_alarm));
+    return text + fmt::format("; fulfilled {}; at the end {}, robustness {:.6g}",
+                              diag::counted(m.fulfilled, "time"), status(m.last),
+                              m.last.robustness);
+}
+
+std::string RunSummary::of_sliding(const OfMonitor& m, std::uint64_t horizon) const {
+    if (!m.worst) return "unknown throughout";
+    if (!m.first_violated)
+        return fmt::format("never violated, least robustness {:.6g} at {}", m.worst->robustness,
+                           when(m.worst->step - horizon));
+    return fmt::format("violated at {} of {}, first at {}, least robustness {:.6g} at {}",
+                       m.violated, diag::counted(m.decided, "position"),
+                       when(*m.first_violated - horizon), m.worst->robustness,
+                       when(m.worst->step - horizon));
+}
+
+std::string RunSummary::of_input(check::Index input, const plan::SampleCounts& counts) const {
+    std::vector<std::string> parts;
+    if (counts.missing > 0) parts.push_back(fmt::format("{} missing", counts.missing));
+    if (counts.out_of_range > 0)
+        parts.push_back(fmt::format("{} out of range", counts.out_of_range));
+    std::string text = fmt::format("{}", fmt::join(parts, ", "));
+    if (counts.held > 0) text += fmt::format(", of which {} held", counts.held);
+    return fmt::format("input {}: {}\n", plan_.model->inputs[input].name, text);
+}
+
+std::string RunSummary::text(std::uint64_t steps, const plan::Evaluator& evaluator) const {
+    std::string text;
+    for (std::size_t i = 0; i < monitors_.size(); ++i) {
+        const OfMonitor& m = monitors_[i];
+        const plan::Monitor& monitor = plan_.monitors[i];
+        const bool repeats = monitor.restarts == check::Restarts::when_final;
+        const std::string said = m.decided == 0    ? "undecided throughout"
+                                 : monitor.sliding ? of_sliding(m, monitor.horizon)
+                                 : repeats         ? of_repeating(m)
+                                                   : of_prefix(m);
+        text += fmt::format("{}: {}", monitor.name, said);
+        if (m.unknown > 0) text += fmt::format("; unknown on {}", diag::counted(m.unknown, "step"));
+        text += "\n";
+    }
+    text += fmt::format("{}\n", diag::counted(steps, "step"));
+    for (const check::Index input : plan_.inputs) {
+        const plan::SampleCounts& counts = evaluator.sample_counts()[input];
+        if (counts.missing + counts.out_of_range > 0) text += of_input(input, counts);
+    }
+    return text;
+}
+
+constexpr std::size_t kBufferBytes = 1U << 16U;
+constexpr std::uint64_t kStepsPerReport = 4096;
+
+class Run {
+public:
+    Run(const source::File& spec, const Compiled& compiled, const Request& request,
+        diag::Sink& sink)
+        : spec_(spec),
+          compiled_(compiled),
+          plan_(compiled.plan),
+          request_(request),
+          sink_(sink),
+          monitors_(compiled.plan),
+          summary_(compiled.plan),
+          output_(sink) {
+        if (request.run.distances) choose_columns();
+    }
+
+    bool execute() {
+        if (!check_names({plan_.model}, request_.names, sink_)) return false;
+        if (!check_outputs({request_.output, request_.run.html, request_.run.svg},
+                           files_read(*plan_.model, spec_, {request_.trace}), sink_))
+            return false;
+        if (writes_rows() && !output_.begin(request_.output)) return false;
+        print_head();
+        if (!step_through_trace() || !flush()) return false;
+        episodes::warn_of_unmarked(*plan_.model, plan_.inputs, {request_.trace}, request_.names,
+                                   sink_);
+        if (request_.run.summary && !print(summary_.text(steps_, monitors_.evaluator()), sink_))
+            return false;
+        return write_pictures() && output_.commit();
+    }
+
+private:
+    bool fail(const diag::Failure& failure) {
+        sink_.report(data::in_trace(failure, request_.trace));
+        return false;
+    }
+
+    bool writes_rows() const { return !request_.output.empty(); }
+
+    bool write_pictures() {
+        const std::string& trace = request_.trace;
+        if (!request_.run.html.empty()) {
+            const auto page = page_of_trace(spec_, compiled_, trace, request_.names, sink_);
+            if (!page || !output_.add(request_.run.html, *page)) return false;
+        }
+        if (request_.run.svg.empty()) return true;
+        const auto picture = report::picture(compiled_, trace, request_.names, sink_);
+        return picture && output_.add(request_.run.svg, *picture);
+    }
+
+    /// Chooses the columns of distances; unnamed comparisons of one expression share a column.
+    void choose_columns() {
+        std::set<std::string> seen;
+        for (const check::Index p : plan_.predicates)
+            if (const std::string name = plan::column_name(*plan_.model, p);
+                seen.insert(name).second)
+                distances_.emplace_back(name, p);
+    }
+
+    void print_head() {
+        text_ = "step,monitor,lower,robustness,upper,status,final,position";
+        if (plan_.model->step_seconds > 0) text_ += ",time";
+        for (const auto& [name, predicate] : distances_)
+            text_ += "," + source::csv_cell("distance_" + name);
+        for (const plan::Let& let : plan_.lets)
+            text_ += ",robustness_" + plan_.model->lets[let.index].name;
+        text_ += "\n";
+    }
+
+    bool step_through_trace() {
+        auto recording =
+            episodes::Recording::open({plan_.model, plan_.inputs}, request_.trace, request_.names);
+        if (!recording) return fail(recording.failure());
+        episodes::AfterStep rest;
+        if (request_.run.finish) rest = [&] { return report(); };
+        const auto frame = [&] {
+            show_progress(recording->length());
+            ++steps_;
+            return report();
+        };
+        const auto done = episodes::replay(*recording, {&monitors_}, frame, rest);
+        if (!done) return fail(done.failure());
+        if (*done) warn_of_absent_inputs();
+        return *done;
+    }
+
+    void warn_of_absent_inputs() {
+        for (const check::Index input : plan_.inputs) {
+            const plan::SampleCounts& counts = monitors_.evaluator().sample_counts()[input];
+            if (counts.missing + counts.out_of_range < steps_) continue;
+            const char* why = counts.missing == steps_        ? "missing"
+                              : counts.out_of_range == steps_ ? "out of its range"
+                                                              : "missing or out of its range";
+            sink_
+                .report(data::in_file(
+                    {diag::Code::no_sample, fmt::format("every sample of '{}' is {}",
+                                                        plan_.model->inputs[input].name, why)},
+                    request_.trace))
+                .note("predicates that measure it are unknown at every step");
+        }
+    }
+
+    bool report() {
+        const std::vector<Verdict>& verdicts = monitors_.verdicts();
+        const std::string telemetry = distance_cells() + let_cells();
+        for (std::size_t m = 0; m < verdicts.size(); ++m) {
+            if (monitors_.reports(plan_.monitors[m].index)) summary_.add(m, step_, verdicts[m]);
+            if (writes_rows()) print_row(m, verdicts[m], telemetry);
+        }
+        ++step_;
+        // A program that pipes a trace waits for each verdict.
+        const bool waits = request_.trace == data::kStandardInput;
+        return (text_.size() < kBufferBytes && !waits) || flush();
+    }
+
+    void print_row(std::size_t m, const Verdict& v, const std::string& telemetry) {
+        const std::string& name = plan_.monitors[m].name;
+        const auto out = std::back_inserter(text_);
+        if (v.decided())
+            fmt::format_to(out, "{},{},{:.9g},{:.9g},{:.9g},{},{},{}", step_, name, v.lower,
+                           v.robustness, v.upper, status(v), v.final() ? 1 : 0,
+                           monitors_.evaluator().position(m));
+        else
+            fmt::format_to(out, "{},{},,,,undecided,0,", step_, name);
+        if (plan_.model->step_seconds > 0)
+            fmt::format_to(out, ",{:.9g}", static_cast<double>(step_) * plan_.model->step_seconds);
+        text_ += telemetry;
+        text_ += "\n";
+    }
+
+    /// Returns the distances at this step; empty after the trace, and where a sample is missing.
+    std::string distance_cells() const {
+        std::string cells;
+        for (const auto& [name, predicate] : distances_) {
+            const float distance = monitors_.evaluator().distance(predicate);
+            const bool is_there = step_ < steps_ && !std::isnan(distance);
+            cells += is_there ? fmt::format(",{:.9g}", distance) : ",";
+        }
+        return cells;
+    }
+
+    /// Returns the robustness of lets at this step; empty after the trace, and where it is unknown.
+    std::string let_cells() const {
+        std::string cells;
+        for (const Verdict& let : monitors_.evaluator().lets()) {
+            const bool is_there = step_ < steps_ && !let.unknown();
+            cells += is_there ? fmt::format(",{:.9g}", let.robustness) : ",";
+        }
+        return cells;
+    }
+
+    bool flush() {
+        const bool written = !writes_rows() || output_.write(text_);
+        text_.clear();
+        return written;
+    }
+
+    void show_progress(std::uint64_t length) const {
+        if (!watched_ || length == 0 || step_ % kStepsPerReport != 0) return;
+        print_error(fmt::format("\r{:3}% of {} steps", 100 * step_ / length, length));
+        if (step_ + kStepsPerReport > length) print_error(kEraseProgress);
+    }
+
+    const source::File& spec_;
+    const Compiled& compiled_;
+    const plan::Plan& plan_;
+    const Request& request_;
+    diag::Sink& sink_;
+    episodes::Follower monitors_;
+    RunSummary summary_;
+    OutputFiles output_;
+    /// The name of each column of distances, and a predicate that has this distance.
+    std::vector<std::pair<std::string, check::Index>> distances_;
+    std::string text_;
+    std::uint64_t step_ = 0;   ///< steps so far, including those after the trace
+    std::uint64_t steps_ = 0;  ///< frames so far
+    const bool watched_ = progress_is_seen();
+};
+
+}  // namespace
+
+bool run(const source::File& spec, const Compiled& compiled, const Request& request,
+         diag::Sink& sink) {
+    return Run(spec, compiled, request, sink).execute();
+}
+
+}  // namespace etlc::driver

@@ -1,0 +1,69 @@
+#include "library/call.hpp"
+
+#include <exception>
+#include <new>
+#include <stdexcept>
+
+#include "data/spill/file.hpp"
+
+namespace etlc::library {
+
+namespace {
+
+constexpr const char* kNoDiagnostics = "{\"diagnostics\": []}\n";
+
+}  // namespace
+
+Message& Message::here() noexcept {
+    thread_local Message message;
+    return message;
+}
+
+void Message::clear() noexcept {
+    text_ = "";
+    json_ = kNoDiagnostics;
+}
+
+void Message::take_diagnostics(std::string text, std::string json) noexcept {
+    diagnostics_ = std::move(text);
+    if (diagnostics_.ends_with('\n')) diagnostics_.pop_back();
+    diagnostics_json_ = std::move(json);
+    text_ = diagnostics_.c_str();
+    json_ = diagnostics_json_.c_str();
+}
+
+void Message::take_warnings(std::string json) noexcept {
+    diagnostics_json_ = std::move(json);
+    json_ = diagnostics_json_.c_str();
+}
+
+etlc_status Message::say_what_failed() noexcept {
+    clear();
+    try {
+        throw;
+    } catch (const std::bad_alloc&) {
+        text_ = "there is not enough memory for this";
+        return ETLC_OUT_OF_MEMORY;
+    } catch (const std::length_error&) {
+        text_ = "there is not enough memory for this";
+        return ETLC_OUT_OF_MEMORY;
+    } catch (const data::SpillError& error) {
+        try {
+            return say(ETLC_OUT_OF_MEMORY, "{}", error.what());
+        } catch (...) {
+            text_ = "there is not enough memory for this";
+            return ETLC_OUT_OF_MEMORY;
+        }
+    } catch (const std::exception& error) {
+        try {
+            return say(ETLC_INTERNAL, "internal error: {}", error.what());
+        } catch (...) {
+            text_ = "internal error";
+        }
+    } catch (...) {
+        text_ = "internal error";
+    }
+    return ETLC_INTERNAL;
+}
+
+}  // namespace etlc::library
