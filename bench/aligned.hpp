@@ -1,4 +1,4 @@
-// Arrays that begin at a multiple of 64 bytes, as the target sets of a generated header do.
+// Arrays that begin at a multiple of 64 bytes, like the target sets of a generated header.
 #pragma once
 
 #include <cstddef>

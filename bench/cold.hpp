@@ -1,4 +1,4 @@
-// Calls that find nothing of their data in the caches.
+// Times calls without their data in the caches.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace bench {
 
-/// Fills the caches with other data, the last level included where it is not beyond `bytes`.
+/// Fills the caches with other data, including the last level if it is not larger than `bytes`.
 inline void sweep_caches() {
     constexpr std::size_t kBytes = std::size_t{128} << 20U;
     constexpr std::size_t kLine = 64;
@@ -17,7 +17,7 @@ inline void sweep_caches() {
     asm volatile("" ::: "memory");
 }
 
-/// Nanoseconds of a call after the caches were swept, less the cost of reading the clock.
+/// Returns the nanoseconds of a call with cold caches, without the cost of reading the clock.
 template <class Call>
 double cold_call(const Call& call) {
     using Clock = std::chrono::steady_clock;
@@ -31,7 +31,7 @@ double cold_call(const Call& call) {
     sweep_caches();
     double clock = timed([] {});
     for (int i = 0; i < 20; ++i)
-        clock = std::min(clock, timed([] {}));  // nothing but the clock is warm again
+        clock = std::min(clock, timed([] {}));  // only the clock is warm again
     return timed(call) - clock;
 }
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""compare.py BEFORE.json AFTER.json: two saved results of a bench, row by row: every figure before
-and after, and their ratio.
+"""compare.py BEFORE.json AFTER.json: compares two saved results of a bench, row by row: every
+figure before and after, and their ratio.
 
-A result is a list of rows; a row is an object with one text, its name, and figures. Exit status 1
-where the files have no row in common.
+A result is a list of rows; a row is an object with one text, its name, and figures. The exit
+status is 1 if the files have no row in common.
 """
 import json
 import sys

@@ -6,7 +6,7 @@
 
 namespace bench {
 
-/// The middle value, of an even number the upper one; 0 of none.
+/// Returns the middle value; for an even number the upper one, for none 0.
 inline double median(std::vector<double> values) {
     if (values.empty()) return 0;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -14,7 +14,8 @@ double nanoseconds(Clock::duration time) {
     return std::chrono::duration<double, std::nano>(time).count();
 }
 
-/// Processor time of this program so far, in nanoseconds: what others run meanwhile does not count.
+/// Returns the processor time of this program so far, in nanoseconds, without that of other
+/// programs.
 double processor_time() {
     return static_cast<double>(std::clock()) * (1e9 / CLOCKS_PER_SEC);
 }
@@ -25,7 +26,7 @@ double quantile(std::vector<double> values, double share) {
     return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
-/// Passes that take at least `seconds` together.
+/// Returns the number of passes that take at least `seconds` together.
 int passes_for(const Routine& routine, double seconds) {
     for (int passes = 1;; passes *= 2) {
         const double start = processor_time();

@@ -8,27 +8,28 @@
 #   TARGET          an executable or a library made in this directory; it may have several monitors
 #   SPEC            the .etl file
 #   THRESHOLDS      the thresholds file; default: SPEC.thresholds.json beside the spec, if it exists
-#   FITTED          what `etlc fit` found; default: SPEC.fitted.npz beside the spec, if it exists
-#   EMBEDDED        what `etlc embed` made; default: SPEC.embedded.npz beside the spec
-#   VALUES          what the monitors compute: robustness (the default) or boolean, truth values and
-#                   only the distances that matter
-#   NAMESPACE       of the generated code; default: the name after `spec`
+#   FITTED          the file of `etlc fit`; default: SPEC.fitted.npz beside the spec, if it exists
+#   EMBEDDED        the file of `etlc embed`; default: SPEC.embedded.npz beside the spec
+#   VALUES          the values of the monitors: robustness (the default) or boolean, which are truth
+#                   values and measure only distances that can change a verdict
+#   NAMESPACE       the namespace of the generated code; default: the name after `spec`
 #   SET             other values for constants of the spec: SET limit=0.25 deadline=2s
-#   STANDALONE      the header holds the runtime that it needs; without it TARGET is linked with
-#                   etlmon::etlmon. No source includes both kinds.
+#   STANDALONE      the header contains the runtime; without it TARGET is linked with
+#                   etlmon::etlmon. A source must not include both kinds.
 #   INLINE_TARGETS  larger target sets go to <stem of SPEC>.targets.bin beside the header; default:
-#                   262144. The program gives the monitor that file, which is empty where no set is
+#                   262144. The program gives the monitor that file, which is empty if no set is
 #                   larger. The property ETLC_TARGETS_FILES of TARGET lists these files.
 #   RECORDER        keeps the steps around alarms, for `etlc incident`: RECORDER 2s,1s,4
-#   EXPLAIN         the class says why a verdict is what it is: why_NAME(); not with VALUES boolean
-#   LETS            what lets say of each step is telemetry too: let_NAME(), robustness_NAME()
-#   RETARGETABLE    the numbers of the spec lie in <stem of SPEC>.params.bin beside the header, and
-#                   the class takes other ones; not with INLINE_TARGETS, RECORDER, EXPLAIN or VALUES
-#                   boolean. The property ETLC_PARAMS_FILES of TARGET lists these files.
-# Relative paths are relative to the current source directory. The header lies in the build folder
-# and is made again when the spec, a file that it loads, the thresholds, what is fitted or embedded,
-# or etlc itself change. In no name of a file or a folder stands one of ; \ ' " & # * < > | : = ? ^
-# ` $ or a square bracket, and no % in that of the spec or the build folder. Of a library, the
+#   EXPLAIN         the class names the sample that decides a verdict: why_NAME(); not with VALUES
+#                   boolean
+#   LETS            telemetry for the lets of the spec: let_NAME(), robustness_NAME()
+#   RETARGETABLE    the numbers of the spec are in <stem of SPEC>.params.bin beside the header, and
+#                   can be replaced at run time; not with INLINE_TARGETS, RECORDER, EXPLAIN or
+#                   VALUES boolean. The property ETLC_PARAMS_FILES of TARGET lists these files.
+# Relative paths are relative to the current source directory. The header is in the build folder
+# and is made again when the spec, a file that it loads, the thresholds, the fitted or embedded
+# files, or etlc itself change. Names of files and folders must not contain ; \ ' " & # * < > | : =
+# ? ^ ` $ or a square bracket, and those of the spec and the build folder no %. For a library, the
 # header and the runtime are public. Needs CMake 3.20 and the Ninja or Makefile generators (3.21 for
 # the others).
 cmake_policy(PUSH)
@@ -160,7 +161,7 @@ function(etlc_add_monitor target)
   endif()
 endfunction()
 
-# Stops unless `target` is one that sources can be added to.
+# Stops unless sources can be added to `target`.
 function(__etlc_check_target call target)
   if(NOT TARGET ${target})
     message(FATAL_ERROR
@@ -181,7 +182,7 @@ function(__etlc_check_target call target)
   endif()
 endfunction()
 
-# The absolute path of a file that exists or that the build makes.
+# Returns the absolute path of a file that exists or that the build makes.
 function(__etlc_input call keyword path result)
   __etlc_check_name("${call}" ${keyword} "${path}")
   get_filename_component(absolute "${path}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
@@ -193,7 +194,7 @@ function(__etlc_input call keyword path result)
   set(${result} "${absolute}" PARENT_SCOPE)
 endfunction()
 
-# Stops at a name with a character that CMake, Make, Ninja and depfiles do not all read alike.
+# Stops at a name with a character that CMake, Make, Ninja and depfiles read differently.
 function(__etlc_check_name call what name)
   string(REPLACE "\\;" ";" name "${name}")  # as cmake_parse_arguments writes it
   string(REGEX REPLACE "^[A-Za-z]:" "" rest "${name}")  # a drive

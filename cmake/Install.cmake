@@ -1,11 +1,11 @@
-# What `cmake --install` puts under the prefix, and the Debian packages with the same content: what
-# needs FFmpeg, or MPI, is a package of its own.
+# Files that `cmake --install` puts under the prefix, and Debian packages with the same contents:
+# parts that need FFmpeg, or MPI, are separate packages.
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_DATADIR}/cmake/etlc")
 
 install(TARGETS etlc EXPORT etlcTargets RUNTIME)
-# Where etlc looks for it, from bin/.
+# Where etlc looks for it, relative to bin/.
 install(TARGETS etlc_read_hdf5 etlc_read_parquet RUNTIME DESTINATION libexec/etlc)
 if(TARGET etlc_embed_worker)
   install(TARGETS etlc_embed_worker RUNTIME DESTINATION libexec/etlc COMPONENT embed)
@@ -27,7 +27,7 @@ install(EXPORT etlmonTargets NAMESPACE etlmon:: DESTINATION "${package_dir}")
 configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/etlcConfig.cmake.in"
   "${PROJECT_BINARY_DIR}/etlcConfig.cmake"
   INSTALL_DESTINATION "${package_dir}")
-# etlc runs on the build machine and the runtime is only headers, so a cross build may use this
+# etlc runs on the build machine and the runtime consists of headers, so a cross build may use this
 # package.
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/etlcConfigVersion.cmake"
   COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
@@ -35,7 +35,7 @@ install(FILES "${PROJECT_BINARY_DIR}/etlcConfig.cmake"
   "${PROJECT_BINARY_DIR}/etlcConfigVersion.cmake"
   "${CMAKE_CURRENT_LIST_DIR}/EtlAddMonitor.cmake" DESTINATION "${package_dir}")
 
-# What `etlc --man` and `etlc --completion` print, where man and the shells look.
+# The output of `etlc --man` and `etlc --completion`, where man and the shells look.
 set(manual "${PROJECT_BINARY_DIR}/workbench/driver/manual")
 install(FILES "${manual}/etlc.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 install(FILES "${manual}/etlc" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
@@ -43,7 +43,7 @@ install(FILES "${manual}/_etlc" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor
 install(FILES "${manual}/etlc.fish"
   DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d")
 
-# The pages, and all that their links lead to.
+# The pages, and everything that their links lead to.
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}"
   RENAME copyright)
 foreach(page README.md CONTRIBUTING.md LICENSE cmake/packages.txt)
@@ -64,7 +64,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION devel)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
-set(CPACK_COMPONENTS_ALL Unspecified)  # what no install() gives another
+set(CPACK_COMPONENTS_ALL Unspecified)  # files without an install() of their own
 set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_NAME etlc)
 set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_RECOMMENDS python3-numpy)
 set(CPACK_COMPONENT_UNSPECIFIED_DESCRIPTION "etlc, its library and the runtime of monitors")

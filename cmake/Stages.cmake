@@ -1,13 +1,13 @@
 # How the folders of base/, compiler/ and workbench/ are built.
 
-# Headers that most files include are compiled once a build. Every file still includes what it
-# uses, which tests/house checks.
+# Headers that most files include are compiled once per build. Every file still includes the headers
+# that it uses, which tests/house checks.
 option(ETLC_PRECOMPILE "Read the headers that most files include once a build" ON)
 mark_as_advanced(ETLC_PRECOMPILE)
 
-# One static library a folder, `etlc_<folder>`; DEPENDS lists the arrows of
-# docs/contributing/compiler.md. A stage finds headers from its building on: base/source is
-# included as source/.
+# One static library per folder, `etlc_<folder>`; DEPENDS lists the stages that it builds on, as in
+# docs/contributing/compiler.md. Include paths start below the layer: base/source is included as
+# source/.
 add_library(etlc_options INTERFACE)
 set(shadow -Wshadow)
 if(CMAKE_UNITY_BUILD)
@@ -23,9 +23,9 @@ target_compile_options(etlc_options INTERFACE
   # These let ccache see precompiled headers.
   $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>
   "$<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>"
-  -ffp-contract=off)  # constants are computed alike on every machine
-# etlc compiles a spec in milliseconds, so more than -O1 only makes it slower to build. Code that
-# goes through recordings frame by frame is the exception: see etlc_loops.
+  -ffp-contract=off)  # constants are the same on every machine
+# etlc compiles a spec in milliseconds, so more than -O1 would only slow down its build. Code that
+# processes recordings frame by frame is the exception: see etlc_loops.
 target_compile_options(etlc_options INTERFACE $<$<CONFIG:Release>:-O1>)
 if(ETLC_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 forgets which precompiled headers are the system's, and gives false warnings about
@@ -41,7 +41,7 @@ if(ETLC_WERROR)
   target_compile_options(etlc_options INTERFACE -Werror)
 endif()
 
-# All of it may go into libetlc.so, which shows nothing but its own functions.
+# All of it may go into libetlc.so, which exports only its own functions.
 set(ETLC_LIKE_LIBETLC POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
   VISIBILITY_INLINES_HIDDEN ON)
 
@@ -73,7 +73,7 @@ function(etlc_stage name)
   endforeach()
 endfunction()
 
-# etlc_loops(file...): sources in which a recording spends its time, optimised. Their options
+# etlc_loops(file...): optimises sources that process recordings frame by frame. Their options
 # differ from the rest, so they cannot share precompiled headers.
 function(etlc_loops)
   set_source_files_properties(${ARGN} PROPERTIES

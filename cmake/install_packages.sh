@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# install_packages.sh GROUP...: installs the packages of these groups of packages.txt that are
-# missing, through apt, as root or with sudo. Without apt it names what is missing and fails; if
-# nothing is missing it prints nothing. With `recordings` it gets ONNX Runtime, which Debian 12 has
-# no package of, from npm into build/onnxruntime, where tests look for it.
+# install_packages.sh GROUP...: installs the missing packages of these groups of packages.txt with
+# apt, as root or with sudo. Without apt it names the missing packages and fails; if nothing is
+# missing it prints nothing. With `recordings` it gets ONNX Runtime, for which Debian 12 has no
+# package, from npm into build/onnxruntime, where tests look for it.
 set -euo pipefail
 list=$(dirname "${BASH_SOURCE[0]}")/packages.txt
 onnxruntime=1.30.0
 library=$(dirname "$list")/../build/onnxruntime/libonnxruntime.so.$onnxruntime
 
-# The package is for many machines: only the library for this one is kept.
+# The package is for many machines; only the library for this one is kept.
 get_onnxruntime() {
     local box machine
     box=$(mktemp -d)

@@ -13,7 +13,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-# Of every Linux that Python runs on: glibc, and the libraries of its compiler.
+# Present on every Linux that Python runs on: glibc, and the libraries of its compiler.
 THERE = re.compile(r"(ld-linux.*|lib(c|m|dl|rt|pthread|resolv|gcc_s|stdc\+\+))\.so[.\d]*$")
 
 
@@ -22,7 +22,7 @@ def output_of(*words):
 
 
 def libraries_of(program):
-    """What it loads, as paths by name."""
+    """Returns the libraries that a file loads, as paths by name."""
     lines = (line.split() for line in output_of("ldd", program).splitlines())
     found = {words[0]: words[2] for words in lines if len(words) > 2 and words[1] == "=>"}
     lost = [name for name, path in found.items() if not path.startswith("/")]
@@ -32,7 +32,7 @@ def libraries_of(program):
 
 
 def stage(folder, library, command, readers):
-    """What is not Python, below `folder`, with paths that hold wherever it is unpacked."""
+    """Copies the native files below `folder`, with paths that hold wherever it is unpacked."""
     places = {
         library: (folder / "lib" / "libetlc.so.1", "$ORIGIN"),
         command: (folder / "bin" / "etlc", "$ORIGIN/../lib"),

@@ -1,4 +1,4 @@
-"""A wheel of this machine's kind: the package itself is Python, what it loads is not."""
+"""A wheel for this kind of machine: the package itself is Python, its libraries are native."""
 
 from setuptools import setup
 from wheel.bdist_wheel import bdist_wheel

@@ -1,8 +1,8 @@
-// What calibration and fitting cost beside reading: `etlc calibrate` over many episodes, and
-// `etlc fit` over the first hundred, against libzip alone on the same files. bench_calibrate FOLDER
-// [--episodes N] [--frames N] [--dimension N] [--rounds N]: makes the episodes where the folder
-// does not have them, then runs both in turns. Prints seconds, their ratio, the most memory that
-// etlc took, and whether one thread gave the same bytes.
+// The costs of calibration and fitting beside reading: compares `etlc calibrate` over many
+// episodes, and `etlc fit` over the first hundred, with libzip alone on the same files.
+// bench_calibrate FOLDER [--episodes N] [--frames N] [--dimension N] [--rounds N]: makes missing
+// episodes in the folder, then runs both in turns. Prints seconds, their ratio, the peak memory of
+// etlc, and whether one thread gives the same bytes.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <zip.h>
@@ -30,7 +30,7 @@ struct Size {
     std::uint32_t dimension = 768;
 };
 
-/// Magic word, version 1, length and dictionary, padded to 64 bytes, as numpy.save writes them.
+/// Magic, version 1, length and dictionary, padded to 64 bytes, as numpy.save writes them.
 std::string npy_header(const std::string& type, const std::string& shape) {
     std::string dictionary =
         "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }";
@@ -45,7 +45,7 @@ std::string bytes_of(const std::vector<float>& values) {
     return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
 }
 
-/// Stored, as numpy.savez does.
+/// Stored, as by numpy.savez.
 void write_npz(const fs::path& path,
                const std::vector<std::pair<std::string, std::string>>& members) {
     zip_t* archive = zip_open(path.c_str(), ZIP_CREATE | ZIP_TRUNCATE, nullptr);
@@ -58,7 +58,7 @@ void write_npz(const fs::path& path,
     if (zip_close(archive) != 0) throw std::runtime_error("cannot write " + path.string());
 }
 
-/// In every episode a stretch of frames near one of eight targets, labelled as such.
+/// Every episode has a stretch of frames near one of eight targets, labelled accordingly.
 void make_episodes(const fs::path& folder, const Size& size) {
     std::mt19937 random(1);
     std::vector<float> noise(1U << 20U);  // drawn once, read from many places
@@ -136,7 +136,7 @@ void write_fitted_spec(const fs::path& folder, const Size& size) {
 }
 
 void fit(const fs::path& folder) {
-    std::string first;  // those of up to two digits
+    std::string first;  // episodes with numbers of up to two digits
     for (const char* pattern : {"?.npz", "??.npz"})
         first += std::string(" 'episodes/") + pattern + "'";
     etlc(folder, "fit fitted.etl --data" + first + " -o fitted.npz");
@@ -177,7 +177,7 @@ int main(int argc, char** argv) {
 
     fs::create_directories(folder);
     if (!fs::exists(folder / "episodes")) make_episodes(folder, size);
-    std::uint64_t bytes = read_all(folder / "episodes");  // and into the page cache
+    std::uint64_t bytes = read_all(folder / "episodes");  // also into the page cache
     write_fitted_spec(folder, size);
     const double fitted = std::min(100.0 / size.episodes, 1.0);  // part of the episodes
     std::vector<double> reading, one, all, ratios, fits, fit_ratios;

@@ -1,7 +1,7 @@
-// The cells of the distance bench and what competes in them.
+// The cells and contestants of the distance bench.
 // A contestant gives, per cell, a function that takes an embedding (D floats) and K x D row-major
-// targets and returns the smallest l2 distance; it prepares what it wants from the targets in
-// setup, which is not timed.
+// targets and returns the smallest l2 distance; setup, which is not timed, prepares the targets for
+// it.
 #pragma once
 
 #include <cstdint>
@@ -27,11 +27,11 @@ struct Cell {
     std::uint32_t dimension, rows;
 };
 
-/// The smallest distance from z. `state` is what setup returned.
+/// Returns the smallest distance from z. `state` is the result of setup.
 using Nearest = float (*)(const float* z, const float* targets, const void* state);
 using Setup = const void* (*)(const float* targets, std::uint32_t rows, std::uint32_t dimension);
 
-/// Points that are asked about in turn.
+/// The query points, used in turn.
 struct Points {
     static constexpr std::size_t kNumber = 8;
     const float* first;
@@ -46,8 +46,8 @@ struct Entry {
     void (*repeat)(Points points, const float* targets, const void* state, std::uint64_t calls);
 };
 
-/// Calls one after the other, as a program has them that is compiled like the contestant: what the
-/// compiler can inline is part of the loop.
+/// Calls in sequence, as in a program compiled like the contestant: code that the compiler can
+/// inline is part of the loop.
 template <Nearest kNearest>
 void repeat(Points points, const float* targets, const void* state, std::uint64_t calls) {
     volatile float sink = 0;
@@ -66,7 +66,7 @@ struct Contestant {
     std::vector<Entry> entries;
 };
 
-/// |g|^2 of every row: for the form |z|^2 + |g|^2 - 2 z.g.
+/// Returns |g|^2 of every row, for the form |z|^2 + |g|^2 - 2 z.g.
 inline const void* squared_lengths(const float* targets, std::uint32_t rows,
                                    std::uint32_t dimension) {
     static std::vector<float> lengths;

@@ -8,7 +8,7 @@
 namespace bench {
 namespace {
 
-// Small sets have sizes known to the compiler, as an Eigen user would write them.
+// Small sets have compile-time sizes, as an Eigen user would write them.
 constexpr int size(std::uint32_t n, bool fixed) {
     return fixed ? static_cast<int>(n) : Eigen::Dynamic;
 }

@@ -1,6 +1,6 @@
 // The runtime's kernel, as generated code calls it. Compiled once per compiler and set of flags;
-// ETLC_BENCH_NAME is the function, and -Detlmon=... gives each its own namespace, so that the
-// linker keeps them apart.
+// ETLC_BENCH_NAME is the function, and -Detlmon=... gives each its own namespace, so the linker
+// keeps them apart.
 #include "cells.hpp"
 #include "etlmon/distance/kernel.hpp"
 

@@ -1,5 +1,4 @@
-// Highway: the direct form row by row, four sums, with the widest vectors that the compiler's
-// target has.
+// Highway: the direct form row by row, four sums, with the widest vectors of the compiler's target.
 #define HWY_COMPILE_ONLY_STATIC  // what the compiler's target has, also where the dispatch of this
                                  // version does not know it
 #include <hwy/highway.h>

@@ -1,9 +1,9 @@
 // min l2 over K targets: nanoseconds per call of every contestant in every cell, in one run, and
-// the ratios that count. Usage: bench_distances [--json FILE] [--rounds N] [--cold] Contestants
-// take turns within each round, so that a change of the machine's speed meets all of them;
-// processor time, of which the median round counts. Answers are compared first: a contestant that
-// is wrong is an error, not a result.
-// --cold: a turn is one call, after other data went through the caches, by the clock on the wall.
+// the important ratios. Usage: bench_distances [--json FILE] [--rounds N] [--cold] Contestants take
+// turns within each round, so changes of the machine's speed affect all of them; the result is the
+// median of processor time over the rounds. Answers are compared first: a wrong contestant is an
+// error, not a result.
+// --cold: a turn is one call with cold caches, in wall-clock time.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -66,7 +66,7 @@ double exact(const Data& data, Cell cell, std::uint32_t point) {
     return std::sqrt(least);
 }
 
-/// Of this thread: what others do on the machine does not count, as far as the system can tell.
+/// The processor time of this thread, which excludes other work on the machine as far as possible.
 double processor_seconds() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

@@ -1,4 +1,4 @@
-// Two loops, as one would write them. Compiled with several flags; ETLC_BENCH_NAME is the function.
+// Two plain loops. Compiled with several flags; ETLC_BENCH_NAME is the function.
 #include <cmath>
 #include <limits>
 

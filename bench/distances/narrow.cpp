@@ -1,7 +1,7 @@
-// min l2 over targets in float32, float16 and int8, in one program and by turns: what --targets-as
-// gains, with the bounds that it needs; and what limits widening: the time to do nothing with the
-// rows but widen them to float32, in the registers of AVX-512. At the end, how long narrow
-// embeddings take to widen. Prints ns per call, medians, and the ratio to float32.
+// min l2 over targets in float32, float16 and int8, in turns in one program: the gain of
+// --targets-as, including its bounds; and the limit of widening: the time of only widening the rows
+// to float32, in the registers of AVX-512. Finally, the time to widen narrow embeddings. Prints ns
+// per call, medians, and the ratio to float32.
 // Usage: bench_narrow [ROUNDS]
 #include <time.h>
 
@@ -37,14 +37,14 @@ float doubtful(const Enclosed& e) {
     return e.doubtful(cuts) ? 0.0F : e.low;
 }
 
-/// What a monitor does with a distance: bounds, and whether a threshold lies within them.
+/// Like a monitor: computes bounds, and whether a threshold is within them.
 template <std::uint32_t D>
 float enclosed(const Measured& measured) {
     return doubtful(enclose<L2>(measured, 0.01F, D));
 }
 
 #if defined(ETLMON_DISPATCH)
-/// Rows widened, and no arithmetic: their bits are or-ed, so that none can be left out.
+/// Widens rows without arithmetic: their bits are or-ed, so none can be omitted.
 template <class G>
 __attribute__((noinline, target("avx2,fma,avx512f,avx512vl,avx512bw,avx512dq"))) float widened_only(
     G rows, size_t n) {
@@ -126,7 +126,7 @@ void compare(int rounds) {
     std::fflush(stdout);
 }
 
-/// Embeddings in narrow storage, widened before anything is measured.
+/// Embeddings in narrow storage, widened before measuring.
 template <std::uint32_t D>
 void widen_embeddings(int rounds) {
     static std::uint16_t halves[D];

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Full mahalanobis beside the same metric as a projection and l2, in generated code.
+"""Compares full mahalanobis with the same metric as a projection and l2, in generated code.
 
 projected.py ETLC RUNTIME [ELEMENTS [TARGETS]]: M = A^T A, so mahalanobis(M)(z, t) is
-l2(A(z), A t). Prints microseconds a step of both classes, least of nine rounds in turns, and how
-far apart their distances are.
+l2(A(z), A t). Prints microseconds per step of both classes, the minimum of nine rounds in turns,
+and the difference of their distances.
 """
 
 import pathlib

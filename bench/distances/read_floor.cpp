@@ -1,4 +1,4 @@
-// The targets read once, as fast as they can be: what no kernel can beat by more than measurement
+// Reads the targets once, as fast as possible: the lower limit for any kernel, up to measurement
 // noise.
 #include <cstring>
 

@@ -1,8 +1,8 @@
-// Searching a large target set against measuring all of it: nanoseconds per step of both, in turns,
-// and their ratio. Usage: bench_search [--rounds N] [--largest]   (--largest: also 100 000 rows of
-// 768 elements, 307 MB) The rows are clouds of 50 around points along paths, as recorded
-// demonstrations are; the embedding is drawn afresh at every step (incoherent), or walks, its steps
-// a share of the distance between neighbouring rows.
+// Compares searching a large target set with measuring all of it: nanoseconds per step of both, in
+// turns, and their ratio. Usage: bench_search [--rounds N] [--largest] (--largest: also 100 000
+// rows of 768 elements, 307 MB). The rows are clouds of 50 around points along paths, like recorded
+// demonstrations; the embedding is drawn anew at every step (incoherent), or walks, with steps that
+// are a fraction of the distance between neighbouring rows.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -28,7 +28,7 @@ struct Free {
     void operator()(float* p) const { std::free(p); }
 };
 
-/// Rows with the noise 1 in every element around centers of the spread 3, or without centers.
+/// Rows with noise 1 in every element around centres with spread 3, or without centres.
 template <std::uint32_t K, std::uint32_t D>
 std::unique_ptr<float, Free> make_rows(bool clouds) {
     std::unique_ptr<float, Free> rows(
@@ -45,8 +45,8 @@ std::unique_ptr<float, Free> make_rows(bool clouds) {
     return rows;
 }
 
-/// The embeddings of so many steps. `pace`: of a walk about a row of the middle, in units of the
-/// rows' noise; 0: drawn afresh.
+/// Embeddings of this many steps. `pace`: that of a walk around a middle row, in units of the rows'
+/// noise; 0: drawn anew each time.
 template <std::uint32_t K, std::uint32_t D>
 std::vector<float> make_trace(const float* rows, int steps, float pace) {
     std::mt19937 random(7);

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""speed.py ETLC [FRAMES] [ROUNDS]: what etlc-embed takes beside its libraries.
+"""speed.py ETLC [FRAMES] [ROUNDS]: the cost of etlc-embed beside its libraries.
 
 In turns: ffmpeg decodes a video of 640 x 480 to rawvideo in /dev/null; etlc-embed decodes it to
 /dev/null; etlc-embed encodes frames of the size of a network, which then takes nearly all of the
-time, and the frames of the video, both from a file. Prints medians of processor time a frame, less
-that of the start, and ratios of speed within a round."""
+time, and the frames of the video, both from a file. Prints medians of processor time per frame,
+without that of the start, and ratios of speed within a round."""
 import os
 import pathlib
 import statistics
@@ -44,7 +44,7 @@ def make_network(path):
 
 
 def cores(*words, source=None):
-    """Seconds of all cores: less moved than the clock by what else runs."""
+    """Seconds of all cores, which other work affects less than the clock."""
     process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stdin=source)
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
@@ -76,7 +76,7 @@ def main():
         image = np.random.default_rng(2).integers(0, 256, SIDE * SIDE * 3, np.uint8).tobytes()
         frames.write((struct.pack("<II", SIDE, SIDE) + image) * FRAMES)
     one = ["--first", "0", "--count", "1"]
-    parts = {  # all, and what it takes to begin
+    parts = {  # everything, and the cost of starting
         "ffmpeg": lambda: decode_by_ffmpeg() - decode_by_ffmpeg("-frames:v", "1"),
         "etlc-embed video": lambda: (cores(EMBEDDER, "video", "v.mp4") -
                                      cores(EMBEDDER, "video", "v.mp4", *one)),

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""What `etlc fit` costs beside reading the same episodes.
+"""The cost of `etlc fit` beside reading the same episodes.
 
-against_reading.py ETLC FOLDER [ROUNDS]: makes 100 episodes of 300 x 768 where the folder lacks
-them, and runs specs in turns. Reading is a fit of one mean: it reads all frames and labels and
-prints the same table. Prints medians over the rounds: seconds by the clock, seconds of processors,
-and both over those of reading, each ratio taken within a round.
+against_reading.py ETLC FOLDER [ROUNDS]: makes missing episodes in the folder, 100 of 300 x 768,
+and runs specs in turns. Reading is a fit of one mean: it reads all frames and labels and
+prints the same table. Prints medians over the rounds: wall-clock seconds, processor seconds,
+and both relative to reading, each ratio taken within a round.
 """
 
 import os
@@ -45,7 +45,7 @@ def spec(declarations, distance):
 
 
 def make_episodes(folder):
-    """A stretch of each lies near one of eight places."""
+    """Each has a stretch near one of eight places."""
     random = np.random.default_rng(1)
     places = random.normal(size=(8, DIMENSION))
     mix = random.normal(size=(40, DIMENSION)) / 4

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""many_episodes.py ETLC FOLDER [STEPS]: what calibrate and evaluate take of 1000, 10 000 and
-100 000 synthetic episodes of STEPS (20) steps each: microseconds an episode, and the most memory.
+"""many_episodes.py ETLC FOLDER [STEPS]: the cost of calibrate and evaluate for 1000, 10 000 and
+100 000 synthetic episodes of STEPS (20) steps: microseconds per episode, and peak memory.
 
-The episodes are made in FOLDER where they are not there yet: two sets of 100 000 small tables.
-Prints a line for each command and number: seconds, microseconds an episode, the most memory that
-the process had (resident), and bytes for each episode beyond those of 1000."""
+Missing episodes are made in FOLDER: two sets of 100 000 small tables.
+Prints a line for each command and number: seconds, microseconds per episode, the peak resident
+memory of the process, and bytes per episode beyond those of 1000."""
 import os
 import pathlib
 import random
@@ -29,7 +29,7 @@ monitor keeps = G (close -> near);
 
 
 def make_episodes(folder, seed):
-    """Folders of 1000, so that a number of episodes is a number of folders."""
+    """Folders of 1000, so a number of episodes is a number of folders."""
     numbers = random.Random(seed)
     for thousand in range(NUMBERS[-1] // 1000):
         place = folder / f"{thousand:03}"
@@ -47,7 +47,7 @@ def make_episodes(folder, seed):
 
 
 def measured(*words):
-    """Seconds on the clock and of all cores, and the most resident bytes."""
+    """Returns wall-clock seconds, seconds of all cores, and the peak resident bytes."""
     begin = time.perf_counter()
     process = subprocess.Popen([ETLC, *words], stdout=subprocess.DEVNULL)
     _, status, usage = os.wait4(process.pid, 0)
@@ -65,7 +65,7 @@ def main():
     calls = {"calibrate": ["one", "-o", "thresholds.json"],
              "evaluate": ["two", "--thresholds", "thresholds.json"]}
     least = {}
-    for number in NUMBERS:  # evaluate reads what was calibrated on as many
+    for number in NUMBERS:  # evaluate uses thresholds from the same number of episodes
         for command, (data, *words) in calls.items():
             folders = [f"{data}/{thousand:03}" for thousand in range(number // 1000)]
             seconds, cpu, peak = measured(command, "fleet.etl", "--data", *folders, *words)

@@ -1,6 +1,6 @@
-// A step through the C interface beside the same step of the evaluator that is behind it.
+// Compares a step through the C interface with the same step of the evaluator behind it.
 // bench_library SPEC.etl...
-// With random elements, which are there at every step.
+// Elements are random and present at every step.
 #include <etlc.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using namespace etlc;
 constexpr std::size_t kSteps = 1024;
 using Steps = std::vector<std::vector<plan::Sample>>;
 
-/// A sample as a program has it, and as the evaluator takes it.
+/// A sample in the formats of a program and of the evaluator.
 struct Sample {
     std::vector<unsigned char> bytes;
     etlc_sample given;
@@ -70,7 +70,7 @@ Sample random_sample(const check::Input& input, std::mt19937& random) {
         input, ETLC_F32, [&] { return element(random); }, copy);
 }
 
-/// The same steps for both.
+/// Runs the same steps with both.
 struct Trace {
     explicit Trace(const check::Model& model) {
         std::mt19937 random(1);

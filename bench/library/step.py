@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""A step from Python beside a step of the plan's own work.
+"""Compares a step from Python with the plan's own work.
 
-step.py SPEC.etl...: microseconds a step: `Monitor.step` with an alarm looked at, and `Monitor.run`,
-which makes the same steps in one call. PYTHONPATH and ETLC_LIBRARY lead to the package.
+step.py SPEC.etl...: microseconds per step of `Monitor.step` with a look at an alarm, and of
+`Monitor.run`, which takes the same steps in one call. PYTHONPATH and ETLC_LIBRARY lead to the
+package.
 """
 
 import statistics
@@ -17,7 +18,7 @@ STEPS, ROUNDS = 20_000, 7
 
 
 def microseconds(work):
-    """Of this process's own time: a busy machine makes it no longer."""
+    """Uses this process's own time, which a busy machine does not increase."""
     times = []
     for _ in range(ROUNDS):
         begin = time.process_time()

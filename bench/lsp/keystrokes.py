@@ -1,8 +1,9 @@
-"""keystrokes.py ETLC [LINES]: how long a user waits for `etlc lsp` on a spec of LINES lines (1000).
+"""keystrokes.py ETLC [LINES]: the waiting time of a user of `etlc lsp` on a spec of LINES lines
+(1000).
 
-A script types a formula letter by letter, and waits after each for the diagnostics; then it asks
-for hovers, completions and the formatted text. Prints milliseconds; those of the processor are the
-server's own, which other programs do not lengthen much.
+A script types a formula letter by letter, and waits for the diagnostics after each; then it
+requests hovers, completions and the formatted text. Prints milliseconds; processor time is the
+server's own, which other programs hardly affect.
 """
 import os
 import pathlib

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""page.py ETLC DUBINS_RECORD [--json FILE]: the page of `etlc report` over 1000 drives of 300
-steps: how large it is, how long it takes to make, and how long headless Chromium takes until its
-worst episode is shown.
+"""page.py ETLC DUBINS_RECORD [--json FILE]: measures the page of `etlc report` over 1000 drives of
+300 steps: its size, the time to make it, and the time until headless Chromium shows its worst
+episode.
 
-The drives are those of examples/dubins/dubins.etl, 240 steps each, and the first 60 of the next one
-after them. Times are medians over the rounds, with a new browser and profile for each.
+The drives are those of examples/dubins/dubins.etl, 240 steps each, followed by the first 60 of the
+next one. Times are medians over the rounds, with a new browser and profile for each.
 """
 import argparse
 import json
@@ -23,7 +23,7 @@ EPISODES, STEPS = 1000, 300
 
 
 def make_drives(record, folder):
-    """EPISODES .csv files of STEPS rows."""
+    """Writes EPISODES .csv files of STEPS rows."""
     subprocess.run([record, folder / "drives", *"1234"], check=True)
     drives = [path.read_text().splitlines() for path in sorted(folder.glob("drives/*/*/*.csv"))]
     (folder / "episodes").mkdir()
@@ -40,7 +40,7 @@ def seconds(action):
 
 
 def load(path):
-    """Seconds from the navigation to numbers at the cursor; the browser itself runs already."""
+    """Seconds from the navigation to numbers at the cursor; the browser is already running."""
     with Browser() as browser:
         begin = time.monotonic()
         page = browser.page(path)

@@ -1,6 +1,6 @@
-// The examples' monitors as they are measured: inputs that lie in buffers, as a control loop has
-// them. An example has a name, the generated Monitor, and fills its buffers from random numbers;
-// `inputs` views them. BENCH_CLASSES tells the classes with a flight recorder from those without.
+// The examples' monitors for measurements: inputs are in buffers, as in a control loop. An example
+// has a name, the generated Monitor, and fills its buffers with random numbers; `inputs` views
+// them. BENCH_CLASSES distinguishes the classes with a flight recorder from those without.
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,8 @@
-// A whole step of the examples' monitors, and its split: measure() is the distances and what
-// predicates make of them, judge() the temporal operators; and the step of the same class with a
-// flight recorder that keeps 20 steps before an alarm and 10 after it, of two incidents.
+// Measures a whole step of the examples' monitors, and its halves: measure() is the distances and
+// predicates, judge() the temporal operators; and the step of the same class with a flight recorder
+// that keeps 20 steps before an alarm and 10 after it, of two incidents.
 // bench_steps [--json FILE] [--rounds N]
-// Cold: the first step after something else went through the caches, which is how a control loop
-// finds them.
+// Cold: the first step with cold caches, as in a control loop.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>

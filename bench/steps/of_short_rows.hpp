@@ -1,4 +1,4 @@
-// An example for retargetable classes alone: many short rows.
+// An example only for retargetable classes: many short rows.
 #pragma once
 
 #include "examples.hpp"

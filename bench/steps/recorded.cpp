@@ -3,7 +3,7 @@
 #include <memory>
 #include <stdexcept>
 
-// What the examples call their monitors: here it is the classes with a recorder.
+// The examples' name for their monitors: here the classes with a recorder.
 #define BENCH_WITH_RECORDER(spec) \
     namespace spec##_recorded {}  \
     namespace spec = spec##_recorded;

@@ -1,5 +1,5 @@
-// The same classes with a flight recorder, which are other classes: made from the same specs with
-// --recorder, in a namespace of their own.
+// The same classes with a flight recorder, made from the same specs with --recorder, in a separate
+// namespace.
 #pragma once
 
 #include <cstddef>

@@ -4,7 +4,7 @@
 #include <memory>
 #include <stdexcept>
 
-// What the examples call their monitors: here it is the retargetable classes.
+// The examples' name for their monitors: here the retargetable classes.
 #define BENCH_RETARGETABLE(spec)     \
     namespace spec##_retargetable {} \
     namespace spec = spec##_retargetable;
@@ -30,7 +30,7 @@ struct Page {
     const unsigned char* begin() const { return reinterpret_cast<const unsigned char*>(bytes); }
 };
 
-/// `Params`: those of the example's class, which lie in STEM.params.bin.
+/// `Params`: those of the example's class, in STEM.params.bin.
 template <class Example, class Params>
 bool take(const std::string& name, const std::string& stem, Retargetable& result) {
     if (name != Example::kName) return false;

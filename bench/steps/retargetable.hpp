@@ -1,5 +1,5 @@
-// The same classes with their numbers in parameters, which are other classes: made from the same
-// specs with --retargetable, in a namespace of their own.
+// The same classes with their numbers in parameters, made from the same specs with --retargetable,
+// in a separate namespace.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace bench {
 
 struct Retargetable {
     std::function<void()> step;      ///< once over all samples
-    std::function<void()> retarget;  ///< checks a block of parameters and takes it
+    std::function<void()> retarget;  ///< checks and takes a block of parameters
     std::size_t state_bytes = 0;
     std::size_t params_bytes = 0;
 };

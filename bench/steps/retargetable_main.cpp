@@ -1,5 +1,5 @@
-// What it costs that numbers may change: a whole step of the examples' retargetable classes beside
-// that of the plain ones, and taking other parameters.
+// The cost of replaceable numbers: a whole step of the examples' retargetable classes beside that
+// of the plain ones, and a change of parameters.
 // bench_retargetable [--rounds N]
 #include <CLI/CLI.hpp>
 #include <cstdio>

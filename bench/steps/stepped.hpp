@@ -1,4 +1,4 @@
-// An example's monitor with inputs that are ready, to be stepped over and over.
+// An example's monitor with prepared inputs, to be stepped repeatedly.
 #pragma once
 
 #include <utility>
@@ -8,7 +8,7 @@
 
 namespace bench {
 
-constexpr std::size_t kSamples = 64;  ///< in turns; small enough for the second-level cache
+constexpr std::size_t kSamples = 64;  ///< used in turn; small enough for the second-level cache
 
 template <class Example>
 struct SteppedExample {

@@ -1,8 +1,8 @@
-// The formulas that are measured: the generated class beside what one would write by hand.
-// A case has a title, the generated Monitor, the longest window, how its inputs are filled from
-// signals, how many monitors it has and how their verdicts are visited, and Plain: robustness
-// alone, by hand; where there is a window, Rescanning too, the same with each window gone through
-// again at each step, as straightforward monitors do.
+// The measured formulas: the generated class beside hand-written code.
+// A case has a title, the generated Monitor, the longest window, a function that fills its inputs
+// from signals, the number of its monitors and a visitor for their verdicts, and Plain: robustness
+// by hand; if there is a window, also Rescanning, which goes through each window at each step, as
+// simple monitors do.
 #pragma once
 
 #include <cstddef>
@@ -52,8 +52,7 @@ namespace bench {
 
 struct NoRescanning {};
 
-/// No operator that remembers anything: what the samples, the predicates and the verdict cost
-/// alone.
+/// No operator with state: the cost of the samples, the predicates and the verdict alone.
 struct One {
     static constexpr const char* kTitle = "p, sliding";
     static constexpr uint32_t kWindow = 1;
@@ -176,8 +175,8 @@ struct Until10000 {
     using Rescanning = NoRescanning;
 };
 
-/// The Outer of all positions of what a window about each of them says: settled where the window is
-/// past, else the newest sample decides, since what is to come may be anything.
+/// The Outer over all positions of the window's result at each: settled if the window is past,
+/// otherwise decided by the newest sample, since the future is open.
 template <template <class, uint32_t> class Window, class Outer, class Inner, uint32_t N>
 struct OfEveryWindow {
     Window<Inner, N + 1> window;
@@ -214,7 +213,7 @@ struct EventuallyAlways1000 {
     using Rescanning = OfEveryWindow<Rescan, PlainMax, PlainMin, 1000>;
 };
 
-/// On a prefix p U[0,100] q holds everywhere where q is met in time everywhere, and p or q holds
+/// On a prefix p U[0,100] q holds everywhere if q is met in time everywhere, and p or q holds
 /// everywhere.
 struct AlwaysUntil100 {
     static constexpr const char* kTitle = "G (p U[0,100] q)";
@@ -244,8 +243,8 @@ struct AlwaysUntil100 {
     using Rescanning = ByHand<Rescan>;
 };
 
-/// G[0,Outer] (p -> F[0,W] q) on the prefix: settled requests, and pending ones, which a q answers
-/// all at once.
+/// G[0,Outer] (p -> F[0,W] q) on the prefix: settled requests, and pending ones, which one q
+/// answers all at once.
 template <template <class, uint32_t> class Window, uint32_t W, uint32_t Outer>
 struct Responding {
     Window<PlainMax, W + 1> answers;
@@ -309,7 +308,7 @@ struct Nested {
     using Rescanning = ByHand<Rescan>;
 };
 
-/// Ten windows over one signal: each the larger of the one before and of what that was ten steps
+/// Ten windows over one signal: each is the larger of the previous one and of its value ten steps
 /// ago.
 struct Responses {
     static constexpr const char* kTitle = "ten of G (p -> F[0,w] q)";
@@ -366,8 +365,8 @@ struct Responses {
     using Rescanning = EachOnItsOwn<Rescan, std::make_index_sequence<kMonitors>>;
 };
 
-/// A general state machine: no loop by hand is known to be cheaper than the definition over the
-/// horizon.
+/// A general state machine: no hand-written loop is known to be cheaper than the definition over
+/// the horizon.
 struct SmallMachine {
     static constexpr const char* kTitle = "G (p -> F[0,4] (q && X r))";
     static constexpr uint32_t kWindow = 5;

@@ -1,4 +1,4 @@
-// The classes of cases.hpp once more, made with --explain.
+// The classes of cases.hpp made with --explain.
 #pragma once
 
 #include "always_1000_why.hpp"
@@ -23,7 +23,7 @@
 
 namespace bench {
 
-/// Of a class that takes more than --max-state with it: nothing.
+/// Nothing for a class that exceeds --max-state with it.
 template <class Monitor>
 struct Explained {
     static constexpr bool kExists = false;

@@ -1,6 +1,6 @@
-// Temporal operators of generated monitors, on robustness values that are ready, against what one
-// would write by hand. bench_temporal [--operators] [--json FILE] [--only TEXT] [--rounds N]:
-// prints the table of monitors, or that of the runtime's operators by themselves.
+// Compares temporal operators of generated monitors, on given robustness values, with hand-written
+// code. bench_temporal [--operators] [--json FILE] [--only TEXT] [--rounds N]: prints the table of
+// monitors, or that of the runtime's operators alone.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
@@ -39,7 +39,7 @@ std::vector<Row> rows() {
             row<LargeMachine>()};
 }
 
-/// A figure, or blanks where there is none.
+/// Prints a figure, or blanks if there is none.
 std::string figure(const json& row, const char* name, int decimals) {
     char text[32] = "-";
     if (row.contains(name))

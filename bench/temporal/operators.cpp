@@ -27,7 +27,8 @@ Value made(float x, Value) {
     return etlmon::known(x);
 }
 
-/// The element of an operator from two samples, and the end of its result that a verdict reads.
+/// Makes the element of an operator from two samples, and takes the end of its result that a
+/// verdict reads.
 template <class Element>
 struct Sampled {
     static Element element(float x, float) { return made(x, Element{}); }
@@ -48,7 +49,7 @@ struct Recurrence {
     V push(V v) { return acc = max_of(acc, v); }
 };
 
-/// Sliding maximum by a queue of falling candidates: each value is stored once, but one step may
+/// Sliding maximum by a queue of decreasing candidates: each value is stored once, but one step may
 /// drop all of them.
 template <uint32_t N>
 struct Wedge {
@@ -126,7 +127,7 @@ Contender contender(const std::string& name) {
     return {name, routine<Operator>(), sizeof(Operator), slowest<Operator>};
 }
 
-/// The wedge first, over keys; the others are compared with it and with the recurrence.
+/// Measures the wedge first, over keys; the others are compared with it and with the recurrence.
 template <uint32_t N>
 std::vector<Contender> of_length() {
     return {contender<Wedge<N>>("wedge<Key>"),

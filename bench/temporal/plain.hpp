@@ -1,6 +1,6 @@
-// What one would write by hand, in floats: robustness alone, every sample there, no bounds, no
-// verdict. Takes: one robustness a step. Gives: the value of the operator over the last N. Keeps
-// true: PlainWindow is the cheapest known on average (van Herk 1992, Gil and Werman 1993), though a
+// Hand-written operators, in floats: robustness only, all samples present, no bounds, no verdict.
+// Takes: one robustness per step. Gives: the value of the operator over the last N. Keeps true:
+// PlainWindow is the cheapest known on average (van Herk 1992, Gil and Werman 1993), although one
 // step in N does the work of all; Rescan is the definition, over all N samples at each step.
 #pragma once
 
@@ -32,7 +32,7 @@ inline float smaller(float a, float b) {
     return PlainMin::combine(a, b);
 }
 
-/// f U g over a stretch of positions, seen from the first.
+/// f U g over a range of positions, evaluated at the first.
 struct PlainUntil {
     struct Element {
         float value, guard;

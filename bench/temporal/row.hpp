@@ -1,7 +1,7 @@
-// One formula of cases.hpp as routines to be timed and compared.
-// Takes: a case and signals. Gives: what to run, and what the monitor holds. Keeps true: all
-// routines of a row go over the same samples, write what they find to memory, and were seen to
-// agree on every robustness.
+// One formula of cases.hpp as routines to time and compare.
+// Takes: a case and signals. Gives: the routines, and the state of the monitor. Keeps true: all
+// routines of a row use the same samples, write their results to memory, and were seen to agree on
+// every robustness.
 #pragma once
 
 #include <algorithm>
@@ -23,10 +23,10 @@ namespace bench {
 
 constexpr std::size_t kSteps = 1 << 15;
 constexpr std::size_t kChunk =
-    512;  ///< results are written over again, so that they stay in the first-level cache
+    512;  ///< results are overwritten, so that they stay in the first-level cache
 
-/// The steps in a loop, which keeps the state in registers where it can; or each called by itself,
-/// as in a control loop: it finds the state in memory and leaves it there.
+/// The steps in a loop, which keeps the state in registers if possible; or called one by one, as in
+/// a control loop, with the state in memory between calls.
 template <class T>
 struct Ways {
     T loop, call;
@@ -37,23 +37,23 @@ struct Row {
     std::size_t state_bytes = 0;
     std::uint32_t operations = 0;
     Ways<std::optional<Routine>> plain;  ///< robustness by hand
-    /// The same, with windows gone through again at each step, in a loop.
+    /// The same, going through every window at each step, in a loop.
     std::optional<Routine> rescan;
     std::optional<Routine> copilot;  ///< Copilot's monitor, called
-    /// The monitor on predicates that are ready; its user reads `robustness` alone.
+    /// The monitor on given predicates; its user reads only `robustness`.
     Ways<Routine> judge;
-    /// The same; its user reads all of the verdict, as one does who acts on `alarm()`.
+    /// The same; its user reads the whole verdict, as for `alarm()`.
     Ways<Routine> judged;
-    /// The latter of a class that was made with --explain.
+    /// The latter for a class made with --explain.
     Ways<std::optional<Routine>> why;
-    Ways<std::optional<Routine>> why_step;  ///< its whole step, all of the verdict
+    Ways<std::optional<Routine>> why_step;  ///< its whole step, with the whole verdict
     std::size_t why_state_bytes = 0;
     Ways<Routine> rho;              ///< the monitor's whole step
-    Ways<Routine> verdict;          ///< the same; its user reads all of the verdict
+    Ways<Routine> verdict;          ///< the same; its user reads the whole verdict
     std::function<double()> worst;  ///< nanoseconds of its slowest step
 };
 
-/// What the monitor says about each predicate at each step.
+/// The monitor's predicates at each step.
 template <class Case, class Monitor, class Inputs>
 std::vector<typename Monitor::Atoms> measured(const Signals& signals) {
     const auto monitor = std::make_unique<Monitor>();
@@ -63,7 +63,7 @@ std::vector<typename Monitor::Atoms> measured(const Signals& signals) {
     return atoms;
 }
 
-/// A chunk of steps whose predicates are ready, robustness alone.
+/// A chunk of steps with given predicates, robustness only.
 template <class Case, bool kCalled, class Monitor>
 [[gnu::noinline]] void judge_robustness(Monitor& monitor,
                                         const std::vector<typename Monitor::Atoms>& atoms,
@@ -77,7 +77,7 @@ template <class Case, bool kCalled, class Monitor>
     }
 }
 
-/// The same, all of every verdict.
+/// The same, with every whole verdict.
 template <class Case, bool kCalled, class Monitor>
 [[gnu::noinline]] void judge_verdict(Monitor& monitor,
                                      const std::vector<typename Monitor::Atoms>& atoms,
@@ -91,7 +91,7 @@ template <class Case, bool kCalled, class Monitor>
     }
 }
 
-/// The monitor's user: a chunk of steps, robustness alone.
+/// The monitor's user: a chunk of steps, robustness only.
 template <class Case, bool kCalled>
 [[gnu::noinline]] void read_robustness(typename Case::Monitor& monitor, const Signals& signals,
                                        std::size_t from, float* __restrict out) {
@@ -104,7 +104,7 @@ template <class Case, bool kCalled>
     }
 }
 
-/// A chunk of steps, all of every verdict.
+/// A chunk of steps, with every whole verdict.
 template <class Case, bool kCalled, class Monitor, class Inputs>
 [[gnu::noinline]] void read_verdict(Monitor& monitor, const Signals& signals, std::size_t from,
                                     etlmon::Verdict* __restrict out) {
@@ -131,7 +131,7 @@ template <class ByHand, std::size_t kMonitors, bool kCalled>
     for (std::size_t i = 0; i < kChunk; ++i) out[i] = step(signals, from + i);
 }
 
-/// Goes over all steps of a trace, chunk by chunk, with something that takes a chunk.
+/// Goes over all steps of a trace, chunk by chunk, calling a function per chunk.
 template <class Result, class State, class Trace, class Chunk>
 Routine routine(const std::string& name, std::size_t monitors,
                 const std::shared_ptr<const Trace>& trace, const Chunk& chunk) {
@@ -148,7 +148,7 @@ Routine routine(const std::string& name, std::size_t monitors,
             kSteps};
 }
 
-/// Stops where two that are compared do not compute the same.
+/// Exits if the two compared routines differ.
 template <class Case, class ByHand>
 void check(const Signals& signals, ByHand& by_hand) {
     const auto monitor = std::make_unique<typename Case::Monitor>();
@@ -167,7 +167,7 @@ void check(const Signals& signals, ByHand& by_hand) {
     }
 }
 
-/// Copilot's monitor of the formula, if it has one; stops where it does not compute the same.
+/// Returns Copilot's monitor of the formula, if any; exits if it computes something else.
 template <class Case>
 std::optional<Routine> copilot_routine(const std::shared_ptr<const Signals>& signals) {
     const auto step = copilot_step(Case::kTitle);
@@ -202,7 +202,7 @@ double slowest_step() {
                                        [&] { Case::visit(monitor->step(inputs), keep); }});
 }
 
-/// judge() alone, on predicates that are ready: for its robustness, and for whole verdicts.
+/// judge() alone, on given predicates: for its robustness, and for whole verdicts.
 template <class Case, class Monitor, class Inputs>
 struct Judging {
     Ways<Routine> robustness, verdict;

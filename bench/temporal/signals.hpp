@@ -1,4 +1,4 @@
-// Robustness values as a robot produces them: what every row of the tables is fed with.
+// Robustness values like those of a robot, for every row of the tables.
 // Takes: a length. Gives: three signals. Keeps true: the same numbers in every run.
 #pragma once
 
@@ -13,7 +13,7 @@ struct Signals {
     std::size_t size() const { return p.size(); }
 };
 
-/// Robustness as a distance to a target wanders: a random walk that is drawn back.
+/// Robustness with a wandering distance to a target: a mean-reverting random walk.
 inline std::vector<float> walk(std::size_t length, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<float> step;
@@ -23,8 +23,8 @@ inline std::vector<float> walk(std::size_t length, unsigned seed) {
     return samples;
 }
 
-/// Falls for twice as long as the longest window, then jumps: a queue of candidates fills up and
-/// empties in one step.
+/// Falls for twice the longest window, then jumps: a queue of candidates fills up and empties in
+/// one step.
 inline std::vector<float> saw(std::size_t length, std::size_t period) {
     std::vector<float> samples(length);
     for (std::size_t i = 0; i < length; ++i) samples[i] = -static_cast<float>(i % period);

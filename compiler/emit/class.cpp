@@ -1,4 +1,4 @@
-// The class Monitor: its types and constants, its interface, its state, and the halves of a step.
+// Prints the class Monitor: types and constants, interface, state, and the two halves of a step.
 #include <algorithm>
 
 #include "check/model/fingerprint.hpp"
@@ -24,13 +24,13 @@ std::vector<Member> own_members(const Context& context) {
         const char* type = input.type == InputType::boolean ? "uint32_t" : "float";
         result.push_back(
             {fmt::format("etlmon::Hold<{}, {}, {}>", type, input.dimension, input.hold),
-             held->second, fmt::format("the last {} that was there", input.name),
+             held->second, fmt::format("last {} that was present", input.name),
              held->second + ".reset();", ""});
     }
     for (const auto& [d, name] : context.names.search_member) {
         const check::Target& target = context.model.targets[context.model.distances[d].target];
         result.push_back({fmt::format("etlmon::Search<{}, {}>", target.rows, target.dimension),
-                          name, "what it remembers of " + context.model.distances[d].text,
+                          name, "search state of " + context.model.distances[d].text,
                           name + ".reset();"});
     }
     const std::vector<Member> telemetry = telemetry_members(context);
@@ -38,13 +38,13 @@ std::vector<Member> own_members(const Context& context) {
     const std::vector<Member> thresholds = threshold_members(context);
     result.insert(result.end(), thresholds.begin(), thresholds.end());
     for (const auto& [m, name] : context.names.verdict_member)
-        result.push_back({context.spelling.verdict, name, "the last one, for finish()",
+        result.push_back({context.spelling.verdict, name, "last verdict, for finish()",
                           fmt::format("{} = {}();", name, context.spelling.verdict), ""});
     const std::vector<Member> lets = let_members(context);
     result.insert(result.end(), lets.begin(), lets.end());
     if (context.on_demand)
-        result.push_back(
-            {"Verdicts", "answers", "the last ones; final ones stay", "answers = Verdicts();", ""});
+        result.push_back({"Verdicts", "answers_", "last verdicts; final ones stay",
+                          "answers_ = Verdicts();", ""});
     for (const auto& [m, name] : context.names.position_member)
         result.push_back({"uint32_t", name,
                           fmt::format("steps since {} began; saturates", plan.monitors[m].name),
@@ -60,24 +60,24 @@ std::vector<Member> own_members(const Context& context) {
     }
     if (plan.counts_steps)
         result.push_back(
-            {"uint32_t", "position", "index of the step; saturates", "position = 0;", ""});
+            {"uint32_t", "position_", "index of the step; saturates", "position_ = 0;", ""});
     if (plan.has_sliding)
-        result.push_back({"uint32_t", "finishes", "calls of finish()", "finishes = 0;", ""});
-    result.push_back({"uint32_t", "incomplete", "steps on which something was unknown; saturates",
-                      "incomplete = 0;", ""});
+        result.push_back({"uint32_t", "finishes_", "calls to finish()", "finishes_ = 0;", ""});
+    result.push_back({"uint32_t", "incomplete_", "steps with something unknown; saturates",
+                      "incomplete_ = 0;", ""});
     if (context.explains && !context.sampled.places.empty()) {
-        result.push_back({"uint32_t", "measured", "index of the step for measure(); saturates",
-                          "measured = 0;", ""});
-        result.push_back({fmt::format("etlmon::Deciding<{}>", plan.monitors.size()), "deciding",
-                          "the values that decide the verdicts", "deciding.reset();", ""});
+        result.push_back({"uint32_t", "measured_", "index of the step for measure(); saturates",
+                          "measured_ = 0;", ""});
+        result.push_back({fmt::format("etlmon::Deciding<{}>", plan.monitors.size()), "deciding_",
+                          "values that decide the verdicts", "deciding_.reset();", ""});
     }
     if (plan.recorder)
-        result.push_back({"Recorder", "recorder", "the last steps, and incidents",
-                          "recorder.end_episode();", ""});
+        result.push_back({"Recorder", "recorder_", "recent steps, and incidents",
+                          "recorder_.end_episode();", ""});
     return result;
 }
 
-/// Some stream looks at positions that may lie before the trace, or after its end.
+/// Returns whether some stream reads positions that may lie outside the trace.
 bool asks_what_exists(const plan::Plan& plan) {
     return plan.has_sliding ||
            std::any_of(plan.streams.begin(), plan.streams.end(), [](const plan::Stream& stream) {
@@ -87,9 +87,9 @@ bool asks_what_exists(const plan::Plan& plan) {
 }
 
 void print_exists(Printer& out, const Context& context) {
-    print_doc(out, "Whether the trace has the position `lag` steps before this one.");
+    print_doc(out, "Returns whether the trace contains the position `lag` steps ago.");
     out.open("bool exists(uint32_t lag) const noexcept {");
-    out.line("return position >= lag{};", context.plan.has_sliding ? " && finishes <= lag" : "");
+    out.line("return position_ >= lag{};", context.plan.has_sliding ? " && finishes_ <= lag" : "");
     out.close();
     out.line();
 }
@@ -105,19 +105,20 @@ void print_types(Printer& out, const Context& context) {
     types.emplace_back(fmt::format("using Value = {};", words.value), words.value_meaning);
     if (!readings.empty())
         types.emplace_back(fmt::format("using Reading = {};", words.reading),
-                           "a value, and bounds that no continuation leaves");
+                           "a value, and its bounds over every continuation");
     if (has_tables)
         types.emplace_back(fmt::format("using Key = {};", words.key), "one end of a value");
     print_aligned(out, types, "///<");
     print_recorder_type(out, context);
     out.line();
     if (context.on_demand) return;
-    print_doc(out, "What a step says about each predicate.");
+    print_doc(out, "The robustness of each predicate at one step.");
     out.open("struct Atoms {");
     for (const auto& [p, name] : context.names.predicate_atom)
         out.line("{} {};", words.value, name);
     for (const auto& [i, name] : context.names.flag_atom) out.line("{} {};", words.value, name);
-    if (context.plan.recorder) out.line("{} row_;  // of the recorder", recorder_row(context));
+    if (context.plan.recorder)
+        out.line("{} row_;  // for the flight recorder", recorder_row(context));
     out.close("};");
     out.line();
 }
@@ -125,24 +126,23 @@ void print_types(Printer& out, const Context& context) {
 void print_made_from(Printer& out, const Context& context) {
     if (context.retargetable()) return;  // the parameters say it
     const check::Fingerprint made_from = check::fingerprint(context.model);
-    print_doc(out, "What the class was made from, as XXH64: log it with the verdicts.");
+    print_doc(out, "XXH64 of what the class was generated from; log them with the verdicts.");
     const auto hash = [](const char* name, std::uint64_t value) {
         return fmt::format("static constexpr uint64_t {} = 0x{:016x}u;", name, value);
     };
-    print_aligned(
-        out,
-        {{hash("kSpecHash", made_from.spec), context.spec_file},
-         {hash("kDataHash", made_from.data),
-          made_from.data == 0 ? "no target sets, no weights" : "target sets and weights"},
-         {hash("kThresholdsHash", made_from.thresholds),
-          made_from.thresholds == 0 ? "no named thresholds" : "thresholds, as they begin"}},
-        "///<");
+    print_aligned(out,
+                  {{hash("kSpecHash", made_from.spec), context.spec_file},
+                   {hash("kDataHash", made_from.data),
+                    made_from.data == 0 ? "no target sets, no weights" : "target sets and weights"},
+                   {hash("kThresholdsHash", made_from.thresholds),
+                    made_from.thresholds == 0 ? "no named thresholds" : "initial thresholds"}},
+                  "///<");
 }
 
 void print_class_constants(Printer& out, const Context& context) {
     const plan::Cost& cost = context.plan.cost;
     print_made_from(out, context);
-    print_doc(out, "What it costs.");
+    print_doc(out, "The cost of a monitor.");
     std::vector<std::pair<std::string, std::string>> sizes;
     sizes.emplace_back(fmt::format("static constexpr size_t kStateBytes = {};",
                                    context.stores_targets() || context.retargetable()
@@ -152,12 +152,12 @@ void print_class_constants(Printer& out, const Context& context) {
     if (cost.stack_bytes > 0)
         sizes.emplace_back(
             fmt::format("static constexpr size_t kStackBytes = {};", cost.stack_bytes),
-            "of a step, for " + what_takes_stack(context.plan));
+            "stack of a step, for " + what_takes_stack(context.plan));
     sizes.emplace_back(fmt::format("static constexpr uint32_t kOperations = {};", cost.operations),
-                       "min, max, compare in the worst step");
+                       "min, max and comparisons in the worst-case step");
     sizes.emplace_back(
         fmt::format("static constexpr uint32_t kDistanceElements = {};", cost.distance_operations),
-        "target elements measured in a step");
+        "target elements compared in a step");
     print_aligned(out, sizes, "///<");
     print_recorder_constants(out, context);
     out.line();
@@ -179,60 +179,59 @@ void print_constructors(Printer& out, const Context& context) {
         out.line("constexpr Monitor() noexcept { reset(); }");
         return out.line();
     }
-    print_doc(out, fmt::format("Over the targets of {}, which must stay where they are. Where they "
+    print_doc(out, fmt::format("Uses the targets of {}, which must outlive the monitor. While they "
                                "are not ready, every predicate on them is unknown at every step.",
                                context.targets_file));
     out.open(
-        "constexpr explicit Monitor(const Targets& targets) noexcept : rows(targets.rows()) {");
+        "constexpr explicit Monitor(const Targets& targets) noexcept : rows_(targets.rows()) {");
     out.line("reset();");
     out.close();
-    print_doc(out,
-              "The same from the bytes of the file, all of which are read once to check them.");
+    print_doc(out, "Uses the bytes of the file, and reads all of them once to check them.");
     out.line(
         "Monitor(const uint8_t* bytes, size_t size) noexcept : Monitor(Targets(bytes, size)) {}");
     out.line();
-    print_doc(out, "Whether these are the bytes that the class was made with.");
+    print_doc(out, "Returns whether the bytes are those that the class was generated with.");
     out.open("static bool valid(const uint8_t* bytes, size_t size) noexcept {");
     out.line("return Targets(bytes, size).ready();");
     out.close();
-    print_doc(out, "Whether this monitor has its targets.");
-    out.line("bool ready() const noexcept { return rows != nullptr; }");
+    print_doc(out, "Returns whether this monitor has its targets.");
+    out.line("bool ready() const noexcept { return rows_ != nullptr; }");
     out.line();
 }
 
 void print_finish(Printer& out, const Context& context) {
     print_doc(out,
-              "The trace has ended: each call reports one of the last positions of the sliding "
-              "monitors, cut at the end; a monitor that has reported its last is undecided from "
-              "then on. Prefix monitors repeat their verdict.");
+              "Called after the last step: each call reports one of the last positions of the "
+              "sliding monitors, with their windows cut at the end of the trace. A sliding monitor "
+              "that has reported its last position is undecided from then on; prefix monitors "
+              "repeat their verdict.");
     out.open("Verdicts finish() noexcept {");
-    print_wrapped(out, counted("finishes"));
+    print_wrapped(out, counted("finishes_"));
     out.line(context.on_demand ? "return advance(Inputs());" : "return judge(Atoms());");
     out.close();
     out.line();
 }
 
-/// Public, and on disjoint members, for loops that do them at different times.
+/// The halves are public, so that a loop may run them at different times.
 void declare_halves(Printer& out) {
     print_comment(out, "//",
-                  "A step in two halves: step(in) is judge(measure(in)). They share no member that "
-                  "either changes, so one may interrupt the other; every measure() is followed by "
-                  "one judge() of what it gave, in the same order.");
+                  "The two halves of a step: step(in) is judge(measure(in)). Neither changes a "
+                  "member that the other uses, so one may interrupt the other. Call judge() once "
+                  "with the result of each measure(), in the same order.");
     out.line();
-    print_doc(out,
-              "The robustness of every predicate at this step; counts the step if something was "
-              "missing.");
+    print_doc(
+        out, "Measures every predicate at this step, and counts the step if a sample was missing.");
     out.line("Atoms measure(const Inputs& in) noexcept;");
-    print_doc(out, "One step of every formula, given this step's predicates.");
+    print_doc(out, "Advances every formula by one step.");
     out.line("Verdicts judge(const Atoms& now) noexcept;");
     out.line();
 }
 
 std::string reset_words(const Context& context) {
-    std::string words = "A new episode";
-    if (!context.names.threshold_member.empty())
-        words += "; adaptive thresholds stay where they are";
-    if (context.plan.recorder) words += "; incidents stay, and those that wait for steps end here";
+    std::string words = "Starts a new episode";
+    if (!context.names.threshold_member.empty()) words += "; adaptive thresholds are kept";
+    if (context.plan.recorder)
+        words += "; incidents are kept, and those that wait for steps are completed";
     return words + ".";
 }
 
@@ -247,7 +246,7 @@ void print_interface(Printer& out, const Context& context, const std::vector<Mem
     out.close();
     out.line();
     print_restarts(out, context, all);
-    print_doc(out, "One call, one time step.");
+    print_doc(out, "Takes one time step.");
     if (context.on_demand)
         print_step_on_demand(out, context);
     else
@@ -257,20 +256,21 @@ void print_interface(Printer& out, const Context& context, const std::vector<Mem
     if (context.plan.has_sliding) print_finish(out, context);
     if (!context.on_demand) declare_halves(out);
     if (!context.names.predicate_member.empty()) {
-        print_doc(out, fmt::format("Telemetry of the last step: a predicate's distance or "
-                                   "expression, NaN where it was unknown{}, next to its threshold, "
-                                   "and the row of the nearest target.",
-                                   context.on_demand ? " or not asked for" : ""));
+        print_doc(
+            out,
+            fmt::format("Telemetry of the last step: the distance or expression of each predicate, "
+                        "NaN if unknown{}, its threshold, and the row of the nearest target.",
+                        context.on_demand ? " or not evaluated" : ""));
         print_telemetry(out, context);
         out.line();
     }
     print_why(out, context);
     print_let_interface(out, context);
     print_adaptive_interface(out, context);
-    print_doc(out,
-              fmt::format("Steps on which some predicate or bool input {}was unknown; saturates.",
-                          context.on_demand ? "that was asked for " : ""));
-    out.line("uint32_t missing_steps() const noexcept { return incomplete; }");
+    print_doc(out, fmt::format("Returns the number of steps at which a predicate or bool input{} "
+                               "was unknown; saturates.",
+                               context.on_demand ? " that was evaluated" : ""));
+    out.line("uint32_t missing_steps() const noexcept { return incomplete_; }");
     out.line();
     print_recorder_interface(out, context);
 }
@@ -279,27 +279,26 @@ void print_interface(Printer& out, const Context& context, const std::vector<Mem
 
 void declare_advance(Printer& out) {
     print_doc(out,
-              "One step of every formula: min is \"and\", max is \"or\". A predicate is measured "
-              "when a verdict that can still change first depends on it; min and max ask from left "
-              "to right and stop where one decides.");
+              "Advances every formula by one step: min is \"and\", max is \"or\". A predicate is "
+              "measured when a verdict that can still change first depends on it; min and max "
+              "evaluate from left to right and stop at the operand that decides.");
     out.line("Verdicts advance(const Inputs& in) noexcept;");
     out.line();
 }
 
-/// What stands for a predicate that is not seen: at a step that lacks its sample.
+/// Prints the ranges of predicates, used at steps that lack the sample.
 void print_unseen(Printer& out, const Context& context) {
     if (context.retargetable()) {
         print_doc(out,
-                  "What stands for what is not seen: anything, since other parameters may come.");
+                  "The range of a predicate whose sample is missing: everything, since the "
+                  "parameters may change.");
         out.open("static Value unseen() noexcept {");
         out.line("return Value{etlmon::kBottom, etlmon::kTop};");
         out.close();
         return out.line();
     }
     if (context.names.predicate_unseen.empty()) return;
-    print_doc(
-        out,
-        "All that the robustness of a predicate can be: what stands for it where it is not seen.");
+    print_doc(out, "The range of a predicate's robustness, used where its sample is missing.");
     for (const auto& [p, name] : context.names.predicate_unseen)
         print_wrapped(out, fmt::format("static {} {}() noexcept {{ return {}; }}",
                                        context.spelling.atom, name,
@@ -317,7 +316,7 @@ void print_state(Printer& out, const std::vector<Member>& all) {
     print_aligned(out, lines);
 }
 
-/// Members that are made of bytes, where values are.
+/// Returns whether the member consists of bytes in a class whose values are bytes.
 bool is_bytes(const Context& context, const Member& member) {
     return member.type == "Value" || member.type == context.spelling.verdict ||
            member.type == "Verdicts" || member.type.find("PendingMachine") != std::string::npos;
@@ -329,22 +328,22 @@ std::vector<Member> members(const Context& context) {
     std::vector<Member> all = temporal_members(context);
     const std::vector<Member> own = own_members(context);
     all.insert(all.end(), own.begin(), own.end());
-    // Words before bytes: no padding but at the end.
+    // Words come before bytes, so that only the end is padded.
     std::stable_partition(all.begin(), all.end(), [&](const Member& member) {
         return !context.spelling.bytes || !is_bytes(context, member);
     });
     if (context.stores_targets())
-        all.insert(all.begin(), {"const float*", "rows", "in " + context.targets_file, ""});
+        all.insert(all.begin(), {"const float*", "rows_", "in " + context.targets_file, ""});
     if (context.retargetable())
-        all.insert(all.begin(), {"const float*", "numbers", "the parameters; null: none yet", ""});
+        all.insert(all.begin(), {"const float*", "numbers_", "the parameters, or null", ""});
     return all;
 }
 
 void print_class(Printer& out, const Context& context) {
     const std::vector<Member> all = members(context);
-    print_doc(out,
-              "Every monitor of the spec, stepped together. Any number of instances; none of them "
-              "shares anything.");
+    print_doc(
+        out,
+        "All monitors of the spec, stepped together. Instances are independent of each other.");
     out.open("class Monitor {");
     out.label("public:");
     print_types(out, context);
@@ -360,7 +359,7 @@ void print_class(Printer& out, const Context& context) {
     print_state(out, all);
     out.close("};");
     out.line(
-        "static_assert(sizeof(Monitor) == Monitor::kStateBytes, \"no padding, no surprises\");");
+        "static_assert(sizeof(Monitor) == Monitor::kStateBytes, \"the class has no padding\");");
     out.line();
     if (context.on_demand) {
         print_advance(out, context);

@@ -14,6 +14,11 @@ namespace {
 
 using plan::StreamOp;
 
+std::string without_blanks(std::string text) {
+    std::erase(text, ' ');
+    return text;
+}
+
 }  // namespace
 
 std::string open_condition(ir::Interval interval, std::string_view position) {
@@ -138,7 +143,7 @@ std::string open_monitors(const Context& context, const std::vector<std::size_t>
 }
 
 const std::string& Context::position(std::uint32_t begins_with) const {
-    static const std::string kOfTrace = "position";
+    static const std::string kOfTrace = "position_";
     return begins_with == plan::kNone ? kOfTrace : names.position_member.at(begins_with);
 }
 
@@ -149,13 +154,11 @@ std::string Context::place(source::Span span) const {
 
 std::string Context::place(plan::NodeId node) const {
     const std::string text = graph.text(node);
-    const std::string words = place(graph[node].span);
-    const bool as_written = words.size() >= text.size() &&
-                            words.compare(words.size() - text.size(), text.size(), text) == 0;
-    if (as_written || graph[node].span == source::Span{}) return words;
-    return quoted(text) == quoted(model.file.text(graph[node].span))
-               ? words
-               : fmt::format("{}  ({})", words, quoted(text));
+    const source::Span span = graph[node].span;
+    const std::string words = place(span);
+    const bool as_written =
+        span == source::Span{} || without_blanks(words).ends_with(without_blanks(quoted(text)));
+    return as_written ? words : fmt::format("{}  ({})", words, quoted(text));
 }
 
 std::string what_takes_stack(const plan::Plan& plan) {

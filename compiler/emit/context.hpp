@@ -1,7 +1,6 @@
-// What the parts of the header emitter share.
-// Takes: the plan, the graph for comments, names. Gives: spellings of values, keys, numbers and
-// comments. Keeps true: the same plan gives the same bytes on every machine; no path but the spec's
-// file name is printed.
+// The context that the parts of the header emitter share: the plan, its names, and the spelling of
+// values, keys, numbers and comments. The same plan gives the same bytes on every machine, and no
+// path but the spec's file name is printed.
 #pragma once
 
 #include <string>
@@ -15,14 +14,14 @@
 #include "plan/parameters.hpp"
 #include "plan/plan.hpp"
 #include "plan/program/dependents.hpp"
-#include "plan/program/samples.hpp"
+#include "plan/program/sample_codes.hpp"
 #include "plan/program/value_type.hpp"
-#include "plan/recorder.hpp"
+#include "plan/recorder_plan.hpp"
 
 namespace etlc::emit {
 
-/// The ends of what predicates can be, as code says them: "unseen_at_a().high". An end of more than
-/// one of them is none's.
+/// Returns code for the ends of the ranges of predicates: "unseen_at_a().high". An end that several
+/// predicates have maps to the empty string.
 std::map<plan::Key, std::string> unseen_ends(const plan::Plan& plan, const Names& names);
 
 struct Context {
@@ -41,64 +40,66 @@ struct Context {
     std::map<plan::Key, std::string> ends = unseen_ends(plan, names);
     plan::RecorderColumns recorded = plan::recorder_columns(plan);
     bool explains = plan::value_type(plan.values).sourced;
-    plan::Samples sampled = plan::samples(plan);  ///< where it explains
+    plan::Samples sampled = plan::samples(plan);  ///< only of a class that explains
 
     std::vector<plan::Parameter> parameters = {};  ///< of a retargetable class
-    std::uint64_t shape = 0;                       ///< of such a class; 0 while it is found out
-    /// All numbers of the spec lie in parameters that the monitor is given.
+    std::uint64_t shape = 0;                       ///< of such a class; 0 while the shape is
+                                                   ///< computed
+    /// Returns whether all numbers of the spec are parameters of the monitor.
     bool retargetable() const { return model.retargetable; }
-    /// Where one of these lies: "numbers + targets::goal", "numbers[thresholds::near]".
+    /// Returns code for a parameter: "numbers_ + targets::goal", "numbers_[thresholds::near]".
     std::string parameter(plan::Parameter::Kind kind, check::Index index) const;
     std::string parameter(const check::Expr& number) const;
-    /// Some target sets lie beside the header: the monitor has to be given them.
+    /// Returns whether some target sets are stored outside the header.
     bool stores_targets() const { return !plan.stored.empty(); }
-    /// How the functions of a step are declared: where a call would cost as much as they do, part
-    /// of the caller's loop.
+    /// Returns the qualifier of the functions of a step: inlined where a call would cost as much as
+    /// the function.
     std::string_view step_qualifier() const;
-    /// Measured on narrow rows, which leave it open within bounds; or on narrow rows that are the
-    /// rows exactly.
+    /// Returns whether narrow rows give bounds on the distance, or give it exactly.
     bool enclosed(check::Index distance) const;
     bool lossless(check::Index distance) const;
     std::string literal(plan::Value value) const;
     std::string literal(plan::Key key) const;
-    /// The same of a predicate or bool as it is measured.
+    /// Returns a literal of the type of atoms.
     std::string atom_literal(plan::Value value) const;
-    /// The same of a bound: what predicates can be that are not seen yet.
+    /// Returns code for a bound, by the name of a predicate's range where it is an end of one.
     std::string bound(plan::Key key) const;
-    /// The stream is found out when it is asked for: an atom of a Boolean monitor, or made of such.
+    /// Returns whether the stream is evaluated on demand: an atom of a Boolean monitor, or a
+    /// combination of such.
     bool lazy(plan::Slot slot) const { return demand[slot].lazy; }
-    /// A lazy combination that is found out once a step.
+    /// Returns whether the stream is a lazy combination that is evaluated at most once a step.
     bool keeps(plan::Slot slot) const { return demand[slot].keeps; }
-    /// Target elements that a lazy stream may have to measure.
+    /// Returns the number of target elements that a lazy stream may have to measure.
     std::uint64_t work(plan::Slot slot) const { return demand[slot].work; }
-    /// Those that measure least first; in a robustness monitor as they are.
+    /// Returns the slots sorted by the work of measuring them; a robustness monitor keeps their
+    /// order.
     std::vector<plan::Slot> by_work(std::vector<plan::Slot> slots) const;
-    /// `now.at_a`, a local, a register or a constant: what stands for the stream in judge().
+    /// Returns code for the stream in judge(): `now.at_a`, a local, a register or a constant.
     std::string value(plan::Slot slot) const;
-    /// The low or high key of a stream: "reach_.low", "etlmon::key_of(0.31f)".
+    /// Returns code for the low or high key of a stream: "reach_.low", "etlmon::key_of(0.31f)".
     std::string low(plan::Slot slot) const;
     std::string high(plan::Slot slot) const;
-    /// The steps since what begins with a monitor, or with the trace, began.
+    /// Returns code for the number of steps since the monitor, or the trace, began.
     const std::string& position(std::uint32_t begins_with) const;
-    /// "dubins.etl:21: F at_a": where a formula stands and its words, or its text where the spec
-    /// does not say it so.
+    /// Returns the place and source text of a formula: "dubins.etl:21: F at_a"; also its normalised
+    /// text where that differs by more than blanks.
     std::string place(plan::NodeId node) const;
     std::string place(source::Span span) const;
 };
 
-/// "position >= 2 && position <= 5", empty where the window is always open.
+/// Returns the condition "position_ >= 2 && position_ <= 5", empty if the window is always open.
 std::string open_condition(ir::Interval interval, std::string_view position);
-/// "max_of(a, b, c)"; of one argument, that argument. Where some are lazy,
-/// "max_of(max_of(a, b), c)".
+/// Returns the call "max_of(a, b, c)", or the only argument. If some are lazy, "max_of(max_of(a,
+/// b), c)".
 std::string call(std::string_view function, const std::vector<std::string>& arguments,
                  bool lazy = false);
 
-/// "positions evaluated again", "projected points", or both.
+/// Returns what needs stack: "positions evaluated again", "projected points", or both.
 std::string what_takes_stack(const plan::Plan& plan);
 
 // The parts of the header, in order.
 void print_summary(Printer& out, const Context& context);
-/// The figures that the head of the file and --emit report share.
+/// Prints the figures that the head of the file and --emit report share.
 void print_figures(Printer& out, const std::string& prefix, const plan::Plan& plan,
                    const std::string& targets_file);
 void print_inputs_and_verdicts(Printer& out, const Context& context);
@@ -107,63 +108,61 @@ void print_class(Printer& out, const Context& context);
 void print_measure(Printer& out, const Context& context);
 void print_atoms_on_demand(Printer& out, const Context& context);
 void print_judge(Printer& out, const Context& context);
-/// Opens the definition of a function that a step is made of: "Verdicts", "judge(...)".
+/// Opens the definition of one of the functions of a step: "Verdicts", "judge(...)".
 void open_half(Printer& out, const Context& context, std::string_view result,
                std::string_view function);
-/// Of a Boolean class: measure() and judge() in one, since what is measured depends on what is
-/// judged.
+/// Prints measure() and judge() of a Boolean class as one function, since the verdicts decide what
+/// is measured.
 void print_advance(Printer& out, const Context& context);
 void print_streams(Printer& out, const Context& context);
 void print_reading(Printer& out, const Context& context, std::uint32_t reading);
 void print_tables(Printer& out, const Context& context);
 void print_pending(Printer& out, const Context& context, std::uint32_t reading);
-/// Of machines as tables: the lists of keys that say what the states are worth, as locals.
+/// Prints the keys of a table machine, from which its states are read, as local arrays.
 void print_machine_keys(Printer& out, const Context& context, std::uint32_t reading);
-/// What the reading's value is assigned to: a Boolean monitor has declared it before it asks
-/// whether to compute it.
+/// Returns the left side of the reading's assignment; a Boolean monitor has already declared it.
 std::string reading_declaration(const Context& context, std::uint32_t reading);
-/// "reach_open || avoid_open"; empty where one of the monitors is sliding, or the class is not
-/// Boolean: always.
+/// Returns the condition that one of the monitors is open, "reach_open || avoid_open"; empty if one
+/// is sliding or the class is not Boolean.
 std::string open_monitors(const Context& context, const std::vector<std::size_t>& monitors);
 
-/// At the end of a step: where monitors that restart stand. A repeating one goes on with the next
-/// step after a final verdict, which is a field of `verdicts`.
+/// Prints the end of a step of monitors that restart. A repeating one restarts after a final
+/// verdict, which is a field of `verdicts`.
 void print_progress(Printer& out, const Context& context, std::string_view verdicts);
 
-/// The function of the runtime that decides the predicate: "is_at_most".
+/// Returns the runtime function that decides the predicate: "is_at_most".
 const char* comparison_name(const check::Predicate& predicate);
-/// observe_P, set_threshold_P and what goes with them.
+/// Prints observe_P, set_threshold_P and initial_threshold_P.
 void print_adaptive_interface(Printer& out, const Context& context);
 void print_adaptation_constants(Printer& out, const Context& context);
 
-// The flight recorder, where the plan has one; nothing else prints anything then.
-/// "etlmon::RecorderRow<6, 0, 4>"
+// The flight recorder. These print nothing if the plan has none.
+/// Returns the type "etlmon::RecorderRow<6, 0, 4>".
 std::string recorder_row(const Context& context);
 void print_recorder_type(Printer& out, const Context& context);
 void print_recorder_constants(Printer& out, const Context& context);
 void print_recorder_interface(Printer& out, const Context& context);
-/// What this step's row holds of a predicate whose distance or expression is `delta`, and of a
-/// bool.
+/// Prints the recording of a predicate whose distance or expression is `delta`, and of a bool.
 void print_recorded(Printer& out, const Context& context, check::Index predicate,
                     const std::string& delta);
 void print_recorded_flag(Printer& out, const Context& context, check::Index input,
                          const std::string& flag);
-/// At the end of a step, with the verdicts in `verdicts`; after print_progress, so that each alarm
-/// of a repeating monitor is one that begins.
+/// Prints the end of a step, with the verdicts in `verdicts`. Call it after print_progress, so that
+/// each alarm of a repeating monitor begins an incident.
 void print_record(Printer& out, const Context& context, const std::string& verdicts);
 
-// Explanations, where values know their sample; nothing else prints anything then.
-/// At the beginning of measure(): what the samples of this step have in common.
+// Explanations. These print nothing if values do not carry their sample.
+/// Prints the rank that the samples of this step share, at the start of measure().
 void print_rank(Printer& out, const Context& context);
-/// At its end: the step is counted.
+/// Prints the count of the step, at the end of measure().
 void print_step_measured(Printer& out, const Context& context);
-/// The value of a predicate, with the sample that it has at this step: whose distance or
-/// expression is `delta`. And of a bool.
+/// Returns the value of a predicate with its sample, whose distance or expression is `delta`; and
+/// of a bool.
 std::string sourced(const Context& context, check::Index predicate, const std::string& value,
                     const std::string& delta);
 std::string sourced_flag(const Context& context, check::Index input, const std::string& value,
                          const std::string& flag);
-/// why_NAME(), and what they share.
+/// Prints why_NAME(), and the function that they share.
 void print_why(Printer& out, const Context& context);
 void print_why_of(Printer& out, const Context& context);
 
@@ -172,39 +171,43 @@ struct Member {
     std::string type;
     std::string name;
     std::string comment;
-    std::string reset;    ///< a statement; empty: it outlives the episode
+    std::string reset;    ///< a statement; empty: the member is kept between episodes
     std::string initial;  ///< empty: zeros, until the constructor or reset() sets it
-    /// restart_NAME() of this monitor of the plan resets it too.
+    /// Index of the monitor whose restart_NAME() resets the member too.
     std::uint32_t begins_with = plan::kNone;
 };
 std::vector<Member> members(const Context& context);
-/// restart_NAME(), and what a repeating monitor has counted.
+/// Prints restart_NAME(), and the counts of a repeating monitor.
 void print_restarts(Printer& out, const Context& context, const std::vector<Member>& all);
-/// Those of readings and streams: the plan says what they are.
+/// Returns the members of readings and streams, as the plan lists them.
 std::vector<Member> temporal_members(const Context& context);
+/// Returns the comment of registers in an array, from the first to the last: "pending: b U[0, 23]
+/// c, ..., b U[0, 0] c". `more`: there are others between them.
+std::string comment_of_array(const Context& context, const plan::Member& first,
+                             const plan::Member& last, bool more);
 std::vector<Member> threshold_members(const Context& context);
 
-// The parameters of a retargetable class; nothing else prints anything then.
-/// What a monitor has to be given besides its state, in words.
+// The parameters of a retargetable class. These print nothing for other classes.
+/// Returns a description of the parameters.
 std::string about_parameters(const plan::Plan& plan, bool is_calibrated);
-/// Where they lie, and what a block of them must be.
+/// Prints the offsets of the parameters and the layout of their block.
 void print_parameters(Printer& out, const Context& context);
-/// Constructors, retarget() and what is asked about parameters.
+/// Prints the constructors, retarget() and the queries about parameters.
 void print_retarget_interface(Printer& out, const Context& context);
-/// measure() of a monitor that has none yet.
+/// Prints measure() of a monitor without parameters.
 void print_unknown_atoms(Printer& out, const Context& context);
 void print_shadow(Printer& out, const Context& context);
 
 // Telemetry of named predicates.
 std::vector<Member> telemetry_members(const Context& context);
-/// distance_P(), threshold_P(), nearest_P()
+/// Prints distance_P(), threshold_P() and nearest_P().
 void print_telemetry(Printer& out, const Context& context);
 
-// Telemetry of lets, where the plan has some; nothing else prints anything then.
+// Telemetry of lets. These print nothing if the plan has none.
 std::vector<Member> let_members(const Context& context);
-/// let_NAME() and robustness_NAME()
+/// Prints let_NAME() and robustness_NAME().
 void print_let_interface(Printer& out, const Context& context);
-/// At the end of a step: what they say of it.
+/// Prints the update of the lets' verdicts, at the end of a step.
 void print_lets(Printer& out, const Context& context);
 
 }  // namespace etlc::emit

@@ -1,4 +1,4 @@
-// The formulas as a Graphviz graph.
+// Prints the formulas as a Graphviz graph.
 #include <set>
 
 #include "emit/emit.hpp"

@@ -1,6 +1,5 @@
-// The plan as text for others: the C++ header, a picture of the graph, the budget.
-// Takes: a plan. Gives: one string per backend of backends.cpp. Keeps true: the same
-// plan gives the same bytes on every machine.
+// Back ends: the C++ header, the graph as a picture, the budget. Each turns a plan into a string,
+// with the same bytes on every machine.
 #pragma once
 
 #include <string>
@@ -12,10 +11,10 @@
 namespace etlc::emit {
 
 struct Options {
-    std::string name_space;    ///< of the generated code; empty: the spec's name
+    std::string name_space;    ///< namespace of the generated code; empty: the spec's name
     std::string version;       ///< of etlc, for the head of the file
-    std::string standalone;    ///< the runtime pasted in: "portable" or "host"; empty: included
-    std::string targets_file;  ///< where target sets lie that are not spelled out, without folders
+    std::string standalone;    ///< paste the runtime, "portable" or "host"; empty: include it
+    std::string targets_file;  ///< file of target sets outside the header, without folders
 };
 
 struct Backend {
@@ -26,7 +25,7 @@ struct Backend {
 const std::vector<Backend>& backends();
 
 std::string header(const plan::Plan& plan, const Options& options);
-/// What a retargetable class of this plan takes, with the numbers that the spec has.
+/// Returns the parameters of a retargetable class of this plan, with the numbers of the spec.
 std::string params(const plan::Plan& plan, const Options& options);
 std::string dot(const plan::Plan& plan, const Options& options);
 std::string report(const plan::Plan& plan, const Options& options);

@@ -1,4 +1,4 @@
-// What the user of the class fills in and gets back, and the constants behind it.
+// Prints the inputs and verdicts of the class, and its constants.
 #include <algorithm>
 
 #include "diag/diag.hpp"
@@ -37,12 +37,12 @@ std::string remark_on(const check::Input& input) {
     if (input.type == InputType::i8) add(fmt::format("value = {} x integer", input.scale));
     if (input.hold > 0)
         add(fmt::format("held for {} missing step{}", input.hold, input.hold == 1 ? "" : "s"));
-    if (input.missing) add(fmt::format("counts as {} where it is missing", *input.missing));
+    if (input.missing) add(fmt::format("counts as {} when missing", *input.missing));
     return text;
 }
 
-/// `alignas(64) inline constexpr TYPE NAME[SIZE] = {...};`, each row on a line of its own; a row of
-/// several lines with its number above it.
+/// Prints `alignas(64) inline constexpr TYPE NAME[SIZE] = {...};`, one row per line. A row of
+/// several lines has its number above it.
 template <class Number, class Spell>
 void print_array(Printer& out, const std::string& type_and_name, const std::string& size,
                  const std::vector<Number>& numbers, std::size_t row_length, Spell spell) {
@@ -70,7 +70,7 @@ void print_numbers(Printer& out, const std::string& name, const std::string& siz
 
 void print_place(Printer& out, const Context& context, const std::string& name,
                  const plan::StoredSet& set) {
-    print_doc(out, fmt::format("where they begin in {}, in floats", context.targets_file));
+    print_doc(out, fmt::format("offset in {}, in floats", context.targets_file));
     out.line("inline constexpr size_t {} = {};", name, set.offset / sizeof(float));
 }
 
@@ -82,10 +82,10 @@ std::string rows_of(const check::Target& target, const check::Distance& distance
                        plan::rows_as_given(distance) ? "" : ", scaled to length 1");
 }
 
-/// The maps of the points that are projected.
+/// Prints the matrices and offsets of projections.
 void print_projections(Printer& out, const Context& context) {
     if (context.names.matrix_array.empty()) return;
-    out.line("/// Projections A (z - m): the rows of A, one after the other, and m.");
+    out.line("/// Projections A (z - m): A row by row, then m.");
     out.line("namespace projections {");
     for (const auto& [index, name] : context.names.matrix_array) {
         const check::Projection& projection = context.model.projections[index];
@@ -100,7 +100,7 @@ void print_projections(Printer& out, const Context& context) {
                           projection.matrix, projection.dimension);
         const auto offset = context.names.offset_array.find(index);
         if (offset == context.names.offset_array.end()) continue;
-        print_doc(out, fmt::format("what {} subtracts first", projection.name));
+        print_doc(out, fmt::format("offset m of {}", projection.name));
         print_numbers(out, offset->second, fmt::format("{}", projection.dimension),
                       projection.offset, projection.dimension);
     }
@@ -138,10 +138,12 @@ void print_narrow_rows(Printer& out, const Context& context, const plan::NarrowS
                     [](std::int8_t x) { return fmt::format("{}", x); });
 }
 
-/// For loops that log all of them.
+/// Prints named(), for loops over all verdicts.
 void print_named(Printer& out, const Context& context) {
     const std::vector<plan::Monitor>& monitors = context.plan.monitors;
-    print_doc(out, "The verdicts by name: for (const auto& [name, verdict] : named(verdicts)) ...");
+    print_doc(out,
+              "Returns the verdicts with their names: for (const auto& [name, verdict] : "
+              "named(verdicts)) ...");
     out.open(fmt::format("inline etlmon::Named<{}, {}> named(const Verdicts& verdicts) noexcept {{",
                          context.spelling.verdict, monitors.size()));
     out.open("return {{");
@@ -156,7 +158,7 @@ void print_named(Printer& out, const Context& context) {
 }  // namespace
 
 void print_inputs_and_verdicts(Printer& out, const Context& context) {
-    print_doc(out, "What the monitors see at one step. Inputs{} lacks everything.");
+    print_doc(out, "The inputs of one step. In Inputs{} all of them are missing.");
     out.open("struct Inputs {");
     std::vector<std::pair<std::string, std::string>> inputs;
     for (Index i : context.plan.inputs) {
@@ -172,9 +174,9 @@ void print_inputs_and_verdicts(Printer& out, const Context& context) {
     const bool restarts =
         std::any_of(context.plan.monitors.begin(), context.plan.monitors.end(),
                     [](const auto& monitor) { return monitor.restarts != check::Restarts::never; });
-    print_doc(out, fmt::format("What they answer: about the prefix so far{} or, sliding, about the "
-                               "position their horizon ago.",
-                               restarts ? ", from where a monitor last began," : ""));
+    print_doc(out, fmt::format("The verdicts of one step. A prefix monitor judges the prefix so "
+                               "far{}; a sliding monitor judges the position one horizon ago.",
+                               restarts ? ", from its last restart on" : ""));
     out.open("struct Verdicts {");
     std::vector<std::pair<std::string, std::string>> verdicts;
     for (const plan::Monitor& monitor : context.plan.monitors)
@@ -189,16 +191,16 @@ void print_inputs_and_verdicts(Printer& out, const Context& context) {
 void print_constants(Printer& out, const Context& context) {
     if (context.plan.distances.empty()) return;
     if (context.stores_targets()) {
-        print_doc(out, fmt::format("The bytes of {}: mapped by etlmon/hosted/mapped_targets.hpp, "
-                                   "or linked in at a multiple of 64. The type holds their size "
-                                   "and their XXH64: it is ready with no others.",
+        print_doc(out, fmt::format("The bytes of {}, mapped by etlmon/hosted/mapped_targets.hpp or "
+                                   "linked in at a multiple of 64. The type holds their size and "
+                                   "XXH64, and is ready with no other bytes.",
                                    context.targets_file));
         out.line("using Targets = etlmon::Targets<{}u, 0x{:016x}u>;",
                  plan::stored_bytes(context.plan), plan::stored_hash(context.plan));
         out.line();
     }
     print_projections(out, context);
-    out.line("/// Target sets, a row after the other.");
+    out.line("/// Target sets, row by row.");
     out.line("namespace targets {");
     std::set<std::string> done;
     for (Index d : context.plan.distances) {
@@ -210,7 +212,7 @@ void print_constants(Printer& out, const Context& context) {
         const auto weights = context.names.weight_array.find(d);
         if (weights == context.names.weight_array.end()) continue;
         const check::Distance& distance = context.model.distances[d];
-        print_doc(out, fmt::format("the weights of {}", distance.text));
+        print_doc(out, fmt::format("weights of {}", distance.text));
         const std::size_t dimension = context.model.targets[distance.target].dimension;
         print_numbers(out, weights->second, fmt::format("{}", distance.weights.size()),
                       distance.weights, dimension);

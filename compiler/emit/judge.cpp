@@ -1,26 +1,26 @@
-// judge(): from the robustness of every predicate at this step to the verdicts.
+// Prints judge(): from the robustness of every predicate at this step to the verdicts.
 #include "emit/context.hpp"
 
 namespace etlc::emit {
 
 namespace {
 
-/// What was calibrated as a whole is shifted, bounds and all.
+/// Returns the value, shifted with its bounds if the monitor was calibrated as a whole.
 std::string shifted(const plan::Monitor& monitor, const std::string& value) {
     return monitor.shifted
                ? fmt::format("etlmon::shifted({}, {})", value, float_literal(monitor.shift))
                : value;
 }
 
-/// A reading or value that is robustness alone.
+/// Returns the reading or value without its sample.
 std::string robustness(const Context& context, const std::string& value) {
     return context.explains ? fmt::format("etlmon::unsourced({})", value) : value;
 }
 
-/// The verdict, from values that know their sample: the one that decides it is kept.
+/// Returns the verdict from values that carry their sample, and keeps the one that decides it.
 std::string deciding(const plan::Monitor& monitor, std::string_view kind, std::size_t m,
                      const std::string& value) {
-    return fmt::format("deciding.{}({}, {}{})", kind, m, value,
+    return fmt::format("deciding_.{}({}, {}{})", kind, m, value,
                        monitor.shifted ? ", " + float_literal(monitor.shift) : "");
 }
 
@@ -36,13 +36,13 @@ std::string prefix_verdict(const Context& context, std::size_t m) {
                        shifted(monitor, robustness(context, reading)));
 }
 
-/// About the position that its horizon is behind, where there is one.
+/// Returns the verdict on the position one horizon ago, if the trace contains it.
 std::string sliding_verdict(const Context& context, std::size_t m) {
     const plan::Monitor& monitor = context.plan.monitors[m];
     const std::string value = context.value(monitor.stream);
     const std::string exists = fmt::format("exists({}) ? ", monitor.horizon);
     if (is_deciding(context))
-        return fmt::format("{}{} : deciding.undecided({})", exists,
+        return fmt::format("{}{} : deciding_.undecided({})", exists,
                            deciding(monitor, "sliding", m, value), m);
     return fmt::format("{}etlmon::sliding_verdict({}) : {}()", exists,
                        shifted(monitor, robustness(context, value)), context.spelling.verdict);
@@ -55,12 +55,12 @@ std::string verdict(const Context& context, std::size_t m) {
     return prefix_verdict(context, m);
 }
 
-/// In a Boolean monitor: computed while some verdict can still change.
+/// Prints a reading of a Boolean monitor, which is computed while some verdict can still change.
 void print_reading_while_open(Printer& out, const Context& context, std::uint32_t r) {
     const plan::Reading& reading = context.plan.readings[r];
     const std::string open = open_monitors(context, context.dependents.of_reading[r]);
     if (!reading.operands.empty() || open.empty())
-        return print_reading(out, context, r);  // of others, which ask for nothing; or always open
+        return print_reading(out, context, r);  // a combination of readings, or always open
     out.line("Reading {}{{}};", context.names.readings[r].local);
     print_wrapped(out, fmt::format("if ({}) {{", open));
     out.indent();
@@ -72,11 +72,10 @@ void print_readings(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
     if (plan.readings.empty()) return;
     const bool ends =
-        plan.has_sliding &&
-        !context.on_demand;  // prefixes do not grow while finish() reports the last positions
+        plan.has_sliding && !context.on_demand;  // the prefix does not grow during finish()
     if (ends) {
         out.gap();
-        out.open("if (finishes == 0) {");
+        out.open("if (finishes_ == 0) {");
     }
     for (std::uint32_t r = 0; r < plan.readings.size(); ++r) {
         out.gap();
@@ -95,16 +94,16 @@ std::string if_open(const Context& context, std::size_t m) {
     return open == context.names.open_local.end() ? "" : fmt::format("if ({}) ", open->second);
 }
 
-/// The answers so far, with those that can still change brought up to date.
+/// Prints the update of the verdicts that can still change.
 void print_open_verdicts(Printer& out, const Context& context) {
     for (std::size_t m = 0; m < context.plan.monitors.size(); ++m) {
         const plan::Monitor& monitor = context.plan.monitors[m];
         if (monitor.sliding)
             print_wrapped(
-                out, fmt::format("answers.{} = {};", monitor.name, sliding_verdict(context, m)));
+                out, fmt::format("answers_.{} = {};", monitor.name, sliding_verdict(context, m)));
         else
             print_wrapped(
-                out, fmt::format("{}answers.{} = etlmon::prefix_verdict({});", if_open(context, m),
+                out, fmt::format("{}answers_.{} = etlmon::prefix_verdict({});", if_open(context, m),
                                  monitor.name, context.names.readings[monitor.reading].local));
     }
 }
@@ -132,9 +131,9 @@ void print_advance(Printer& out, const Context& context) {
     for (const auto& [m, open] : context.names.open_local) {
         const bool repeats = plan.monitors[m].restarts == check::Restarts::when_final;
         const std::string undecided =
-            repeats ? "" : fmt::format("!answers.{}.final()", plan.monitors[m].name);
+            repeats ? "" : fmt::format("!answers_.{}.final()", plan.monitors[m].name);
         print_wrapped(out, fmt::format("const bool {} = {}{}{};", open,
-                                       plan.has_sliding ? "finishes == 0" : "",
+                                       plan.has_sliding ? "finishes_ == 0" : "",
                                        plan.has_sliding && !repeats ? " && " : "", undecided));
     }
     out.gap();
@@ -143,11 +142,11 @@ void print_advance(Printer& out, const Context& context) {
     out.gap();
     print_open_verdicts(out, context);
     print_lets(out, context);
-    print_wrapped(out, "if (missing && incomplete != UINT32_MAX) ++incomplete;");
-    print_progress(out, context, "answers");
-    print_record(out, context, "answers");
-    if (plan.counts_steps) print_wrapped(out, counted("position"));
-    out.line("return answers;");
+    print_wrapped(out, "if (missing && incomplete_ != UINT32_MAX) ++incomplete_;");
+    print_progress(out, context, "answers_");
+    print_record(out, context, "answers_");
+    if (plan.counts_steps) print_wrapped(out, counted("position_"));
+    out.line("return answers_;");
     out.close();
 }
 
@@ -171,7 +170,7 @@ void print_judge(Printer& out, const Context& context) {
     print_lets(out, context);
     print_progress(out, context, "verdicts");
     print_record(out, context, "verdicts");
-    if (plan.counts_steps) print_wrapped(out, counted("position"));
+    if (plan.counts_steps) print_wrapped(out, counted("position_"));
     out.line("return verdicts;");
     out.close();
 }

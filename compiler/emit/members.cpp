@@ -1,4 +1,6 @@
-// What the class keeps for its formulas: the plan's members, declared.
+// Declares the members that the plan lists for readings and streams.
+#include <algorithm>
+
 #include "emit/context.hpp"
 
 namespace etlc::emit {
@@ -52,19 +54,45 @@ Member declared(const Context& context, const plan::Member& member, const std::s
             reset_of(context, member, name), "",   begins_with};
 }
 
+/// Adds the members of a reading. Registers in an array are one member.
+void add_members(std::vector<Member>& result, const Context& context, std::size_t r) {
+    const Names::OfReading& names = context.names.readings[r];
+    const std::uint32_t begins_with = context.plan.readings[r].begins_with;
+    const std::vector<plan::Member> members = plan::members_of(context.plan.readings[r]);
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        const std::string& name = names.members[i];
+        const bool is_element = i < names.elements.size() && names.elements[i] != plan::kNone;
+        if (!is_element) {
+            result.push_back(declared(context, members[i], name,
+                                      plan::comment_of(members[i], context.graph), begins_with));
+        } else if (names.elements[i] == 0) {
+            const auto size = std::count(names.members.begin(), names.members.end(), name);
+            const auto last = names.members.rend() -
+                              std::find(names.members.rbegin(), names.members.rend(), name) - 1;
+            result.push_back(
+                {context.spelling.kept, fmt::format("{}[{}]", name, size),
+                 comment_of_array(context, members[i], members[static_cast<std::size_t>(last)],
+                                  size > 2),
+                 fmt::format("etlmon::fill({}, {});", name, context.literal(members[i].first)), "",
+                 begins_with});
+        }
+    }
+}
+
 }  // namespace
+
+std::string comment_of_array(const Context& context, const plan::Member& first,
+                             const plan::Member& last, bool more) {
+    plan::Member only_formulas = last;
+    only_formulas.before.clear();
+    return fmt::format("{}, {}{}", plan::comment_of(first, context.graph), more ? "..., " : "",
+                       plan::comment_of(only_formulas, context.graph));
+}
 
 std::vector<Member> temporal_members(const Context& context) {
     const plan::Plan& plan = context.plan;
     std::vector<Member> result;
-    for (std::size_t r = 0; r < plan.readings.size(); ++r) {
-        const std::vector<std::string>& names = context.names.readings[r].members;
-        const std::vector<plan::Member> members = plan::members_of(plan.readings[r]);
-        for (std::size_t i = 0; i < members.size(); ++i)
-            result.push_back(declared(context, members[i], names[i],
-                                      plan::comment_of(members[i], context.graph),
-                                      plan.readings[r].begins_with));
-    }
+    for (std::size_t r = 0; r < plan.readings.size(); ++r) add_members(result, context, r);
     for (plan::Slot slot = 0; slot < plan.streams.size(); ++slot)
         for (const plan::Member& member : plan::members_of(plan.streams[slot]))
             result.push_back(declared(context, member, context.names.streams[slot].member,

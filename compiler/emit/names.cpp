@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "emit/text/identifiers.hpp"
-#include "plan/program/samples.hpp"
+#include "plan/program/sample_codes.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
@@ -16,21 +16,18 @@ namespace etlc::emit {
 
 namespace {
 
-constexpr std::size_t kLongestPartName = 24;
-
-/// A data member that is named after the spec.
+/// Claims the name of a data member.
 std::string member(Scope& scope, const std::string& name) {
     return scope.claim(name, "_");
 }
 
-/// A local that is named after the spec; one without an underscore would look like a name of the
-/// class itself.
+/// Claims the name of a local. It contains an underscore, unlike other names of the class.
 std::string local(Scope& scope, const std::string& name) {
     return name.find('_') == std::string::npos ? scope.number(name) : scope.claim(name);
 }
 
-/// The functions that have an underscore in their names: the runtime's, and those of the class that
-/// are named after predicates and monitors.
+/// Returns the functions with an underscore in their names: of the runtime, and of the class, named
+/// after predicates and monitors.
 std::set<std::string> functions(const check::Model& model, const plan::Plan& plan) {
     std::set<std::string> names{"max_of", "min_of"};
     for (check::Index p : plan.predicates)
@@ -52,7 +49,7 @@ std::set<std::string> functions(const check::Model& model, const plan::Plan& pla
     return names;
 }
 
-/// Read as it is, from what was measured or written down.
+/// Returns whether the stream is a constant, a predicate or a bool input.
 bool is_atom(plan::StreamOp op) {
     return op == plan::StreamOp::constant || op == plan::StreamOp::predicate ||
            op == plan::StreamOp::flag;
@@ -63,7 +60,7 @@ std::string predicate_name(const check::Predicate& predicate) {
     return identifier(predicate.text + predicate.threshold.text, "comparison");
 }
 
-/// How often measure() names a scalar; a point is looked at before it is measured.
+/// Counts how often measure() names a scalar. A point is checked before it is measured.
 std::map<check::Index, int> scalar_uses(const plan::Plan& plan) {
     std::map<check::Index, int> uses;
     for (check::Index p : plan.predicates)
@@ -97,7 +94,7 @@ public:
     }
 
 private:
-    /// In Atoms they are called as they are; a Boolean class has locals for them.
+    /// Claims the name of an atom: a field of Atoms, or a local of a Boolean class.
     std::string atom(const std::string& name) {
         return on_demand_ ? local(judge_, name + "_now") : atoms_.claim(name);
     }
@@ -154,13 +151,14 @@ private:
             names_.distance_local[d] = local(measure_, distance_name(model_.distances[d]));
     }
 
-    /// Of a retargetable class without the weights, which may change.
+    /// Returns "min_l2_z_goal"; "to_goal" if that is too long, or may change in a retargetable
+    /// class.
     std::string distance_name(const check::Distance& distance) const {
-        return model_.retargetable ? "to_" + model_.targets[distance.target].name
-                                   : identifier(distance.text, "distance");
+        const std::string to_target = "to_" + model_.targets[distance.target].name;
+        return model_.retargetable ? to_target : identifier(distance.text, to_target);
     }
 
-    /// "nearest_P_T", T the target set.
+    /// Names the nearest rows "nearest_P_T", where T is the target set.
     void name_nearest() {
         Scope functions;
         for (check::Index p : plan_.predicates)
@@ -206,13 +204,13 @@ private:
                                                         : signal + suffix_of(stream);
     }
 
-    /// The last operand; of a window that is widened from a shorter one, what both watch.
+    /// Returns the last operand; of a window that widens a shorter one, the operand of both.
     const plan::Stream& signal_of(const plan::Stream& stream) const {
         const plan::Stream& operand = plan_.streams[stream.operands.back()];
         return stream.from_length > 0 ? signal_of(operand) : operand;
     }
 
-    /// How a stream that no formula names differs from its signal.
+    /// Returns what the name of a stream without a formula adds to that of its signal.
     static std::string suffix_of(const plan::Stream& stream) {
         switch (stream.op) {
             case plan::StreamOp::within: return "_within";
@@ -258,15 +256,15 @@ private:
         }
     }
 
-    /// A part of a monitor's formula: its own words where they are few.
+    /// Returns the name of a part of a monitor's formula: the words of the part if they are few.
     std::string part_name(std::uint32_t r) const {
         const std::string words = identifier(graph_.short_text(plan_.readings[r].node), "");
-        if (!words.empty() && words.size() <= kLongestPartName) return words;
+        if (!words.empty()) return words;
         return monitor_of_[r] == nullptr ? "part" : monitor_of_[r]->name + "_part";
     }
 
-    /// The first monitor whose reading each reading is a part of. Operands stand before what they
-    /// are operands of.
+    /// Returns, per reading, the first monitor that contains it. Operands come before the readings
+    /// that combine them.
     std::vector<const plan::Monitor*> first_monitors() const {
         std::vector<std::size_t> first(plan_.readings.size(), plan_.monitors.size());
         for (std::size_t m = plan_.monitors.size(); m-- > 0;)
@@ -280,18 +278,33 @@ private:
         return result;
     }
 
-    /// The members of a reading, and the locals that work on them.
+    /// Names the members of a reading, and its locals.
     void name_state(const plan::Reading& reading, const std::string& name,
                     Names::OfReading& names) {
         if (reading.kind == plan::Reading::Kind::pending) {
             name_pending(reading.pending, name, names);
         } else {
-            for (const plan::Member& kept : plan::members_of(reading))
-                names.members.push_back(member(members_, name + kept.suffix));
+            name_registers(plan::members_of(reading), name, names);
             for (const std::string& suffix : reading.straight.locals)
                 names.locals.push_back(local(judge_, name + suffix));
         }
         if (plan::table_of(reading) != nullptr) name_table(name, names);
+    }
+
+    /// Names registers. Those with the same suffix are an array.
+    void name_registers(const std::vector<plan::Member>& kept, const std::string& name,
+                        Names::OfReading& names) {
+        std::map<std::string, std::vector<std::size_t>> by_suffix;
+        for (std::size_t i = 0; i < kept.size(); ++i) by_suffix[kept[i].suffix].push_back(i);
+        names.members.resize(kept.size());
+        names.elements.resize(kept.size(), plan::kNone);
+        for (const auto& [suffix, indices] : by_suffix) {
+            const std::string claimed = member(members_, name + suffix);
+            for (std::uint32_t n = 0; n < indices.size(); ++n) {
+                names.members[indices[n]] = claimed;
+                if (indices.size() > 1) names.elements[indices[n]] = n;
+            }
+        }
     }
 
     void name_table(const std::string& name, Names::OfReading& names) {
@@ -304,11 +317,10 @@ private:
                       Names::OfReading& names) {
         for (const plan::Pending::Part& part : pending.parts) {
             const std::string words = identifier(graph_.short_text(part.node), "");
-            const bool few = !words.empty() && words.size() <= kLongestPartName;
-            names.parts.push_back(local(judge_, few ? words + "_last" : name + "_last"));
+            names.parts.push_back(local(judge_, (words.empty() ? name : words) + "_last"));
             if (part.leaf == plan::kNone) continue;
             names.members.push_back(
-                member(members_, fmt::format("{}_last_{}", name, few ? words : "value")));
+                member(members_, fmt::format("{}_last_{}", name, words.empty() ? "value" : words)));
         }
         names.count = local(judge_, name + "_count");
         names.members.push_back(member(members_, name));
@@ -351,13 +363,13 @@ private:
             name_projection(model_.points[p].projection);
     }
 
-    /// "anchors", or "anchors_in_Q_z": rows that were projected when the spec was compiled.
+    /// Returns "anchors", or "anchors_in_Q_z" for rows that were projected at compile time.
     std::string array_name(const check::Target& target) const {
         if (target.source == check::kNone) return target.name;
         return target.name + "_in_" + identifier(model_.points[target.space].text, "projected");
     }
 
-    /// In a namespace of their own.
+    /// Names a projection, which has its own namespace.
     void name_projection(check::Index index) {
         if (names_.matrix_array.count(index) != 0) return;
         const check::Projection& projection = model_.projections[index];
@@ -374,9 +386,10 @@ private:
     bool on_demand_;
     Scope judge_;
     Scope measure_scope_;
-    Scope& measure_;  ///< a Boolean monitor is one function: all its locals differ
+    Scope& measure_;  ///< a Boolean monitor has one function with all locals
     Scope atoms_;
-    Scope members_;
+    Scope members_{{"answers_", "deciding_", "finishes_", "incomplete_", "measured_", "numbers_",
+                    "position_", "recorder_", "rows_"}};  // reserved for the class itself
     Scope constants_;
     Scope projections_;
 };

@@ -1,16 +1,14 @@
-// The names of generated code: all of them are made here.
-// Takes: the plan. Gives: a name for everything that the code mentions. Keeps true: names come from
-// the spec, are legal C++, differ from each other within their scope, and are the same on every
-// run. None is a name that the class has of itself, or that its code reads. For that there is one
-// rule:
-// - a name of the spec stands alone only as a field of Inputs, Verdicts or Atoms and in the
-//   namespace targets, where nothing else is declared; in names of the spec every underscore stands
-//   between two other characters;
-// - members that are named after the spec end in an underscore; locals are a name or words of a
-//   formula with an underscore and more behind it; functions are distance_P, threshold_P and the
-//   like, which no local is called;
-// - what the class calls something of its own has no underscore: position, now, kStateBytes. (What
-//   has one is of no such form: missing_steps(), uint32_t, macros.)
+// Names of generated code, all of which are made here from the plan. They come from the spec, are
+// legal C++, differ within their scope, and are the same on every run. No name made from the spec
+// collides with another name of the class, by these rules:
+// - a name of the spec is used unchanged only as a field of Inputs, Verdicts or Atoms and in the
+//   namespace targets, which declare nothing else; it has underscores only between other
+//   characters;
+// - data members end in an underscore, and the class's own are reserved;
+// - locals are a name or words of a formula with an underscore and more behind it; functions are
+//   distance_P, threshold_P and the like, which no local is called;
+// - other names of the class contain no underscore (now, missing, kStateBytes), but for some that
+//   have none of these forms (missing_steps(), uint32_t, macros).
 #pragma once
 
 #include <map>
@@ -24,57 +22,62 @@
 namespace etlc::emit {
 
 struct Names {
-    /// In measure(): this step's sample; of an embedding, a pointer; none for what is read in
-    /// place.
+    /// In measure(): this step's sample, of an embedding a pointer. Inputs read in place have none.
     std::map<check::Index, std::string> input_local;
-    /// In measure(): of an embedding read in place, where several distances need its length.
+    /// In measure(): the direction of an embedding read in place, if several distances need its
+    /// length.
     std::map<check::Index, std::string> direction_local;
     /// In measure(): widened elements, or a flag as a word.
     std::map<check::Index, std::string> input_buffer;
-    std::map<check::Index, std::string> distance_local;  ///< in measure(): what the kernel gave
+    std::map<check::Index, std::string> distance_local;  ///< in measure(): the result of the kernel
     /// In measure(): delta of a predicate without telemetry.
     std::map<check::Index, std::string> predicate_local;
-    /// Field of Atoms; of a Boolean class, a local.
+    /// Field of Atoms, or a local of a Boolean class.
     std::map<check::Index, std::string> predicate_atom;
-    /// Function of a class of robustness: all that the predicate can be.
+    /// Function that returns the range of the predicate; none in a Boolean class.
     std::map<check::Index, std::string> predicate_unseen;
     std::map<check::Index, std::string> flag_atom;         ///< as predicate_atom
     std::map<check::Index, std::string> predicate_member;  ///< telemetry, of named predicates
-    /// Of named predicates that are more than a distance: for each distance that they read, the
-    /// nearest row, and the function that gives it.
+    /// For each distance that a named predicate reads in an expression: the member that holds the
+    /// nearest row, and the function that returns it.
     struct Nearest {
         std::string member;
         std::string function;
     };
     std::map<std::pair<check::Index, check::Index>, Nearest> nearest;
-    /// Of adaptive predicates: the threshold as it is now.
+    /// Of adaptive predicates: the current threshold.
     std::map<check::Index, std::string> threshold_member;
-    std::map<check::Index, std::string> adaptation_constant;  ///< and how it moves
+    std::map<check::Index, std::string> adaptation_constant;  ///< and the constants of its
+                                                              ///< adaptation
     std::map<check::Index, std::string> hold_member;
     struct OfStream {
         std::string local;   ///< empty: an atom or a constant
-        std::string member;  ///< empty: it keeps nothing
+        std::string member;  ///< empty: no state
     };
     std::vector<OfStream> streams;
     struct OfReading {
         std::string local;
         std::vector<std::string> members;  ///< as plan::members_of lists them
-        std::vector<std::string> locals;   ///< of straight-line code, likewise
+        /// Of straight-line code, likewise: index in the array of that name; kNone: not in an
+        /// array.
+        std::vector<std::uint32_t> elements;
+        std::vector<std::string> locals;   ///< of straight-line code
         std::string guards, weak, strong;  ///< locals of a machine as a table; else empty
-        std::vector<std::string> parts;    ///< locals of what is pending: at the last positions
-        std::string count;                 ///< local: how many of these there are
+        std::vector<std::string> parts;    ///< locals of a pending reading: values at the last
+                                           ///< positions
+        std::string count;                 ///< local: number of these positions
     };
     std::vector<OfReading> readings;
     /// Per monitor of the plan: a prefix monitor's last verdict.
     std::map<std::size_t, std::string> verdict_member;
     std::vector<std::string> let_member;  ///< per let of the plan: its verdict
-    /// Per monitor that restarts: steps since it began, where some part of it asks.
+    /// Per monitor that restarts: steps since its restart, if its formula has bounds.
     std::map<std::size_t, std::string> position_member;
-    /// Per monitor that restarts after final verdicts: how many there were of each kind.
+    /// Per monitor that restarts after final verdicts: the number of each kind.
     std::map<std::size_t, std::string> alarms_member;
     std::map<std::size_t, std::string> fulfilled_member;
-    /// Per prefix monitor of a Boolean class: can still change. A repeating one always can, but
-    /// after the trace.
+    /// Per prefix monitor of a Boolean class: whether its verdict can still change. A repeating
+    /// monitor is open until the trace ends.
     std::map<std::size_t, std::string> open_local;
     /// Per distance whose stored set is searched.
     std::map<check::Index, std::string> search_member;
@@ -82,12 +85,12 @@ struct Names {
     /// Per distance: its rows in float16 or int8.
     std::map<check::Index, std::string> narrow_array;
     std::map<check::Index, std::string> weight_array;  ///< per distance
-    /// Per projected point: where its elements lie, and the array that they lie in.
+    /// Per projected point: the pointer to its elements, and their array.
     std::map<check::Index, std::string> point_local;
     std::map<check::Index, std::string> point_buffer;
-    /// Of a retargetable class: per number in an expression.
+    /// Per number in an expression of a retargetable class.
     std::map<const check::Expr*, std::string> number_constant;
-    /// Per projection that such a point goes through; the offset where it has one.
+    /// Per projection of such a point; the offset if it has one.
     std::map<check::Index, std::string> matrix_array;
     std::map<check::Index, std::string> offset_array;
 };

@@ -1,5 +1,5 @@
-// Readings over formulas whose windows still reach past the prefix: evaluated again at the last
-// positions.
+// Prints readings of formulas whose windows extend beyond the prefix, which are evaluated again at
+// the last positions.
 #include "emit/context.hpp"
 
 namespace etlc::emit {
@@ -9,7 +9,7 @@ namespace {
 using plan::kNone;
 using plan::Pending;
 
-/// A part's readings at the last positions: computed from its operands, oldest position first.
+/// Prints the readings of a part at the last positions, oldest first, from those of its operands.
 void print_part(Printer& out, const Context& context, const Pending& pending,
                 const Names::OfReading& names, std::size_t index, const std::string& leaf) {
     const Pending::Part& part = pending.parts[index];
@@ -40,7 +40,7 @@ void print_part(Printer& out, const Context& context, const Pending& pending,
                               max ? context.high(part.unseen) : context.low(part.unseen)));
 }
 
-/// Steps since the reading began.
+/// Returns code for the number of steps since the reading began.
 const std::string& position(const Context& context, std::uint32_t r) {
     return context.position(context.plan.readings[r].begins_with);
 }
@@ -94,11 +94,11 @@ void print_machine(Printer& out, const Context& context, std::uint32_t r) {
 void print_pending(Printer& out, const Context& context, std::uint32_t r) {
     const Pending& pending = context.plan.readings[r].pending;
     const Names::OfReading& names = context.names.readings[r];
-    out.line("// evaluated again at the last {} positions, whose windows reach past this step",
+    out.line("// evaluated again at the last {} positions, whose windows extend beyond this step",
              pending.horizon + 1);
     out.line("const uint32_t {0} = {3} < {1} ? {3} + 1 : {2};", names.count, pending.horizon,
              pending.horizon + 1, position(context, r));
-    auto leaf = names.members.begin();  // the parts that are leaves come first among the members
+    auto leaf = names.members.begin();  // members of leaves come first
     for (std::size_t i = 0; i < pending.parts.size(); ++i) {
         print_part(out, context, pending, names, i, *leaf);
         if (pending.parts[i].leaf != kNone) ++leaf;

@@ -1,4 +1,4 @@
-// The readings of judge(): what the prefix says about position 0.
+// Prints the readings of judge(): robustness and bounds at position 0, given the prefix.
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ using plan::Term;
 
 // ---- straight-line code
 
-/// Target elements that a term may have to measure.
+/// Returns the number of target elements that a term may have to measure.
 std::uint64_t work_of(const Context& context, const Term& term) {
     std::uint64_t sum = term.kind == Term::Kind::stream ? context.work(term.index) : 0;
     for (const Term& operand : term.operands) sum += work_of(context, operand);
@@ -29,8 +29,38 @@ bool is_lazy(const Context& context, const Term& term) {
                        [&](const Term& operand) { return is_lazy(context, operand); });
 }
 
-/// The term in C++: of the reading r, whole or at one end.
-std::string text_of(const Context& context, std::uint32_t r, const Term& term, End end) {
+/// Returns code for a register of the reading. With `seen_from`, array elements are relative to
+/// that element, whose index is `i`.
+std::string register_text(const Names::OfReading& names, std::uint32_t index,
+                          std::uint32_t seen_from = plan::kNone) {
+    const std::string& name = names.members[index];
+    const std::uint32_t element = names.elements[index];
+    if (element == plan::kNone) return name;
+    if (seen_from == plan::kNone) return fmt::format("{}[{}]", name, element);
+    if (element == seen_from) return name + "[i]";
+    return element < seen_from ? fmt::format("{}[i - {}]", name, seen_from - element)
+                               : fmt::format("{}[i + {}]", name, element - seen_from);
+}
+
+/// Counts the terms from `begin` on that are consecutive elements of an array.
+std::size_t neighbours(const Names::OfReading& names, const std::vector<Term>& terms,
+                       std::size_t begin) {
+    std::size_t end = begin;
+    const auto follows = [&] {
+        if (terms[end].kind != Term::Kind::reg || names.elements[terms[end].index] == plan::kNone)
+            return false;
+        return end == begin ||
+               (names.members[terms[end].index] == names.members[terms[end - 1].index] &&
+                names.elements[terms[end].index] == names.elements[terms[end - 1].index] + 1);
+    };
+    while (end < terms.size() && follows()) ++end;
+    return end - begin;
+}
+
+/// Returns code for a term of the reading r, or for one end of it.
+std::string text_of(const Context& context, std::uint32_t r, const Term& term, End end,
+                    std::uint32_t seen_from = plan::kNone) {
+    constexpr std::size_t kMany = 4;  // elements that are combined in one call
     const Names::OfReading& names = context.names.readings[r];
     const std::string part = end == End::both ? "" : end == End::low ? ".low" : ".high";
     switch (term.kind) {
@@ -38,13 +68,13 @@ std::string text_of(const Context& context, std::uint32_t r, const Term& term, E
             if (end == End::both) return context.literal(term.value);
             return context.bound(end == End::low ? term.value.low : term.value.high);
         case Term::Kind::stream: return context.value(term.index) + part;
-        case Term::Kind::reg: return names.members[term.index] + part;
+        case Term::Kind::reg: return register_text(names, term.index, seen_from) + part;
         case Term::Kind::local: return names.locals[term.index] + part;
         case Term::Kind::before:
             return fmt::format("{} < {} ? {} : {}",
                                context.position(context.plan.readings[r].begins_with), term.index,
-                               text_of(context, r, term.operands[0], end),
-                               text_of(context, r, term.operands[1], end));
+                               text_of(context, r, term.operands[0], end, seen_from),
+                               text_of(context, r, term.operands[1], end, seen_from));
         case Term::Kind::extreme: break;
     }
     std::vector<Term> operands = term.operands;
@@ -52,7 +82,19 @@ std::string text_of(const Context& context, std::uint32_t r, const Term& term, E
         return work_of(context, a) < work_of(context, b);
     });
     std::vector<std::string> texts;
-    for (const Term& operand : operands) texts.push_back(text_of(context, r, operand, end));
+    for (std::size_t i = 0; i < operands.size();) {
+        const std::size_t count = neighbours(names, operands, i);
+        if (count < kMany) {
+            texts.push_back(text_of(context, r, operands[i], end, seen_from));
+            ++i;
+            continue;
+        }
+        const std::uint32_t first = operands[i].index;
+        texts.push_back(fmt::format("etlmon::{}<{}, {}>({}){}", term.max ? "max_in" : "min_in",
+                                    names.elements[first], names.elements[first] + count - 1,
+                                    names.members[first], part));
+        i += count;
+    }
     return call(term.max ? "max_of" : "min_of", texts, is_lazy(context, term));
 }
 
@@ -68,20 +110,79 @@ void print_assignment(Printer& out, const Context& context, std::uint32_t r,
         assignment.positions == ir::Interval{}
             ? ""
             : open_condition(assignment.positions, context.position(reading.begins_with));
-    const std::string update = fmt::format("{} = {};", names.members[assignment.index], value);
+    const std::string update =
+        fmt::format("{} = {};", register_text(names, assignment.index), value);
     const std::string held =
         plan::comment_of(plan::members_of(reading)[assignment.index], context.graph);
-    // What stands above the reading's code is not said again.
+    // The formula above the reading's code is not repeated.
     const bool said = held == context.graph.text(reading.node);
     print_with_comment(out,
                        condition.empty() ? update : fmt::format("if ({}) {}", condition, update),
                        said ? "" : held);
 }
 
-void print_straight(Printer& out, const Context& context, std::uint32_t r) {
+/// Returns the array element that is assigned at every position; kNone for other assignments.
+std::uint32_t assigned_element(const Names::OfReading& names, const plan::Assignment& assignment) {
+    const bool always = assignment.positions == ir::Interval{};
+    return always && assignment.target == Term::Kind::reg ? names.elements[assignment.index]
+                                                          : plan::kNone;
+}
+
+/// Counts the assignments from `begin` on that do the same for consecutive elements of an array.
+std::size_t alike(const Context& context, std::uint32_t r, std::size_t begin) {
+    const Names::OfReading& names = context.names.readings[r];
+    const std::vector<plan::Assignment>& list = context.plan.readings[r].straight.assignments;
+    const std::uint32_t first = assigned_element(names, list[begin]);
+    if (first == plan::kNone) return 1;
+    const std::string text = text_of(context, r, list[begin].value, End::both, first);
+    std::uint32_t step = 0;
+    std::size_t end = begin + 1;
+    for (; end < list.size(); ++end) {
+        const std::uint32_t element = assigned_element(names, list[end]);
+        if (element == plan::kNone) break;
+        const std::uint32_t moved = element - assigned_element(names, list[end - 1]);
+        if (end == begin + 1) step = moved;
+        if (moved != step || (step != 1 && step != UINT32_MAX) ||
+            names.members[list[end].index] != names.members[list[begin].index] ||
+            text_of(context, r, list[end].value, End::both, element) != text)
+            break;
+    }
+    return end - begin;
+}
+
+/// Prints such assignments as a loop.
+void print_loop(Printer& out, const Context& context, std::uint32_t r, std::size_t begin,
+                std::size_t count) {
     const plan::Straight& code = context.plan.readings[r].straight;
-    for (const plan::Assignment& assignment : code.assignments)
-        print_assignment(out, context, r, assignment);
+    const Names::OfReading& names = context.names.readings[r];
+    const auto& [first, last] =
+        std::minmax(code.assignments[begin].index, code.assignments[begin + count - 1].index);
+    const bool upwards = code.assignments[begin].index == first;
+    print_comment(out, "//",
+                  comment_of_array(context, code.registers[first], code.registers[last], true), 4);
+    out.open(upwards ? fmt::format("ETLMON_UNROLL for (int i = {}; i <= {}; ++i) {{",
+                                   names.elements[first], names.elements[last])
+                     : fmt::format("ETLMON_UNROLL for (int i = {}; i >= {}; --i) {{",
+                                   names.elements[last], names.elements[first]));
+    const std::uint32_t element = names.elements[code.assignments[begin].index];
+    print_wrapped(
+        out, fmt::format("{}[i] = {};", names.members[first],
+                         text_of(context, r, code.assignments[begin].value, End::both, element)));
+    out.close();
+}
+
+void print_straight(Printer& out, const Context& context, std::uint32_t r) {
+    constexpr std::size_t kMany = 3;  // assignments that become a loop
+    const plan::Straight& code = context.plan.readings[r].straight;
+    for (std::size_t i = 0; i < code.assignments.size();) {
+        const std::size_t count = alike(context, r, i);
+        if (count >= kMany) {
+            print_loop(out, context, r, i, count);
+            i += count;
+        } else {
+            print_assignment(out, context, r, code.assignments[i++]);
+        }
+    }
     const std::string declaration = reading_declaration(context, r);
     const std::string rho = text_of(context, r, code.rho, End::both);
     if (code.lower == code.rho && code.upper == code.rho)
@@ -184,8 +285,8 @@ void print_tables(Printer& out, const Context& context) {
     const std::vector<Reading>& readings = context.plan.readings;
     if (std::none_of(readings.begin(), readings.end(), plan::table_of)) return;
     print_doc(out,
-              "State machines: the transitions into each state, where they end, what each state "
-              "owes.");
+              "State machines: the transitions into each state, where each list ends, and the "
+              "pending obligations of each state.");
     out.line("namespace tables {");
     for (std::uint32_t r = 0; r < readings.size(); ++r)
         if (plan::table_of(readings[r]) != nullptr) print_table(out, context, r);

@@ -1,4 +1,4 @@
-// --emit report: the figures of the head of the file, and those of its parts.
+// Prints --emit report: the figures of the head of the file, and those of each part.
 #include "check/formulas/horizons.hpp"
 #include "diag/diag.hpp"
 #include "emit/context.hpp"
@@ -23,7 +23,7 @@ std::string unknown_for(const plan::Monitor& monitor, const check::Gap& gap) {
     return "for good";
 }
 
-/// How long a missing sample may leave each verdict unknown.
+/// Prints how long a missing sample may leave each verdict unknown.
 void print_gaps(Printer& out, const plan::Plan& plan) {
     const std::vector<check::Gap> gaps = check::gaps(*plan.model);
     std::vector<Row> rows{{"monitor", "a missing sample of", "may leave it unknown"}};

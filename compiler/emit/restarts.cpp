@@ -1,4 +1,4 @@
-// Monitors that restart: what the program calls, and what a step does about it.
+// Prints restart functions, and the end of a step of monitors that restart.
 #include "emit/context.hpp"
 
 namespace etlc::emit {
@@ -7,20 +7,20 @@ void print_restarts(Printer& out, const Context& context, const std::vector<Memb
     for (std::uint32_t m = 0; m < context.plan.monitors.size(); ++m) {
         const plan::Monitor& monitor = context.plan.monitors[m];
         if (monitor.restarts == check::Restarts::never) continue;
-        print_doc(out, fmt::format("From the next step on, {} is about that step; past operators "
-                                   "still see the whole trace.",
+        print_doc(out, fmt::format("Restarts {}: the next step is its first. Past operators still "
+                                   "see the whole trace.",
                                    monitor.name));
         out.open(fmt::format("constexpr void restart_{}() noexcept {{", monitor.name));
         for (const Member& member : all)
             if (member.begins_with == m) out.line(member.reset);
-        // What a repeating one has answered is returned before it is asked again.
+        // A repeating monitor returns its verdict before it restarts.
         if (context.on_demand && monitor.restarts == check::Restarts::on_request)
-            out.line("answers.{} = {}();", monitor.name, context.spelling.verdict);
-        if (context.plan.recorder) out.line("recorder.restart({});", m);
+            out.line("answers_.{} = {}();", monitor.name, context.spelling.verdict);
+        if (context.plan.recorder) out.line("recorder_.restart({});", m);
         out.close();
         const auto alarms = context.names.alarms_member.find(m);
         if (alarms != context.names.alarms_member.end()) {
-            print_doc(out, "How often it raised an alarm, and how often it was fulfilled.");
+            print_doc(out, "The number of times it raised an alarm, and was fulfilled.");
             out.line("uint32_t alarms_{}() const noexcept {{ return {}; }}", monitor.name,
                      alarms->second);
             out.line("uint32_t fulfilled_{}() const noexcept {{ return {}; }}", monitor.name,
@@ -32,16 +32,16 @@ void print_restarts(Printer& out, const Context& context, const std::vector<Memb
 
 namespace {
 
-/// After a final verdict the next step is the first.
+/// Prints the restart after a final verdict.
 void print_next_cycle(Printer& out, const Context& context, std::size_t m,
                       const std::string& verdict) {
     const auto open = context.names.open_local.find(m);
     const std::string while_open = open != context.names.open_local.end() ? open->second + " && "
-                                   : context.plan.has_sliding             ? "finishes == 0 && "
+                                   : context.plan.has_sliding             ? "finishes_ == 0 && "
                                                                           : "";
     out.gap();
     print_comment(out, "//",
-                  fmt::format("after a final verdict {} is about the next step",
+                  fmt::format("after a final verdict, {} restarts with the next step",
                               context.plan.monitors[m].name));
     out.open(fmt::format("if ({}{}.final()) {{", while_open, verdict));
     out.line("uint32_t& count = {}.alarm() ? {} : {};", verdict, context.names.alarms_member.at(m),

@@ -1,5 +1,4 @@
-// A retargetable class: where its numbers lie in the parameters that it is given, and the calls
-// that give it others.
+// Prints the parameters of a retargetable class: their offsets, and the calls that replace them.
 #include "diag/diag.hpp"
 #include "emit/context.hpp"
 #include "plan/targets/kernels.hpp"
@@ -10,17 +9,19 @@ namespace {
 
 using check::Index;
 using plan::Parameter;
-using Kind = Parameter::Kind;
 
-/// The namespace that names its place, and the name there.
+/// Returns the namespace and the name of a parameter's offset.
 std::pair<std::string_view, std::string> name_of(const Context& context, const Parameter& one) {
     switch (one.kind) {
-        case Kind::threshold: return {"thresholds", context.names.predicate_atom.at(one.index)};
-        case Kind::number: return {"constants", context.names.number_constant.at(one.number)};
-        case Kind::rows: return {"targets", context.names.target_array.at(one.index)};
-        case Kind::weights: return {"targets", context.names.weight_array.at(one.index)};
-        case Kind::matrix: return {"projections", context.names.matrix_array.at(one.index)};
-        case Kind::offset: break;
+        case Parameter::Kind::threshold:
+            return {"thresholds", context.names.predicate_atom.at(one.index)};
+        case Parameter::Kind::number:
+            return {"constants", context.names.number_constant.at(one.number)};
+        case Parameter::Kind::rows: return {"targets", context.names.target_array.at(one.index)};
+        case Parameter::Kind::weights: return {"targets", context.names.weight_array.at(one.index)};
+        case Parameter::Kind::matrix:
+            return {"projections", context.names.matrix_array.at(one.index)};
+        case Parameter::Kind::offset: break;
     }
     return {"projections", context.names.offset_array.at(one.index)};
 }
@@ -30,22 +31,23 @@ std::string place_of(const Context& context, const Parameter& one) {
     return fmt::format("{}::{}", space, name);
 }
 
-/// "8 rows of 32 elements, scaled to length 1"
+/// Returns "8 rows of 32 elements, scaled to length 1".
 std::string words_for(const Context& context, const Parameter& one) {
     const check::Model& model = context.model;
     const std::string rows = fmt::format("{} of {}", diag::counted(one.count / one.width, "row"),
                                          diag::counted(one.width, "element"));
     switch (one.kind) {
-        case Kind::threshold: return "";
-        case Kind::number: return "in the expression of " + model.predicates[one.index].name;
-        case Kind::rows:
+        case Parameter::Kind::threshold: return "";
+        case Parameter::Kind::number:
+            return "in the expression of " + model.predicates[one.index].name;
+        case Parameter::Kind::rows:
             return rows +
                    (plan::rows_as_given(model.distances[one.index]) ? "" : ", scaled to length 1");
-        case Kind::weights: return rows + ", of mahalanobis";
-        case Kind::matrix: return rows;
-        case Kind::offset: break;
+        case Parameter::Kind::weights: return rows + ", of mahalanobis";
+        case Parameter::Kind::matrix: return rows;
+        case Parameter::Kind::offset: break;
     }
-    return fmt::format("what {} subtracts first", model.projections[one.index].name);
+    return fmt::format("offset m of {}", model.projections[one.index].name);
 }
 
 std::string_view word_for(etlmon::ParamsPart::Rule rule) {
@@ -75,16 +77,17 @@ void print_places(Printer& out, const Context& context, std::string_view space,
 }
 
 void print_layout(Printer& out, const Context& context) {
-    print_doc(out,
-              "What a block of parameters must be: of this shape, which is that of all below but "
-              "its numbers, and made with this encoder, 0 where the spec has none.");
+    print_doc(
+        out,
+        "The layout of a block of parameters. kShape is a hash of the class without its numbers; "
+        "kEncoder is a hash of the encoder, 0 if the spec has none. A block must have both.");
     out.open("struct Layout {");
     out.line("static constexpr uint64_t kShape = 0x{:016x}u;", context.shape);
     out.line("static constexpr uint64_t kEncoder = 0x{:016x}u;",
              context.shape == 0 ? 0 : plan::encoder_hash(context.model));
     out.line("static constexpr size_t kSize = {};  ///< in bytes",
              plan::block_bytes(context.parameters));
-    print_doc(out, "Where numbers lie, how many, how many a row, and what must hold for each.");
+    print_doc(out, "Offset, count, row length and rule of each part.");
     if (context.parameters.empty()) {
         out.line(
             "static constexpr etlmon::ParamsPart kParts[] = {{0, 0, 1, "
@@ -101,42 +104,44 @@ void print_layout(Printer& out, const Context& context) {
 
 }  // namespace
 
-std::string Context::parameter(Kind kind, Index index) const {
+std::string Context::parameter(Parameter::Kind kind, Index index) const {
     for (const Parameter& one : parameters) {
-        const bool is_same_array = kind == Kind::rows && one.kind == Kind::rows &&
+        const bool is_same_array = kind == Parameter::Kind::rows &&
+                                   one.kind == Parameter::Kind::rows &&
                                    names.target_array.at(one.index) == names.target_array.at(index);
         if (one.kind == kind && (one.index == index || is_same_array))
-            return kind == Kind::threshold ? fmt::format("numbers[{}]", place_of(*this, one))
-                                           : "numbers + " + place_of(*this, one);
+            return kind == Parameter::Kind::threshold
+                       ? fmt::format("numbers_[{}]", place_of(*this, one))
+                       : "numbers_ + " + place_of(*this, one);
     }
     return "";
 }
 
 std::string Context::parameter(const check::Expr& number) const {
-    return fmt::format("numbers[constants::{}]", names.number_constant.at(&number));
+    return fmt::format("numbers_[constants::{}]", names.number_constant.at(&number));
 }
 
 std::string about_parameters(const plan::Plan& plan, bool is_calibrated) {
     return fmt::format(
         "Retargetable: target sets, thresholds and the numbers of projections, metrics and "
-        "expressions lie in parameters of {} bytes. A monitor holds a pointer to them, besides "
-        "state B, and may exchange them: above are those that the class was made with, and lower "
-        "and upper hold for any.{}",
+        "expressions are parameters, in a block of {} bytes. Besides state B, a monitor holds a "
+        "pointer to its block, which may be replaced; above are the parameters of the spec. lower "
+        "and upper hold for any parameters.{}",
         plan::block_bytes(plan::parameters(plan)),
-        is_calibrated ? " A guarantee is one of the parameters that it came with." : "");
+        is_calibrated ? " A guarantee holds for the parameters that it was computed with." : "");
 }
 
 void print_parameters(Printer& out, const Context& context) {
     if (!context.retargetable()) return;
-    const std::string from = "in floats from the first byte of the parameters";
-    print_places(out, context, "thresholds", "Where thresholds lie, " + from + ".");
-    print_places(out, context, "constants", "Where the numbers of expressions lie, likewise.");
-    print_places(out, context, "targets", "Where target sets begin, a row after the other.");
-    print_places(out, context, "projections", "Where projections A (z - m) begin: A, and m.");
+    const std::string from = "in floats from the start of the parameters";
+    print_places(out, context, "thresholds", "Offsets of thresholds, " + from + ".");
+    print_places(out, context, "constants", "Offsets of the numbers in expressions, likewise.");
+    print_places(out, context, "targets", "Offsets of target sets, stored row by row.");
+    print_places(out, context, "projections", "Offsets of projections A (z - m): of A and of m.");
     print_layout(out, context);
     print_doc(out,
-              "A block of parameters, in flash or in memory, at a multiple of 64 bytes: all of it "
-              "is read once, to be checked. It must stay as it is while a monitor has it.");
+              "A block of parameters, in flash or in memory, aligned to 64 bytes. The constructor "
+              "reads all of it once to check it. It must not change while a monitor uses it.");
     out.line("using Params = etlmon::Params<Layout>;");
     out.line();
 }
@@ -144,29 +149,30 @@ void print_parameters(Printer& out, const Context& context) {
 void print_retarget_interface(Printer& out, const Context& context) {
     if (!context.retargetable()) return;
     print_doc(out,
-              "Without parameters: every predicate and bool input is unknown at every step, until "
-              "retarget() gives some.");
-    out.line("constexpr Monitor() noexcept : numbers(nullptr) { reset(); }");
-    print_doc(out, "With these, where they are ready.");
+              "Has no parameters: every predicate and bool input is unknown at every step, until "
+              "retarget() sets some.");
+    out.line("constexpr Monitor() noexcept : numbers_(nullptr) { reset(); }");
+    print_doc(out, "Uses the parameters if they are ready.");
     out.line(
-        "constexpr explicit Monitor(const Params& params) noexcept : numbers(params.numbers()) { "
+        "constexpr explicit Monitor(const Params& params) noexcept : numbers_(params.numbers()) { "
         "reset(); }");
-    print_doc(out, "Whether this monitor has parameters.");
-    out.line("bool ready() const noexcept { return numbers != nullptr; }");
-    print_doc(out, "What they were made from.");
-    out.line("etlmon::MadeFrom origin() const noexcept { return etlmon::made_from(numbers); }");
+    print_doc(out, "Returns whether this monitor has parameters.");
+    out.line("bool ready() const noexcept { return numbers_ != nullptr; }");
+    print_doc(out, "Returns the hashes of what the parameters were made from.");
+    out.line("etlmon::MadeFrom origin() const noexcept { return etlmon::made_from(numbers_); }");
     out.line();
-    print_doc(out,
-              "Between steps: other parameters from the next one on. Where they are not ready "
-              "nothing changes, and the answer says why. Past::kept: verdicts go on, and steps "
-              "that were measured count as what was measured then. Past::forgotten: reset().");
+    print_doc(
+        out,
+        "Replaces the parameters, from the next step on; call it between steps. If they are not "
+        "ready, nothing changes and the result says why. Past::kept: verdicts go on, and steps "
+        "keep the values measured with the old parameters. Past::forgotten: calls reset().");
     out.open("etlmon::ParamsState retarget(const Params& params, etlmon::Past past) noexcept {");
     print_wrapped(out, "if (!params.ready()) return params.state();");
-    out.line("numbers = params.numbers();");
+    out.line("numbers_ = params.numbers();");
     print_wrapped(out, "if (past == etlmon::Past::forgotten) reset();");
     out.line("return params.state();");
     out.close();
-    print_doc(out, "The same from the bytes of a block.");
+    print_doc(out, "Replaces the parameters by those in the bytes of a block.");
     out.open(
         "etlmon::ParamsState retarget(const uint8_t* bytes, size_t size, etlmon::Past past) "
         "noexcept {");
@@ -177,12 +183,12 @@ void print_retarget_interface(Printer& out, const Context& context) {
 
 void print_unknown_atoms(Printer& out, const Context& context) {
     if (!context.retargetable()) return;
-    print_doc(out, "A step without parameters.");
+    print_doc(out, "Returns the atoms of a step without parameters.");
     out.open("Atoms unknown() noexcept {");
     out.line("Atoms now;");
     for (const auto* atoms : {&context.names.predicate_atom, &context.names.flag_atom})
         for (const auto& [index, name] : *atoms) out.line("now.{} = unseen();", name);
-    print_wrapped(out, "if (incomplete != UINT32_MAX) ++incomplete;");
+    print_wrapped(out, "if (incomplete_ != UINT32_MAX) ++incomplete_;");
     out.line("return now;");
     out.close();
     out.line();
@@ -191,8 +197,8 @@ void print_unknown_atoms(Printer& out, const Context& context) {
 void print_shadow(Printer& out, const Context& context) {
     if (!context.retargetable()) return;
     print_doc(out,
-              "Two of them side by side: one answers, the other has parameters that are on trial, "
-              "and what differs is counted (etlmon/params/shadow.hpp).");
+              "Two monitors side by side: one answers, the other tries out new parameters, and "
+              "differences are counted (etlmon/params/shadow.hpp).");
     out.line("using Shadow = etlmon::Shadow<Monitor, Inputs, Verdicts, {}>;",
              context.plan.monitors.size());
     out.line();

@@ -5,7 +5,7 @@ namespace etlc::emit {
 const Spelling& spelling(check::Values values) {
     static const Spelling kRobustness{
         .value = "etlmon::Value",
-        .value_meaning = "a robustness; its ends differ where a sample is missing",
+        .value_meaning = "a robustness; low and high differ where a sample is missing",
         .atom = "Value",
         .key = "etlmon::Key",
         .reading = "etlmon::Reading",
@@ -24,7 +24,7 @@ const Spelling& spelling(check::Values values) {
     };
     static const Spelling kTruth{
         .value = "etlmon::Truth",
-        .value_meaning = "surely true, and perhaps true",
+        .value_meaning = "two bits: surely true, possibly true",
         .atom = "Value",
         .key = "bool",
         .reading = "etlmon::BasicReading<Value>",
@@ -43,7 +43,7 @@ const Spelling& spelling(check::Values values) {
     };
     static const Spelling kSourced{
         .value = "etlmon::Sourced",
-        .value_meaning = "a robustness and its sample; the ends differ where one is missing",
+        .value_meaning = "a robustness with its sample; low and high differ where one is missing",
         .atom = "etlmon::Value",
         .key = "etlmon::SourcedKey",
         .reading = "etlmon::BasicReading<Value>",

@@ -1,7 +1,5 @@
-// Types of values in the words of C++: a row each.
-// Takes: what the user chose. Gives: how types, constants and headers are called. Keeps true: the
-// emitter asks for words here, and plan::ValueType when a value is found out; nothing else of it
-// knows which types there are.
+// The types of values in C++: the spelling of types, constants and runtime headers, one row per
+// type. Only this table and plan::ValueType tell the types apart.
 #pragma once
 
 #include <string>
@@ -14,18 +12,18 @@ struct Spelling {
     // Types.
     std::string value;
     std::string value_meaning;
-    std::string atom;  ///< of a predicate or bool as it is measured
-    std::string key;   ///< of one end
+    std::string atom;  ///< measured predicate or bool
+    std::string key;   ///< one end of a value
     std::string reading;
     std::string verdict;
-    std::string kept;  ///< a value that is kept from step to step
-    bool bytes;        ///< values are made of bytes, not of words
+    std::string kept;  ///< value kept between steps
+    bool bytes;        ///< values consist of bytes, not words
     // Constants.
     std::string yes;
     std::string no;
-    std::string top;  ///< one end of them
+    std::string top;  ///< end of a value
     std::string bottom;
-    std::string neither;  ///< neither yes nor no; empty: both ends are written
+    std::string neither;  ///< neither yes nor no; empty: spell both ends
     // Headers of the runtime.
     std::string predicates;
     std::string verdicts;

@@ -16,15 +16,15 @@ constexpr std::string_view kOnce = "#pragma once";
 constexpr std::string_view kOpen = "namespace etlmon {\ninline namespace ETLMON_BUILD {\n";
 constexpr std::string_view kClose = "}  // namespace ETLMON_BUILD\n}  // namespace etlmon\n";
 
-/// "etlmon/temporal/window.hpp" of `#include "etlmon/temporal/window.hpp"`; empty for any other
-/// line.
+/// Returns "etlmon/temporal/window.hpp" of `#include "etlmon/temporal/window.hpp"`; empty for other
+/// lines.
 std::string_view included(std::string_view line) {
     if (!line.starts_with(kInclude)) return {};
     line.remove_prefix(kInclude.size());
     return line.substr(0, line.find('"'));
 }
 
-/// The next line of a text, which is taken from it.
+/// Removes the first line from a text, and returns it.
 std::string_view take_line(std::string_view& text) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
@@ -32,7 +32,7 @@ std::string_view take_line(std::string_view& text) {
     return line;
 }
 
-/// Without blank lines at its ends, and without two in a row.
+/// Removes blank lines at the ends, and one of two in a row.
 std::string tidy(std::string_view text) {
     std::string result;
     bool apart = false;
@@ -49,7 +49,7 @@ std::string tidy(std::string_view text) {
     return result;
 }
 
-/// ETLMON_PASTED_WINDOW_HPP
+/// Returns ETLMON_PASTED_WINDOW_HPP.
 std::string guard_of(std::string_view name) {
     std::string guard = "ETLMON_PASTED_";
     for (char c : name.substr(name.find('/') + 1))
@@ -59,22 +59,23 @@ std::string guard_of(std::string_view name) {
     return guard;
 }
 
-/// What a condition of `#if` comes to in portable text, where ETLMON_PORTABLE is defined and
-/// gnu.hpp is not included; nothing where the compiler has to say.
+/// Returns the value of an `#if` condition in portable text, where ETLMON_PORTABLE and
+/// ETLMON_STANDALONE are defined and gnu.hpp is not included; nothing if the compiler has to
+/// decide.
 std::optional<bool> portable_value(std::string_view condition) {
     const auto has = [&](std::string_view part) {
         return condition.find(part) != std::string_view::npos;
     };
     if (has("!defined(ETLMON_GNU)") || has("!defined(ETLMON_VECTORS)")) return true;
     if (has("!defined(ETLMON_PORTABLE)") || has("defined(ETLMON_VECTORS)")) return false;
-    if (has("defined(ETLMON_PORTABLE)")) return true;
+    if (has("defined(ETLMON_PORTABLE)") || has("defined(ETLMON_STANDALONE)")) return true;
     return std::nullopt;
 }
 
-/// The conditions around a line. Leaves out what portable text does not have.
+/// The conditions around a line; leaves out lines that portable text does not have.
 class Conditions {
 public:
-    /// Whether a line of a runtime file is pasted.
+    /// Returns whether a line of a runtime file is pasted.
     bool keeps(std::string_view line) {
         if (line.starts_with("#if")) {
             open_.push_back(portable_value(line));
@@ -98,12 +99,12 @@ private:
         return std::find(taken_.begin(), taken_.end(), false) == taken_.end();
     }
 
-    std::vector<std::optional<bool>> open_;  ///< what each of them comes to
-    std::vector<bool> taken_;                ///< and whether its lines are pasted
+    std::vector<std::optional<bool>> open_;  ///< value of each condition
+    std::vector<bool> taken_;                ///< whether its lines are pasted
 };
 
-/// A file whose first comment ends before what the file takes, gives and keeps true: that is for
-/// those who change it.
+/// Shortens the first comment of a file: Takes, Gives and Keeps true are for those who change the
+/// file.
 std::string with_short_comment(std::string_view text) {
     std::string result;
     while (text.starts_with("//")) {
@@ -119,8 +120,8 @@ std::string with_short_comment(std::string_view text) {
     return result + std::string(text);
 }
 
-/// What of a file stands in the namespace of the runtime, and the comment before it; nothing where
-/// something else stands outside.
+/// Returns the contents of the runtime's namespace in a file, and the comment before it; nothing if
+/// the file has other code outside it.
 std::optional<std::string> only_in_namespace(const std::string& text) {
     const std::size_t open = text.find(kOpen);
     if (open == text.npos || !text.ends_with(kClose)) return std::nullopt;
@@ -132,7 +133,7 @@ std::optional<std::string> only_in_namespace(const std::string& text) {
     return text.substr(0, open) + inner;
 }
 
-/// Between guards, since a program may include several such headers.
+/// Returns the text between include guards, since a program may include several such headers.
 std::string guarded(std::string_view name, const std::string& text) {
     const std::string guard = guard_of(name);
     return "\n// ---- " + std::string(name) + "\n#ifndef " + guard + "\n#define " + guard + "\n" +
@@ -158,13 +159,14 @@ public:
         std::string result(header.substr(0, begin));
         result += "\n\n";
         for (const std::string& line : of_c_) result += line + "\n";
-        result.append("\n// The runtime of etlc, as far as it is needed here.\n").append(kLicense);
+        result.append("\n// The part of etlc's runtime that this header needs.\n").append(kLicense);
         return result + "\n" + pasted_ + "\n" + rest;
     }
 
 private:
-    /// A text without what it includes, which is pasted before it; but for files that are included
-    /// several times (.inc), or under a condition. `hoist`: C's headers too.
+    /// Returns a text without its includes, which are pasted before it. Files that are included
+    /// several times (.inc) or under a condition replace their include. `hoist`: removes C headers
+    /// too.
     std::string text_of(std::string_view text, bool hoist) {
         std::string result;
         Conditions conditions;
@@ -188,8 +190,8 @@ private:
         return result;
     }
 
-    /// A runtime file after those that it includes; nothing where it stands already. All that lies
-    /// in the namespace of the runtime shares one.
+    /// Pastes a runtime file after those that it includes, once. Consecutive files share one
+    /// namespace block.
     void paste_file(std::string_view name) {
         if (!done_.insert(std::string(name)).second) return;
         const std::string text = with_short_comment(tidy(text_of(runtime_text(name), true)));
@@ -207,9 +209,9 @@ private:
 
     bool portable_;
     std::set<std::string> done_;  ///< files
-    std::set<std::string> of_c_;  ///< lines that include C's headers
+    std::set<std::string> of_c_;  ///< includes of C headers
     std::string pasted_;
-    bool in_namespace_ = false;  ///< at the end of what was pasted
+    bool in_namespace_ = false;  ///< whether a namespace block is open
 };
 
 }  // namespace

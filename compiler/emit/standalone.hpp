@@ -1,9 +1,7 @@
-// A generated header with the runtime it needs pasted in: one file to copy into firmware.
-// Takes: a header that includes etlmon/*.hpp, and for what: "portable", in standard C++ alone, or
-// "host", with vectors and a version per instruction set. Gives: the same header that includes
-// nothing but C's headers. Keeps true: each runtime file is pasted once a translation unit, however
-// many such headers it includes; a portable one has no line of gnu.hpp or vectors/, nor the
-// conditions that would include them.
+// Pastes the runtime into a generated header: one file to copy into firmware, which includes only C
+// headers. Target "portable" is standard C++, without gnu.hpp and vectors/; "host" has vectors and
+// a version per instruction set. A translation unit may include several such headers and gets each
+// runtime file once.
 #pragma once
 
 #include <string>
@@ -12,7 +10,7 @@
 
 namespace etlc::emit {
 
-/// A file of the runtime, as it was when etlc was built.
+/// A file of the runtime, embedded when etlc was built.
 struct RuntimeFile {
     std::string_view name;  ///< "etlmon/temporal/window.hpp"
     std::string_view text;

@@ -1,4 +1,5 @@
-// The streams of judge(): present and past of every position, and the futures of sliding monitors.
+// Prints the streams of judge(): present and past of every position, and the futures of sliding
+// monitors.
 #include <algorithm>
 
 #include "emit/context.hpp"
@@ -11,18 +12,18 @@ using plan::Slot;
 using plan::Stream;
 using plan::StreamOp;
 
-/// The operand where its position lies in the trace, else what counts as nothing.
+/// Returns code for the operand, or for the neutral value if its position lies outside the trace.
 std::string guarded(const Context& context, const Stream& stream, std::size_t i,
                     const std::string& where_none) {
     std::string value = context.value(stream.operands[i]);
     const bool trace_may_end =
-        context.plan.has_sliding;  // finish() moves on beyond the last position
+        context.plan.has_sliding;  // finish() advances beyond the last position
     if (stream.operand_lag == 0 && (stream.lag == 0 || !trace_may_end)) return value;
     if (context.lazy(stream.operands[i])) value = fmt::format("static_cast<Value>({})", value);
     return fmt::format("exists({}) ? {} : {}", stream.operand_lag, value, where_none);
 }
 
-/// The min or max of some streams.
+/// Returns code for the min or max of some streams.
 std::string combination(const Context& context, bool max, const std::vector<Slot>& slots) {
     std::vector<std::string> operands;
     bool lazy = false;
@@ -33,7 +34,8 @@ std::string combination(const Context& context, bool max, const std::vector<Slot
     return call(max ? "max_of" : "min_of", operands, lazy);
 }
 
-/// v = max(g, min(v, f)) or the dual; in a Boolean monitor the cheaper side is asked first.
+/// Returns code for max(g, min(v, f)) or the dual. A Boolean monitor evaluates the cheaper side
+/// first.
 std::string since(const Context& context, const Stream& stream, const std::string& kept) {
     const bool max = stream.max;
     const std::string none = context.literal(plan::neutral(max));
@@ -47,7 +49,7 @@ std::string since(const Context& context, const Stream& stream, const std::strin
                       : fmt::format("{}({}, {})", outer, right, left);
 }
 
-/// The operand within its window, found out when it is asked for.
+/// Declares the operand within its window, evaluated on demand.
 std::string lazy_within(const Context& context, const Stream& stream, const std::string& name) {
     return fmt::format(
         "const etlmon::Lazy {}([&]() noexcept {{ return {} ? static_cast<Value>({}) : {}; }});",
@@ -55,15 +57,14 @@ std::string lazy_within(const Context& context, const Stream& stream, const std:
         context.value(stream.operands[0]), context.literal(stream.value));
 }
 
-/// The value of a statement, found out when it is first asked for.
+/// Declares the value of a statement, evaluated once, on demand.
 std::string lazy_value(std::string statement, const std::string& name) {
     statement.pop_back();
     return fmt::format("const etlmon::Lazy {}([&]() noexcept -> Value {{ return {}; }});", name,
                        statement);
 }
 
-/// What the stream's value is computed from; empty for atoms and constants, which need no
-/// statement.
+/// Returns the statement that computes the stream; empty for atoms and constants.
 std::string statement(const Context& context, Slot slot, const std::string& local) {
     const Stream& stream = context.plan.streams[slot];
     const auto at = [&](std::size_t i) { return context.value(stream.operands[i]); };
@@ -83,7 +84,7 @@ std::string statement(const Context& context, Slot slot, const std::string& loca
                 open_condition(stream.interval, context.position(stream.begins_with)), at(0),
                 context.literal(stream.value));
         case StreamOp::delay: {
-            // In a Boolean monitor a delayed atom is measured: not where the trace has ended.
+            // In a Boolean monitor a delayed atom is measured only before the end of the trace.
             const bool lazy = context.lazy(stream.operands[0]) && context.plan.has_sliding;
             return fmt::format("{}{}.push({});", local, kept(),
                                lazy ? fmt::format("exists({}) ? static_cast<Value>({}) : {}",
@@ -116,12 +117,12 @@ std::string statement(const Context& context, Slot slot, const std::string& loca
 }
 
 struct Statement {
-    std::string text;         ///< empty: none is needed
-    std::string declaration;  ///< what has to stand before it, if anything
+    std::string text;         ///< empty: no statement
+    std::string declaration;  ///< declaration before it, if any
 };
 
-/// When a stream that remembers has to be kept up. A monitor that restarts asks again, of a past
-/// that began with the trace, and a let asks at every step.
+/// Returns the condition under which a stream with state is updated. Monitors that restart and lets
+/// need a past that began with the trace, so it is then updated at every step.
 std::string while_open(const Context& context, Slot slot) {
     const std::vector<std::size_t>& monitors = context.dependents.of_stream[slot];
     const bool asked_again = context.plan.streams[slot].begins_with == plan::kNone &&
@@ -132,8 +133,8 @@ std::string while_open(const Context& context, Slot slot) {
     return asked_again ? "" : open_monitors(context, monitors);
 }
 
-/// The statement with what it declares. In a Boolean monitor, what must remember is only kept up
-/// while some verdict depends on it, and what need not is found out when it is asked for.
+/// Returns the statement with its declaration. In a Boolean monitor, streams with state are updated
+/// only while some verdict depends on them, and others are evaluated on demand.
 Statement whole_statement(const Context& context, Slot slot) {
     const auto& [name, member] = context.names.streams[slot];
     if (name.empty()) return {};  // an atom or a constant
@@ -163,7 +164,7 @@ void print_streams(Printer& out, const Context& context) {
             print_comment(out, "//", context.place(node), 4);
         }
         if (!statement.declaration.empty()) out.line(statement.declaration);
-        // What no formula is called by says what it holds.
+        // A stream without a formula has a comment on its value.
         const bool in_between = node == plan::kNone && !context.lazy(slot);
         print_with_comment(
             out, statement.text,

@@ -1,4 +1,4 @@
-// The head of the generated file: what it holds and what that costs; the same figures as --emit
+// Prints the head of the generated file: its contents and their cost, with the figures of --emit
 // report.
 #include <algorithm>
 
@@ -17,17 +17,17 @@ namespace {
 
 using check::Index;
 
-/// "//   " without its blanks, and a report's prefix: an empty line.
+/// Returns the prefix without its blanks at the end.
 std::string blank(const std::string& prefix) {
     return prefix.substr(0, prefix.find_last_not_of(' ') + 1);
 }
 
-/// Sentences, next to the margin.
+/// Prints sentences without indentation.
 void print_sentences(Printer& out, const std::string& prefix, std::string_view text) {
     print_comment(out, is_comment(prefix) ? "//" : prefix.substr(1), text);
 }
 
-/// Some sets take other room on machines without vectors of floats.
+/// Returns whether some sets have another size on machines without vectors.
 bool laid_out_by_machine(const plan::Plan& plan) {
     return plan.cost.target_bytes != plan.cost.scalar_target_bytes;
 }
@@ -92,7 +92,7 @@ std::vector<Row> threshold_rows(const plan::Plan& plan) {
     return rows;
 }
 
-/// The maps that points go through.
+/// Returns a row per projected point.
 std::vector<Row> projection_rows(const plan::Plan& plan) {
     const check::Model& model = *plan.model;
     std::vector<Row> rows{{"point", "projection", "rows", "elements"}};
@@ -104,7 +104,7 @@ std::vector<Row> projection_rows(const plan::Plan& plan) {
     return rows;
 }
 
-/// How target sets are stored, where that was asked for.
+/// Returns a row per distance with the storage of its target set.
 std::vector<Row> storage_rows(const plan::Plan& plan) {
     std::vector<Row> rows{{"distance", "measured on", "bytes", "rows moved by", "also kept"}};
     for (Index d : plan.distances) {
@@ -147,8 +147,7 @@ bool sets_zero_aside(const plan::Plan& plan) {
         });
 }
 
-/// What the thresholds guarantee, a row a monitor, and a row a conjunct where nothing is said of
-/// the whole.
+/// Returns the guarantees: a row per monitor, or a row per conjunct if the whole has none.
 std::vector<Row> guarantee_rows(const plan::Plan& plan) {
     std::vector<Row> rows{{"monitor", "guarantee"}};
     for (const plan::Monitor& monitor : plan.monitors)
@@ -159,20 +158,21 @@ std::vector<Row> guarantee_rows(const plan::Plan& plan) {
                     plan.model->monitors[monitor.index].calibration->threshold;
                 rows.push_back(
                     {monitor.name,
-                     fmt::format("{}; rho less {}, score {} of {}, coverage {:.3f} to {:.3f}",
+                     fmt::format("{}; rho minus {}, score {} of {}, coverage {:.3f} to {:.3f}",
                                  check::text(claim), shift.value, shift.k, shift.n,
                                  check::coverage_quantile(shift.n, shift.k, 0.05),
                                  check::coverage_quantile(shift.n, shift.k, 0.95))});
                 continue;
             }
-            rows.push_back({whole ? monitor.name : "",
-                            (whole ? "" : "of its part " + shortened(claim.part) + ": ") +
-                                check::text(claim)});
+            rows.push_back(
+                {whole ? monitor.name : "",
+                 (whole ? "" : "part " + shortened(claim.part) + ": ") + check::text(claim)});
         }
     return rows;
 }
 
-/// What is guaranteed of adaptive thresholds: a rate, whatever the world does.
+/// Prints the guarantee of adaptive thresholds: a rate of misses that holds for any sequence of
+/// frames.
 void print_miss_rates(Printer& out, const std::string& prefix, const plan::Plan& plan) {
     std::vector<Row> rows{
         {"adaptive", "of the first T labelled positive frames it misses at most"}};
@@ -186,9 +186,9 @@ void print_miss_rates(Printer& out, const std::string& prefix, const plan::Plan&
     print_table(out, prefix, rows, 2);
     out.line(blank(prefix));
     print_sentences(out, prefix,
-                    "A miss: beyond the threshold that holds when its label comes. H: of those "
-                    "misses, how many came when the threshold was held back at the end of its "
-                    "range. Before the first label the threshold is the conformal one.");
+                    "A miss is beyond the threshold in force when its label arrives. H is the "
+                    "number of misses that arrive while the threshold is at the end of its range. "
+                    "Before the first label the threshold is the conformal one.");
 }
 
 void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan& plan) {
@@ -202,15 +202,15 @@ void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan&
     if (zero_aside) print_sentences(out, prefix, check::kZeroAside);
     for (const std::string& reservation : reservations) print_sentences(out, prefix, reservation);
     if (of_episodes)
-        print_sentences(out, prefix,
-                        "Probabilities are over the demonstrations and the new episode together, "
-                        "exchangeable, per episode as recorded. coverage: of a new episode, given "
-                        "these demonstrations: 5 % and 95 % quantile of Beta(k, n + 1 - k), more "
-                        "where scores tie. Where a sample is missing, what is said of successes "
-                        "does not hold.");
+        print_sentences(
+            out, prefix,
+            "Probabilities are over the demonstrations and the new episode together, which are "
+            "exchangeable, per episode as recorded. coverage: 5 % and 95 % quantile of Beta(k, n + "
+            "1 - k), of a new episode given these demonstrations, more where scores tie. The bound "
+            "on successes excludes steps with missing samples.");
 }
 
-/// What the class was made from; its constants say the same.
+/// Prints the hashes that the class has as constants.
 void print_made_from(Printer& out, const std::string& prefix, const Context& context) {
     const check::Fingerprint made_from = check::fingerprint(context.model);
     const auto hash = [](std::uint64_t value) {
@@ -246,7 +246,7 @@ void print_tables(Printer& out, const std::string& prefix, const plan::Plan& pla
     print_sentences(out, prefix, about_parameters(plan, is_calibrated(plan, false)));
 }
 
-/// The sets that the monitor has to be given, and what they take.
+/// Prints the target sets stored outside the header, and their sizes.
 void print_stored(Printer& out, const std::string& prefix, const plan::Plan& plan,
                   const std::string& file) {
     if (plan.stored.empty()) return;
@@ -262,7 +262,7 @@ void print_stored(Printer& out, const std::string& prefix, const plan::Plan& pla
     print_table(out, prefix, rows, 1);
 }
 
-/// What the constants of the spec are worth here.
+/// Prints the values of the spec's constants.
 void print_settings(Printer& out, const std::string& prefix, const check::Model& model) {
     if (model.constants.empty()) return;
     std::string list;
@@ -273,7 +273,7 @@ void print_settings(Printer& out, const std::string& prefix, const check::Model&
     print_sentences(out, prefix, fmt::format("Constants: {}.", list));
 }
 
-/// What became of durations that are not whole numbers of steps.
+/// Prints the rounding of durations that are not whole numbers of steps.
 void print_rounded(Printer& out, const std::string& prefix, const check::Model& model) {
     if (model.rounded.empty()) return;
     std::string list;
@@ -300,10 +300,11 @@ void print_summary(Printer& out, const Context& context) {
     print_made_from(out, "//   ", context);
     print_figures(out, "//   ", context.plan, context.targets_file);
     out.line("//");
-    print_sentences(out, "//",
-                    "state B: of a monitor alone, what it shares with others counted in each. "
-                    "operations: min, max and comparisons of robustness keys in the worst step. "
-                    "distance elements: target elements that a step compares with its input.");
+    print_sentences(
+        out, "//",
+        "state B: bytes of state of a monitor by itself; what several share is counted for each. "
+        "operations: min, max and comparisons of robustness keys in the worst-case step. distance "
+        "elements: target elements that a step compares with its input.");
     if (context.stores_targets())
         out.line("// Besides state B, a monitor holds a pointer to its targets.");
 }

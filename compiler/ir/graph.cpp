@@ -27,7 +27,7 @@ std::size_t hash(const Node& node) {
     return result;
 }
 
-/// Sum of steps; without end where either is, or where it leaves the range.
+/// Adds steps; unbounded where either is, or on overflow.
 std::uint32_t add_steps(std::uint32_t a, std::uint32_t b) {
     return a == kUnbounded || b == kUnbounded || a > kUnbounded - 1 - b ? kUnbounded : a + b;
 }
@@ -77,7 +77,7 @@ NodeId Graph::literal(Op op, Index index, bool negated, Span span) {
     return intern({.op = op, .negated = negated, .index = index, .span = span});
 }
 
-/// Drops operands that another one makes idle: a && (a || b) is a, and dually.
+/// Drops operands that another one makes redundant: a && (a || b) is a, and dually.
 std::vector<NodeId> Graph::absorb(Op op, std::vector<NodeId> operands) const {
     const Op dual = info(op).dual;
     const auto absorbed = [&](NodeId candidate) {

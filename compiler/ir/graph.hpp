@@ -1,8 +1,7 @@
-// The formulas of all monitors as one hash-consed graph in negation normal form.
-// Takes: nodes, through make_*. Gives: their ids; equal nodes have equal ids, so equality of
-// formulas is equality of ids. Keeps true: operands have smaller ids; only predicates and flags are
-// negated; && and || are flat, sorted and without repeats; the laws applied on the way (see
-// graph.cpp) hold for min and max on every prefix, so p && !p stays.
+// The formulas of all monitors as one hash-consed graph in negation normal form: equal formulas are
+// one node. Operands have smaller ids; only predicates and flags are negated; && and || are flat,
+// sorted and without repeats. The laws applied by the builders (graph.cpp) hold for min and max on
+// every prefix, so p && !p stays.
 #pragma once
 
 #include <cstdint>
@@ -37,8 +36,8 @@ struct OpInfo {
     Op dual;
 };
 const OpInfo& info(Op op);
-/// F, U, O and S: a max over positions, false over no position. The other temporal operators are
-/// mins, true over none.
+/// Returns whether the operator is a max over positions, false over none: F, U, O and S. The other
+/// temporal operators are mins, true over none.
 bool takes_max(Op op);
 
 /// Steps from the present: [low, high], or [low, inf).
@@ -49,7 +48,7 @@ struct Interval {
     bool operator==(const Interval&) const = default;
     bool contains(Interval other) const { return low <= other.low && other.high <= high; }
     bool bounded() const { return high != kUnbounded; }
-    /// The same window seen one step later; low and high must not be 0.
+    /// Returns the window as seen one step later; low and high must not be 0.
     Interval earlier() const { return {low == 0 ? 0 : low - 1, bounded() ? high - 1 : high}; }
 };
 
@@ -59,10 +58,10 @@ struct Node {
     Index index = 0;       ///< predicate: of the model's predicates; flag: of its inputs
     Interval interval{};   ///< of temporal operators
     std::vector<NodeId> operands;
-    bool has_future = false;      ///< a future operator in it, itself included
-    bool unbounded_past = false;  ///< a past operator without an upper bound in it, itself included
-    std::uint32_t horizon = 0;    ///< steps of future it needs; kUnbounded without end
-    Span span{};                  ///< where the spec first says it; not part of its identity
+    bool has_future = false;      ///< contains a future operator, or is one
+    bool unbounded_past = false;  ///< contains an unbounded past operator, or is one
+    std::uint32_t horizon = 0;    ///< steps of future that it needs; kUnbounded without bound
+    Span span{};                  ///< first mention in the spec; not part of its identity
 
     bool same_as(const Node& other) const;
 };
@@ -77,19 +76,20 @@ public:
 
     NodeId constant(bool value) const { return value ? 0 : 1; }
     NodeId literal(Op op, Index index, bool negated, Span span);
-    /// && or || of any number of operands: flattened, sorted, constants and absorbed operands
-    /// dropped.
+    /// Builds && or || of any number of operands: flattened and sorted, without constants and
+    /// absorbed operands.
     NodeId combine(Op op, std::vector<NodeId> operands, Span span);
     NodeId unary(Op op, Interval interval, NodeId operand, Span span);
     NodeId binary(Op op, Interval interval, NodeId left, NodeId right, Span span);
-    /// A temporal operator as it stands, no law applied: F[0,0] f is f, but what is owed at the
-    /// next position also says what it is worth where the prefix ends before.
+    /// Builds a temporal operator without applying laws: F[0,0] f is f, but an obligation for the
+    /// next position also needs the value where the prefix ends before.
     NodeId keep(Op op, Interval interval, std::vector<NodeId> operands, Span span);
 
-    /// The formula for people to read, with symbols and names: "F (at_a && F at_b)". Parts of a
-    /// long one are left out (check/model/elision.hpp).
+    /// Prints the formula for people, with symbols and names: "F (at_a && F at_b)". Long ones are
+    /// abbreviated (check/model/elision.hpp).
     std::string text(NodeId id) const;
-    /// The same where nothing is left out, else nothing; soon, however long the formula is.
+    /// Prints the formula if it needs no abbreviation; returns nothing otherwise, quickly, however
+    /// long the formula is.
     std::string short_text(NodeId id) const;
 
 private:
@@ -101,7 +101,7 @@ private:
     std::unordered_map<std::size_t, std::vector<NodeId>> by_hash_;
 };
 
-/// Asserts what the graph keeps true: a fault here is a fault of etlc.
+/// Asserts the invariants of the graph.
 void verify(const Graph& graph);
 
 }  // namespace etlc::ir

@@ -70,7 +70,7 @@ private:
         return graph_.combine(turn(op, negated), std::move(operands), f.span);
     }
 
-    /// f -> g is !f || g.
+    /// Lowers f -> g as !f || g.
     NodeId implication(Index left, Index right, bool negated, Span span) {
         return graph_.combine(turn(Op::disjunction, negated),
                               {lower(left, !negated), lower(right, negated)}, span);
@@ -87,7 +87,7 @@ private:
         return graph_.binary(turn(op, negated), {f.low, f.high}, left, right, f.span);
     }
 
-    /// f W g is g R (f || g).
+    /// Lowers f W g as g R (f || g).
     NodeId weak_until(const check::Formula& f, bool negated) {
         const NodeId left = lower(f.operands[0], negated);
         const NodeId right = lower(f.operands[1], negated);
@@ -95,7 +95,7 @@ private:
         return graph_.binary(turn(Op::release, negated), {}, right, either, f.span);
     }
 
-    /// rise f is f && Y !f; fall f is !f && Y f.
+    /// Lowers rise f as f && Y !f, fall f as !f && Y f.
     NodeId edge(const check::Formula& f, bool falls, bool negated) {
         const NodeId now = lower(f.operands[0], falls != negated);
         const NodeId before = lower(f.operands[0], falls == negated);
@@ -103,7 +103,7 @@ private:
         return graph_.combine(turn(Op::conjunction, negated), {now, previous}, f.span);
     }
 
-    /// held[n] f is H[0,n] f && O[n,n] true.
+    /// Lowers held[n] f as H[0,n] f && O[n,n] true.
     NodeId held(const check::Formula& f, bool negated) {
         const NodeId all = unary(f, Op::historically, negated);
         const NodeId old = graph_.unary(turn(Op::once, negated), {f.high, f.high},

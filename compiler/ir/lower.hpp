@@ -1,6 +1,5 @@
-// Typed formulas to the graph: negation normal form, derived operators written out.
-// Takes: the model. Gives: the graph and the node of every monitor. Keeps true: each formula is
-// lowered at most once a polarity, so shared `let`s stay shared.
+// Lowers typed formulas into the graph: in negation normal form, with derived operators written
+// out. Each formula is lowered at most once per polarity, so shared `let`s stay shared.
 #pragma once
 
 #include <array>
@@ -15,15 +14,15 @@ struct Program {
     Graph graph;
     std::vector<NodeId> monitors;  ///< per monitor of the model
     std::vector<NodeId> lets;      ///< per let of the model; kNone where it is no telemetry
-    /// Of some formulas an equal one, whose windows end before an unbounded future begins: what is
-    /// cheaper to monitor, the plan decides (opt/split_windows.cpp).
+    /// For some formulas an equal one, whose windows end before an unbounded future begins; the
+    /// plan takes the cheaper one (opt/split_windows.cpp).
     std::unordered_map<NodeId, NodeId> split_windows;
-    /// The node of each formula of the model, and, at [1], of its negation; kNone where no monitor
+    /// The node of each formula of the model and, at [1], of its negation; kNone where no monitor
     /// needs it.
     std::array<std::vector<NodeId>, 2> formulas;
 };
 
-/// Every node that a monitor or a let reaches, operands first: `--emit graph`.
+/// Prints every node that a monitor or a let reaches, operands first: `--emit graph`.
 std::string print(const Program& program);
 
 Program lower(const check::Model& model);

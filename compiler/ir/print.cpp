@@ -1,4 +1,4 @@
-// Graph nodes as formulas, for comments in generated code and for --emit graph.
+// Prints graph nodes as formulas, for comments in generated code and for --emit graph.
 #include <fmt/format.h>
 
 #include "check/model/elision.hpp"
@@ -14,7 +14,7 @@ std::string interval_text(Interval interval) {
     return '[' + std::to_string(interval.low) + ", " + high + ']';
 }
 
-/// "F[0, 3]", "X", "Y": the operator as the language writes it.
+/// Prints the operator as in the language: "F[0, 3]", "X", "Y".
 std::string operator_text(const Node& node) {
     const bool one_step = node.interval == Interval{1, 1};
     if (node.op == Op::eventually && one_step) return "X";
@@ -33,7 +33,8 @@ std::string atom_text(const Graph& graph, const Node& node) {
     return (node.negated ? "!(" : "(") + words + ')';
 }
 
-/// Trigger, for which the language has no letter, brings its own brackets.
+/// Returns whether a formula needs no brackets as an operand; trigger, which the language lacks,
+/// brings its own.
 bool is_bare(const Node& node) {
     const Arity arity = info(node.op).arity;
     return arity == Arity::atom || arity == Arity::unary || node.op == Op::trigger;
@@ -64,7 +65,7 @@ void mark(const Graph& graph, NodeId id, std::vector<bool>& reached) {
     for (NodeId operand : graph[id].operands) mark(graph, operand, reached);
 }
 
-/// "n7 = F[0, 3] n2"
+/// Prints a definition: "n7 = F[0, 3] n2".
 std::string definition(const Graph& graph, NodeId id) {
     const Node& node = graph[id];
     if (info(node.op).arity == Arity::atom) return fmt::format("n{} = {}\n", id, graph.text(id));

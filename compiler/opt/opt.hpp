@@ -1,7 +1,5 @@
-// Rewriting the graph before it is planned.
-// Takes: the program. Gives: an equal one that is smaller to monitor. Keeps true: rho and the
-// bounds of every monitor on every prefix; the passes stand in one table, each is a file. Behind
-// here the program is const.
+// Rewrites the graph before it is planned, into an equal one that is smaller to monitor. Every pass
+// keeps rho and the bounds of every monitor on every prefix. Afterwards the program is const.
 #pragma once
 
 #include <string_view>
@@ -11,22 +9,21 @@
 
 namespace etlc::opt {
 
-/// Rewrites one node whose operands are rewritten already; gives the node itself where the pass has
-/// nothing to say.
+/// Rewrites one node after its operands; returns the node itself where the rule does not apply.
 using Rule = ir::NodeId (*)(ir::Graph& graph, ir::NodeId node);
 
 struct Pass {
     std::string_view name;
     Rule rule;
-    /// Only formulas that prefix monitors evaluate at position 0, below && and ||: there an
-    /// unbounded F or G ranges over the whole trace, so that looking back from any position reaches
-    /// no position that it would not have reached.
+    /// Applies only to formulas that prefix monitors evaluate at position 0, below && and ||: there
+    /// an unbounded F or G ranges over the whole trace, so looking back from any position stays in
+    /// its range.
     bool at_start_only = false;
 };
 const std::vector<Pass>& passes();
 
-/// Applies every pass to every prefix monitor, and then takes windows apart. Sliding monitors are
-/// planned as written: their delays are their meaning.
+/// Applies every pass to every prefix monitor, then splits windows. Sliding monitors are planned as
+/// written, because their delays are part of their meaning.
 void optimise(ir::Program& program);
 
 ir::NodeId distribute(ir::Graph& graph, ir::NodeId node);

@@ -25,25 +25,25 @@ using ir::NodeId;
 using ir::Op;
 using ir::Span;
 
-/// More parts than this are not worth it.
+/// Formulas that need more parts are left as they are.
 constexpr int kMostSteps = 2000;
 
-/// The rules are written for U and F; with `seeks` false they are those of R and G, where U and R,
-/// && and ||, true and false change places. They hold for truth values at every position k of every
-/// prefix 0..i, and so for min and max: both only compare. A formula is settled where its future is
+/// The rules are written for U and F; with `seeks` false they apply to R and G, where U and R, &&
+/// and ||, true and false change places. They hold for truth values at every position k of every
+/// prefix 0..i, and so for min and max: both only compare. A formula is settled if its future is
 /// bounded.
 class Splitting {
 public:
     explicit Splitting(ir::Graph& graph) : graph_(graph) {}
 
-    /// The formula itself where there is nothing to split, or where the parts would be too many.
+    /// Returns the formula itself if there is nothing to split, or if the parts would be too many.
     NodeId split(NodeId formula) {
         const NodeId result = rewrite(formula);
         return too_many() ? formula : result;
     }
 
 private:
-    /// From here on every operator is left as it is.
+    /// Once true, every operator is left as it is.
     bool too_many() const { return steps_ > kMostSteps; }
     bool settled(NodeId id) const { return graph_[id].horizon != kUnbounded; }
 
@@ -76,7 +76,7 @@ private:
         return graph_.combine(op, std::move(operands), span);
     }
 
-    /// left U[a,b] right.
+    /// Builds left U[a,b] right.
     NodeId until(bool seeks, Interval interval, NodeId left, NodeId right, Span span) {
         ++steps_;
         if (too_many()) return right;
@@ -127,14 +127,14 @@ private:
         return combine(both(seeks), std::move(beside), span);
     }
 
-    /// An operator over [c,inf] by one over [0,inf]: F[c,inf] q is F F[c,c] q, p U[c,inf] q is
-    /// G[0,c-1] p && F[c,c] (p U q). Nothing where c is 0.
+    /// Reduces an operator over [c,inf] to one over [0,inf]: F[c,inf] q is F F[c,c] q, p U[c,inf] q
+    /// is G[0,c-1] p && F[c,c] (p U q). Returns nothing where c is 0.
     std::optional<NodeId> from_now(NodeId id) {
         const Node x = graph_[id];
         if (x.interval.low == 0) return std::nullopt;
         const bool seeks = ir::takes_max(x.op);
         const std::uint32_t steps = x.interval.low;
-        if (x.operands.size() == 1)  // kept apart, where the graph would put the windows together
+        if (x.operands.size() == 1)  // kept apart, because the graph would merge the windows
             return graph_.keep(x.op, {}, {shift(seeks, steps, x.operands[0], x.span)}, x.span);
         const NodeId held =
             until(!seeks, {0, steps - 1}, graph_.constant(!seeks), x.operands[0], x.span);
@@ -188,7 +188,7 @@ private:
         return interval.low == 0 ? combine(either(seeks), {right, later}, span) : later;
     }
 
-    /// Of p U q: p || q. Of p R q: q. Of a conjunction: that of each part.
+    /// Returns p || q for p U q, q for p R q, and that of each part for a conjunction.
     std::optional<NodeId> on_the_way(bool seeks, NodeId left) {
         if (settled(left)) return left;
         const Node node = graph_[left];

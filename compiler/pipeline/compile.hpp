@@ -9,7 +9,7 @@
 #include "diag/diag.hpp"
 #include "ir/lower.hpp"
 #include "plan/plan.hpp"
-#include "plan/recorder.hpp"
+#include "plan/recorder_plan.hpp"
 
 namespace etlc::pipeline {
 

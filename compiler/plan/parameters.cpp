@@ -95,7 +95,7 @@ private:
 
     const Plan& plan_;
     const check::Model& model_;
-    std::set<std::pair<Index, bool>> done_;  ///< targets, as given or of length 1
+    std::set<std::pair<Index, bool>> done_;  ///< targets done, as given or normalised
     std::set<Index> projections_;
     std::vector<Parameter> list_;
     std::uint32_t end_ = sizeof(etlmon::detail::ParamsHead) / sizeof(float);
@@ -113,7 +113,7 @@ std::vector<float> values_of(const check::Model& model, const Parameter& paramet
     return model.projections[parameter.index].offset;
 }
 
-/// A number as it lies in the block, its lowest byte first.
+/// Appends a number to the block, lowest byte first.
 template <class Number>
 void put(std::string& bytes, std::size_t at, Number number) {
     for (std::size_t i = 0; i < sizeof number; ++i)

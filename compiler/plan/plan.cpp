@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <tuple>
 
 #include "plan/budget/budget.hpp"
 #include "plan/decide/readings.hpp"
 #include "plan/decide/refusal.hpp"
-#include "plan/decide/share_windows.hpp"
 #include "plan/decide/streams.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/targets/narrow_targets.hpp"
@@ -18,7 +19,7 @@ namespace etlc::plan {
 
 namespace {
 
-/// What is read and measured for these predicates and these inputs.
+/// Sets the inputs, distances and targets that these predicates and inputs need.
 void need(Plan& plan, std::set<Index> inputs, const std::set<Index>& predicates) {
     const check::Model& model = *plan.model;
     std::set<Index> distances;
@@ -35,19 +36,57 @@ void need(Plan& plan, std::set<Index> inputs, const std::set<Index>& predicates)
     plan.targets.assign(targets.begin(), targets.end());
 }
 
-/// Their places are numbers of 32 bits.
+/// Checks that the places of parameters fit into 32 bits.
 void check_parameters(const Plan& plan, diag::Sink& sink) {
     constexpr std::uint64_t kMostFloats = std::uint64_t{1} << 29U;
     std::uint64_t floats = 0;
     for (const Index t : plan.targets) {
         const check::Target& target = plan.model->targets[t];
-        floats += 2 * target.values.size();  // perhaps of length 1 as well
+        floats += 2 * target.values.size();  // possibly normalised as well
         if (floats <= kMostFloats) continue;
         sink.report(diag::Code::not_retargetable, target.span,
                     fmt::format("'{}' and what stands before it take more than the 2 GiB that "
                                 "parameters of --retargetable may have",
                                 target.name));
         return;
+    }
+}
+
+/// Identifies windows that take the same element at each step and start together. While finish()
+/// reports the last positions they still do, except for one without lag, which has no position
+/// there.
+using Signal = std::tuple<bool, std::vector<Slot>, std::uint32_t, bool, std::uint32_t>;
+
+void widen(Stream& stream, Slot from, std::uint32_t from_length) {
+    stream.op = StreamOp::widening;
+    stream.operands = {from};
+    stream.from_length = from_length;
+}
+
+/// Turns a window into the widening of a shorter one over the same signal that is at least half as
+/// long (etlmon::Widening). Values stay the same; operands may come after their users until the
+/// plan is sorted.
+void share_windows(Plan& plan) {
+    // Over truth values a window is a counter, which is cheapest.
+    if (value_type(plan.values).on_demand) return;
+    std::map<Signal, std::vector<Slot>> watching;
+    for (Slot slot = 0; slot < plan.streams.size(); ++slot) {
+        const Stream& stream = plan.streams[slot];
+        if (stream.op == StreamOp::window && stream.length > 1)
+            watching[{stream.max, stream.operands, stream.operand_lag, stream.lag == 0,
+                      stream.begins_with}]
+                .push_back(slot);
+    }
+    for (auto& [signal, windows] : watching) {
+        const auto length = [&](Slot slot) { return plan.streams[slot].length; };
+        std::stable_sort(windows.begin(), windows.end(),
+                         [&](Slot a, Slot b) { return length(a) < length(b); });
+        for (std::size_t i = windows.size(); i-- > 1;) {
+            const Slot from = windows[i - 1];
+            const bool longer = length(from) < length(windows[i]);
+            if (longer && length(windows[i]) - length(from) <= length(from))
+                widen(plan.streams[windows[i]], from, length(from));
+        }
     }
 }
 
@@ -64,7 +103,7 @@ public:
         plan_.values = values;
     }
 
-    /// False where a monitor is too large; the sink then says which part.
+    /// Returns false after reporting the part of a monitor that is too large.
     bool add_monitor(Index index, diag::Sink& sink, const Advice& advice) {
         const check::Monitor& source = plan_.model->monitors[index];
         Monitor monitor{.name = source.name,
@@ -126,8 +165,7 @@ public:
     }
 
 private:
-    /// Folding leaves streams behind that nothing reads; sharing may leave operands behind what
-    /// uses them.
+    /// Drops streams that folding left unused, and puts operands before their users after sharing.
     void keep_used_streams() {
         std::vector<bool> used(plan_.streams.size(), false);
         const auto use = [&](const auto& self, Slot slot) -> void {
@@ -151,7 +189,7 @@ private:
         for_each_root([&](Slot& slot) { slot = renumbered[slot]; });
     }
 
-    /// Where the number of the step is asked for, from the start of the trace or of a monitor.
+    /// Marks what counts steps, from the start of the trace or of a monitor.
     void count_steps() {
         plan_.counts_steps = plan_.has_sliding;
         const auto count = [&](std::uint32_t from) {
@@ -163,7 +201,7 @@ private:
             if (stream.op == StreamOp::within) count(stream.begins_with);
     }
 
-    /// Every place outside the streams that names one.
+    /// Visits every reference to a stream outside the streams.
     template <class Visit>
     void for_each_root(Visit visit) {
         for (Reading& reading : plan_.readings) plan::for_each_slot(reading, visit);

@@ -1,6 +1,5 @@
-// The entry of the stage: from the optimised graph to the plan of its monitors.
-// Takes: the graph and the limits. Gives: the plan, or a diagnostic for each monitor that does not
-// fit. Keeps true: nothing is approximated to fit.
+// Plans monitors: from the optimised graph to the operations of every step. Nothing is approximated
+// to fit the limits.
 #pragma once
 
 #include <optional>
@@ -9,19 +8,18 @@
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
 #include "ir/lower.hpp"
-#include "plan/budget/limits.hpp"
+#include "plan/budget/budget.hpp"
 #include "plan/program/program.hpp"
 
 namespace etlc::plan {
 
-/// Plans every monitor, or reports the ones whose exact state, code or work exceeds the limits;
-/// `advice` is asked once.
+/// Plans every monitor, or reports those whose exact state, code or work exceeds the limits; calls
+/// `advice` once.
 std::optional<Plan> plan(const ir::Program& program, const Limits& limits, diag::Sink& sink,
                          check::Values values = check::Values::robustness,
                          Storage targets_as = Storage::f32, const Advice& advice = {});
 
-/// A plan without monitors: the evaluator then only measures these predicates, as it does for
-/// monitors that use them.
+/// Returns a plan without monitors, with which the evaluator only measures these predicates.
 Plan measuring(const check::Model& model, const std::vector<Index>& predicates);
 
 }  // namespace etlc::plan

@@ -22,8 +22,7 @@ bool valid(const check::Input& input, const std::vector<float>& sample) {
     return true;
 }
 
-/// Arithmetic in double; a NaN anywhere below makes the whole expression NaN, also through min and
-/// max.
+/// Evaluates in double; a NaN anywhere makes the whole expression NaN, also through min and max.
 double evaluate(const check::Model& model, const Expr& expr, const Samples& samples) {
     std::vector<double> a;
     for (const Expr& argument : expr.arguments) {
@@ -54,7 +53,8 @@ double evaluate(const check::Model& model, const Expr& expr, const Samples& samp
 std::vector<Samples> accept(const check::Model& model, const Trace& trace) {
     std::vector<Samples> result;
     std::vector<std::vector<float>> last(model.inputs.size());  // the last present sample
-    std::vector<std::uint32_t> held(model.inputs.size(), 0);  // steps in a row that it has stood in
+    std::vector<std::uint32_t> held(model.inputs.size(),
+                                    0);  // consecutive steps that it has replaced
     for (const Step& step : trace) {
         Samples samples(model.inputs.size());
         for (std::size_t n = 0; n < model.inputs.size(); ++n) {

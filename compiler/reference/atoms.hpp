@@ -1,6 +1,4 @@
-// From a trace to the values of predicates and bools.
-// Takes: the spec and the samples as recorded. Gives: per step every predicate's delta and
-// robustness, and every bool. Keeps true: inputs, targets and literals are float32, everything
+// Values of predicates and bools on a trace. Inputs, targets and literals are float32, everything
 // computed from them is double; what is missing, invalid or has no value is unknown, never a
 // number.
 #pragma once
@@ -13,13 +11,14 @@
 
 namespace etlc::reference {
 
-/// Per input, its sample as the monitor takes it; empty where it is missing after `hold`.
+/// Per input, its sample as the monitor gets it; empty where missing after `hold`.
 using Samples = std::vector<std::vector<float>>;
 
-/// Samples of every step: narrowed to float32, invalid ones dropped, held ones filled in.
+/// Returns the samples of every step: narrowed to float32, without invalid ones, with `hold`
+/// applied.
 std::vector<Samples> accept(const check::Model& model, const Trace& trace);
 
-/// delta of a predicate, nothing where it is unknown; the nearest row where it is a plain distance.
+/// The delta of a predicate, nothing where unknown; the nearest row of a plain distance.
 struct Measurement {
     std::optional<double> delta;
     std::uint32_t nearest = 0;
@@ -27,8 +26,8 @@ struct Measurement {
 Measurement measure(const check::Model& model, const check::Predicate& predicate,
                     const Samples& samples);
 
-/// d aggregated over the target set, with the row of the smallest d; nothing where the point is
-/// missing, or the zero vector under cosine and angular.
+/// Returns d aggregated over the target set, with the row of the smallest d; nothing where the
+/// point is missing, or the zero vector under cosine and angular.
 Measurement distance(const check::Model& model, const check::Distance& distance,
                      const Samples& samples);
 

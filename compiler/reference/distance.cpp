@@ -44,13 +44,13 @@ double linf(const Vector& a) {
     return largest;
 }
 
-/// 1 - cosine similarity, in [0, 2].
+/// Returns 1 - cosine similarity, in [0, 2].
 double cosine(const Vector& a, const Vector& b) {
     return std::clamp(1.0 - dot(a, b) / (norm(a) * norm(b)), 0.0, 2.0);
 }
 
-/// The angle between a and b in [0, pi], as 2 atan2(|u - v|, |u + v|) of the unit vectors (Kahan):
-/// acos of the cosine similarity loses half the digits near 0 and pi.
+/// Returns the angle between a and b in [0, pi], as 2 atan2(|u - v|, |u + v|) of the unit vectors
+/// (Kahan): acos of the cosine similarity loses half the digits near 0 and pi.
 double angular(const Vector& a, const Vector& b) {
     const Vector u = unit(a);
     const Vector v = unit(b);
@@ -59,7 +59,7 @@ double angular(const Vector& a, const Vector& b) {
     return 2.0 * std::atan2(norm(difference(u, v)), norm(sum));
 }
 
-/// sqrt(d' W d)
+/// Returns sqrt(d' W d).
 double mahalanobis(const Vector& d, const check::Distance& distance) {
     double sum = 0;
     for (std::size_t row = 0; row < d.size(); ++row) {
@@ -101,7 +101,7 @@ double aggregate(const check::Distance& distance, Vector distances) {
     return std::nan("");
 }
 
-/// The embedding, or the scalars of a vector in order; empty where any of them is missing.
+/// Returns the embedding, or the scalars of a vector in order; empty where any is missing.
 Vector inputs_of(const check::Point& point, const Samples& samples) {
     Vector elements;
     for (const Index input : point.inputs) {
@@ -111,7 +111,7 @@ Vector inputs_of(const check::Point& point, const Samples& samples) {
     return elements;
 }
 
-/// P(z) = A (z - m), from the inside out; empty where an input is missing.
+/// Returns P(z) = A (z - m), from the inside out; empty where an input is missing.
 Vector point_of(const check::Model& model, Index index, const Samples& samples) {
     const check::Point& point = model.points[index];
     if (!point.is_projected()) return inputs_of(point, samples);

@@ -12,10 +12,6 @@ namespace {
 
 using check::Values;
 
-Unseen negate(const Unseen& range) {
-    return {-range.highest, -range.lowest};
-}
-
 bool holds(const check::Predicate& predicate, double delta, double epsilon) {
     switch (predicate.comparison) {
         case check::Comparison::less_equal: return delta <= epsilon;
@@ -39,8 +35,7 @@ Unseen range_of(const check::Model& model, const Node& atom, Values values) {
         const check::Predicate& predicate = model.predicates[atom.index];
         range = {predicate.robustness.low, predicate.robustness.high};
         if (values == Values::boolean &&
-            !predicate
-                 .equality()) {  // a comparison is true on one side only, of delta and of epsilon
+            !predicate.equality()) {  // a comparison holds on one side of delta and epsilon
             bool always = true;
             bool ever = false;
             const check::Range thresholds = predicate.threshold.range();
@@ -58,7 +53,7 @@ Unseen range_of(const check::Model& model, const Node& atom, Values values) {
     return atom.negated ? negate(range) : range;
 }
 
-/// rho of the atom without its negation: epsilon - delta or delta - epsilon; nothing where it is
+/// Returns rho of the atom without its negation: epsilon - delta or delta - epsilon; nothing where
 /// unknown.
 std::optional<double> rho_of(const check::Model& model, const Node& atom, const Samples& samples,
                              const std::vector<Telemetry>& telemetry, Values values,
@@ -79,7 +74,7 @@ std::optional<double> rho_of(const check::Model& model, const Node& atom, const 
     return predicate.upper_bound() ? epsilon - delta : delta - epsilon;
 }
 
-/// What the spec lets the atom count as where it is unknown.
+/// Returns what the spec's `missing` makes of an unknown atom.
 std::optional<double> rho_of_missing(const check::Model& model, const Node& atom) {
     const std::optional<bool> missing = atom.kind == Node::Kind::boolean
                                             ? model.inputs[atom.index].missing
@@ -162,7 +157,7 @@ private:
     Values values_;
     const Thresholds& thresholds_;
     const Requests& requests_;
-    std::vector<std::uint64_t> starts_;  ///< per monitor: the position that it is about
+    std::vector<std::uint64_t> starts_;  ///< per monitor: its position
     NormalForm form_;
     std::vector<Samples> samples_;
     std::vector<std::uint64_t> horizons_;
@@ -206,7 +201,7 @@ private:
             static_cast<std::uint32_t>(std::count(lacking.begin(), lacking.end(), true));
     }
 
-    /// rho(f, p, i), p being 0, or the step from which on the monitor was restarted, or the one
+    /// Judges rho(f, p, i), p being 0, or the step at which the monitor was restarted, or the one
     /// after its last final verdict.
     Verdict about_its_start(Prefix& prefix, std::size_t n, std::uint64_t i) {
         std::uint64_t& p = starts_[n];

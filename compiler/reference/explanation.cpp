@@ -30,7 +30,7 @@ struct Less {
     }
 };
 
-/// Of a monitor that is calibrated as a whole: its values are less by it.
+/// Returns what a monitor calibrated as a whole subtracts from its values.
 double shift_of(const check::Monitor& monitor) {
     return monitor.calibration ? static_cast<double>(monitor.calibration->threshold.value) : 0;
 }
@@ -89,8 +89,8 @@ Said Explained::said_with(const std::vector<Alteration>& alterations) const {
     return said_of(value(literals(model_, form_, trace_, values_, alterations)));
 }
 
-/// Every value of a literal gets a number of its own, in their order, and so do the ranges of what
-/// comes after the prefix: the deciding value is then the number of the sample that it is that of.
+/// Numbers all values of literals in their order, and the ranges of what comes after the prefix:
+/// the deciding value then is the number of its sample.
 std::optional<Sample> Explained::critical() const {
     const bool low = said_.status == Status::satisfied;
     const auto ordered = [&](std::size_t n, std::uint64_t step) {

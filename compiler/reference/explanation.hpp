@@ -1,8 +1,6 @@
-// The critical sample and the explanation of a verdict by brute force, as docs/explanations.md
-// defines them.
-// Takes: the typed spec and a trace. Gives: the status with only some samples known; the sample
-// whose value rho is; the set that the rule leaves. Keeps true: each is found by evaluating the
-// formula again, with other values of its literals.
+// Finds the critical sample and the explanation of a verdict by brute force, as
+// docs/explanations.md defines them: by evaluating the formula again with other values of its
+// literals.
 #pragma once
 
 #include <compare>
@@ -20,9 +18,9 @@ namespace etlc::reference {
 /// A predicate or a bool at a step; the order is that of steps, then of the spec.
 struct Sample {
     std::uint64_t step = 0;
-    std::uint32_t place = 0;  ///< in the text of the spec
+    std::uint32_t place = 0;  ///< place in the text of the spec
     bool is_predicate = true;
-    Index index = 0;  ///< of the model's predicates, or of its inputs
+    Index index = 0;  ///< index of the model's predicates, or of its inputs
 
     auto operator<=>(const Sample&) const = default;
 };
@@ -36,11 +34,11 @@ struct Alteration {
     double measured = 0;
 };
 
-/// The literals of a form on the whole trace, with some samples altered.
+/// Returns the literals of a form on the whole trace, with some samples altered.
 Literals literals(const check::Model& model, const NormalForm& form, const Trace& trace,
                   check::Values values, const std::vector<Alteration>& alterations = {});
 
-/// What a verdict says.
+/// The status of a verdict, and whether it is final.
 struct Said {
     Status status = Status::unknown;
     bool for_good = false;
@@ -51,20 +49,20 @@ struct Said {
 /// One monitor's rho(f, position, step) with its bounds.
 class Explained {
 public:
-    /// `form`: the monitors' formulas, as they are written or simplified.
+    /// `form`: the monitors' formulas, as written or simplified.
     Explained(const check::Model& model, NormalForm form, const Trace& trace, check::Values values,
               Index monitor, std::uint64_t position, std::uint64_t step);
 
-    /// Of the prefix, with all that the trace has.
+    /// Returns the status on the prefix, with all samples.
     Said said() const { return said_; }
     Said said_with_only(const SampleSet& known) const;
     Said said_with(const std::vector<Alteration>& alterations) const;
 
-    /// Whose value the deciding one is: for good the bound, else rho; nothing where it is that of
-    /// an empty window, a constant, or a step that is not yet seen.
+    /// Returns the sample of the deciding value, which is the bound of a final verdict, else rho;
+    /// nothing where that is the value of an empty window, a constant, or an unseen step.
     std::optional<Sample> critical() const;
-    /// The rule: from those samples that support the verdict as far as the deciding value does, the
-    /// last ones are left out first, and the critical one at the very end, wherever the rest gives
+    /// Applies the rule: from the samples that support the verdict as far as the deciding value,
+    /// drops the last ones first, and the critical one at the very end, where the rest still gives
     /// the verdict.
     SampleSet explanation() const;
 

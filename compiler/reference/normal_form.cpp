@@ -43,7 +43,7 @@ private:
         return add({.kind = kind, .operands = std::move(operands)});
     }
 
-    /// An operator that negation turns into its dual over negated operands.
+    /// Adds an operator that negation turns into its dual over negated operands.
     Index temporal(const Formula& f, bool negated, NodeKind kind, NodeKind dual) {
         Node node{.kind = negated ? dual : kind, .operands = {}, .low = f.low, .high = f.high};
         for (const Index operand : f.operands) node.operands.push_back(build(operand, negated));
@@ -56,21 +56,21 @@ private:
         return connect(kind, std::move(operands));
     }
 
-    /// `f -> g` is `!f || g`; its negation is `f && !g`.
+    /// Adds `f -> g` as `!f || g`; its negation is `f && !g`.
     Index implication(Index f, Index g, bool negated) {
         const Index left = build(f, !negated);
         const Index right = build(g, negated);
         return connect(negated ? NodeKind::all : NodeKind::any, {left, right});
     }
 
-    /// `f <-> g` is `(f -> g) && (g -> f)`; its negation is `!(f -> g) || !(g -> f)`.
+    /// Adds `f <-> g` as `(f -> g) && (g -> f)`; its negation is `!(f -> g) || !(g -> f)`.
     Index equivalence(Index f, Index g, bool negated) {
         const Index forth = implication(f, g, negated);
         const Index back = implication(g, f, negated);
         return connect(negated ? NodeKind::any : NodeKind::all, {forth, back});
     }
 
-    /// `f W g` is `g R (f || g)`; its negation is `!g U (!f && !g)`.
+    /// Adds `f W g` as `g R (f || g)`; its negation is `!g U (!f && !g)`.
     Index weak_until(Index f, Index g, bool negated) {
         const Index left = build(f, negated);
         const Index right = build(g, negated);
@@ -78,7 +78,8 @@ private:
         return connect(negated ? NodeKind::until : NodeKind::release, {right, both});
     }
 
-    /// `rise f` is `f && Y !f`, and `fall f` is `!f && Y f`; the negation of either is the dual.
+    /// Adds `rise f` as `f && Y !f`, and `fall f` as `!f && Y f`; the negation of either is the
+    /// dual.
     Index edge(Index f, bool falls, bool negated) {
         const Index now = build(f, falls != negated);
         const Index before = build(f, falls == negated);
@@ -89,7 +90,7 @@ private:
         return connect(negated ? NodeKind::any : NodeKind::all, {now, previous});
     }
 
-    /// `held[n] f` is `H[0,n] f && O[n,n] true`; its negation is `O[0,n] !f || H[n,n] false`.
+    /// Adds `held[n] f` as `H[0,n] f && O[n,n] true`; its negation is `O[0,n] !f || H[n,n] false`.
     Index held(const Formula& f, bool negated) {
         const Index all = temporal(f, negated, NodeKind::historically, NodeKind::once);
         const Index old = add({.kind = negated ? NodeKind::historically : NodeKind::once,

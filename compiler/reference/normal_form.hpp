@@ -1,7 +1,5 @@
-// Negation normal form: the formulas of the monitors with negation on literals only.
-// Takes: the formulas of the model. Gives: nodes over fewer operators, each with its dual beside
-// it. Keeps true: a node's operands have smaller indices than the node; equal (formula, polarity)
-// pairs are one node.
+// The formulas of the monitors in negation normal form. Operands have smaller indices than their
+// node; equal (formula, polarity) pairs are one node.
 #pragma once
 
 #include <cstdint>
@@ -37,17 +35,18 @@ struct Node {
     std::uint32_t high = check::kUnbounded;
 
     bool is_atom() const { return kind == Kind::predicate || kind == Kind::boolean; }
+    bool connects() const { return kind == Kind::all || kind == Kind::any; }
 };
 
 struct NormalForm {
-    std::vector<Node> nodes;   ///< those that some monitor reaches, no others
+    std::vector<Node> nodes;   ///< only those that a monitor reaches
     std::vector<Index> roots;  ///< per monitor
 };
 
 NormalForm normal_form(const check::Model& model);
 
-/// The sum of the upper bounds along the deepest path of a formula as written; past operators add
-/// nothing.
+/// Returns the sum of the upper bounds along the deepest path of a formula as written; past
+/// operators add nothing.
 std::uint64_t horizon(const check::Model& model, Index formula);
 
 }  // namespace etlc::reference

@@ -1,7 +1,5 @@
-// rho(f, k, i) and its bounds for one prefix 0..i, clause by clause as docs/language.md has them.
-// Takes: the negation normal form, the literals of steps 0..i, and each literal's range. Gives:
-// four numbers per node and position. Keeps true: lower <= rho <= rho_high <= upper; every clause
-// is quoted where it is computed.
+// Evaluates rho(f, k, i) and its bounds on one prefix 0..i, clause by clause as docs/semantics.md
+// defines them; each clause is quoted where it is computed. lower <= rho <= rho_high <= upper.
 #pragma once
 
 #include <cstdint>
@@ -15,21 +13,24 @@ namespace etlc::reference {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// What is said about a formula at a position of a prefix.
+/// The value of a formula at a position of a prefix.
 struct Value {
-    double lower = 0;     ///< no longer prefix, whatever its samples, has a smaller rho here
+    double lower = 0;     ///< lower bound of rho over all longer prefixes
     double rho = 0;       ///< pessimistic: unknown literals at the low end of their range
     double rho_high = 0;  ///< optimistic: unknown literals at the high end
-    double upper = 0;     ///< no longer prefix has a larger rho_high here
+    double upper = 0;     ///< upper bound of rho_high over all longer prefixes
 };
 
-/// Lowest and highest value of a formula at a position after i that some longer prefix has.
+/// The lowest and highest value of a formula at a position after i, over all longer prefixes.
 struct Unseen {
     double lowest = 0;
     double highest = 0;
 };
+inline Unseen negate(const Unseen& range) {
+    return {-range.highest, -range.lowest};
+}
 
-/// The literals: per node of the normal form that is an atom, its value at each step and its range.
+/// The literals: per atom of the normal form, its value at each step and its range.
 struct Literals {
     std::vector<std::vector<Value>> values;  ///< [node][step]; empty for other nodes
     std::vector<Unseen> ranges;              ///< [node]
@@ -37,10 +38,10 @@ struct Literals {
 
 class Prefix {
 public:
-    /// The prefix 0..end.
+    /// Makes the prefix 0..end.
     Prefix(const NormalForm& form, const Literals& literals, std::uint64_t end);
 
-    /// The node's value at `position` <= end.
+    /// Returns the node's value at `position` <= end.
     Value at(Index node, std::uint64_t position);
     Unseen unseen(Index node);
 
@@ -52,19 +53,14 @@ private:
     std::vector<std::optional<Unseen>> unseen_;              // [node]
 
     Value evaluate(const Node& node, Index index, std::uint64_t k);
-    Value eventually(const Node& node, std::uint64_t k);
-    Value always(const Node& node, std::uint64_t k);
-    Value until(const Node& node, std::uint64_t k);
-    Value release(const Node& node, std::uint64_t k);
-    Value once(const Node& node, std::uint64_t k);
-    Value historically(const Node& node, std::uint64_t k);
-    Value since(const Node& node, std::uint64_t k);
-    Value trigger(const Node& node, std::uint64_t k);
+    // These evaluate a node, or for a dual the operator that it is the dual of, over negated
+    // operands.
+    Value greatest(const Node& node, std::uint64_t k);
+    Value future(const Node& node, std::uint64_t k);
+    Value past(const Node& node, std::uint64_t k);
     Unseen find_unseen(const Node& node, Index index);
-    double greatest_known_lower(Index node);
-    double greatest_known_upper(Index node);
-    double least_known_lower(Index node);
-    double least_known_upper(Index node);
+    Value operand(const Node& node, std::size_t n, std::uint64_t position);
+    Unseen unseen_operand(const Node& node, std::size_t n);
 };
 
 }  // namespace etlc::reference

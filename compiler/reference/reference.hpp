@@ -1,7 +1,6 @@
-// Brute-force semantics straight from docs/language.md: the judge in tests.
-// Takes: the typed spec and a whole trace. Gives: every verdict. Keeps true: shares nothing with
-// ir/ and below and no arithmetic with the runtime; distances are computed in double; clarity
-// before speed (memoised recursion per prefix).
+// Evaluates monitors by brute force, straight from docs/semantics.md: the judge in tests. It shares
+// nothing with ir/ and later stages and no arithmetic with the runtime; distances are computed in
+// double; it is written for clarity before speed (memoised recursion per prefix).
 #pragma once
 
 #include <cstdint>
@@ -36,7 +35,7 @@ struct Telemetry {
 struct Run {
     /// verdicts[step][monitor], as after `step` steps have been seen.
     std::vector<std::vector<Verdict>> verdicts;
-    /// positions[step][monitor]: the position that the verdict is about, where it is decided.
+    /// positions[step][monitor]: the position of the verdict, where it is decided.
     std::vector<std::vector<std::uint64_t>> positions;
     /// finish[call][monitor]: the calls of finish() after the trace, as many as the largest
     /// horizon.
@@ -45,7 +44,7 @@ struct Run {
     std::vector<std::vector<Telemetry>> telemetry;
     /// present[step][input]: the sample was there and valid, or held.
     std::vector<std::vector<bool>> present;
-    /// Steps on which some predicate or bool that a monitor names was unknown, after hold.
+    /// Steps at which some predicate or bool of a monitor was unknown, after hold.
     std::uint32_t missing_steps = 0;
 };
 
@@ -56,9 +55,9 @@ using Thresholds = std::vector<std::vector<double>>;
 /// requests[step][monitor]: the program restarted that monitor before the step.
 using Requests = std::vector<std::vector<bool>>;
 
-/// Boolean: a predicate is true (+inf) or false (-inf) as its comparison says, in double; lowest
-/// and highest unseen value are what its comparison can say over the range of its expression.
-/// Without thresholds, adaptive ones stay where they start.
+/// Evaluates all monitors. With Boolean values a predicate is true (+inf) or false (-inf) as its
+/// comparison says, in double, and its unseen values are those of its comparison over the range of
+/// its expression. Without thresholds, adaptive ones stay where they start.
 Run evaluate(const check::Model& model, const Trace& trace,
              check::Values values = check::Values::robustness, const Thresholds& thresholds = {},
              const Requests& requests = {});

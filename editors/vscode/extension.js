@@ -1,4 +1,4 @@
-// The client of `etlc lsp`: it starts the server, and tells it when a file that specs load changes.
+// The client of `etlc lsp`: starts the server, and tells it when a file that specs load changes.
 'use strict';
 
 const { workspace } = require('vscode');

@@ -10,7 +10,7 @@ constexpr double kBaseHalfWidth = 0.07;                 // m
 constexpr double kDotGrey = 0.35;
 constexpr int kSamples = 4;  // per pixel and axis
 
-/// Brightness at a point given in the car's own frame: x ahead, y to the left.
+/// Returns the brightness at a point in the car's own frame: x ahead, y to the left.
 double brightness(double x, double y) {
     const bool triangle = x >= 0 && std::abs(y) <= kBaseHalfWidth * (1 - x / kNoseAhead);
     if (triangle) return 0;

@@ -1,6 +1,6 @@
 // The camera above the world.
-// Takes: the car's state. Gives: a grey image of the whole world, north up: white ground, the car a
-// dark dot with a black triangle for its heading, antialiased.
+// Takes: the car's state. Gives: an antialiased grey image of the whole world, north up: white
+// ground, the car as a dark dot with a black triangle for its heading.
 #pragma once
 
 #include <array>

@@ -1,7 +1,8 @@
-// drift FOLDER: recorded drives in the order of their names, as dubins_record --sagging writes
-// them, past the class that etlc made of drift.etl, compiled with its thresholds. Every step gets
-// its label two seconds late. Gives: for each tenth of the drives, how many of the frames inside A
-// either predicate missed, and how many outside it took for A. Needs nothing but the generated
+// drift FOLDER: runs recorded drives, in the order of their names, as dubins_record --sagging
+// writes them, through the class that etlc made of drift.etl with its thresholds. Every step gets
+// its label two seconds late. Prints, for each tenth of the drives, how many of the frames inside A
+// either predicate missed, and how many outside it took for A. It needs only the generated header
+// and etlmon: c++ -std=c++17 -O2 -I runtime/include -I FOLDER_OF_THE_HEADER drift.cpp
 // header and etlmon: c++ -std=c++17 -O2 -I runtime/include -I FOLDER_OF_THE_HEADER drift.cpp
 #include <algorithm>
 #include <cstdio>
@@ -19,7 +20,7 @@ namespace {
 constexpr std::size_t kLateness = 40;  // steps of 50 ms
 constexpr std::size_t kParts = 10;
 
-/// Frames inside A and outside, and how many of them were called otherwise.
+/// Counts frames inside A and outside, and the misjudged ones among them.
 struct Counts {
     int inside = 0;
     int outside = 0;
@@ -49,7 +50,7 @@ public:
         std::ifstream file(path);
         std::string row;
         std::getline(file, row);  // the names of the columns
-        monitor_.reset();         // a new drive; what was learnt stays
+        monitor_.reset();         // a new drive; the threshold stays
         while (std::getline(file, row)) {
             Frame frame;
             if (!read(row, frame)) return false;
@@ -83,9 +84,9 @@ private:
     }
 
     dubins_drift::Monitor monitor_;
-    std::deque<Label> labels_;  // of whoever labels; the monitor keeps none
+    std::deque<Label> labels_;  // kept by the labelling program, not by the monitor
     int labelled_ = 0;          // frames inside A
-    int missed_ = 0;  // by the threshold at the time of the label: what the guarantee is about
+    int missed_ = 0;  // by the threshold at the time of the label, which the guarantee is about
 };
 
 double percent(int part, int of) {

@@ -1,12 +1,11 @@
 #!/usr/bin/env bash
-# drift.sh ETLC DUBINS_RECORD FOLDER [SEED]: a camera whose mount gives way, watched by a threshold
-# that stays and by one that follows labels. Both are calibrated on 120 drives with the camera as
-# new. Then the compiled class sees 300 other drives, with labels two seconds late. All files stay
-# in FOLDER.
+# drift.sh ETLC DUBINS_RECORD FOLDER [SEED]: a camera whose mount gives way, watched with a fixed
+# and an adaptive threshold. Both are calibrated on 120 drives with the new camera. Then the
+# compiled class sees 300 other drives, with labels two seconds late. All files stay in FOLDER.
 set -euo pipefail
 etlc=$1 record=$2 folder=$3 seed=${4:-1}
 here=$(dirname "${BASH_SOURCE[0]}")
-later=$((seed + 1000))  # the drives of another seed
+later=$((seed + 1000))  # drives with another seed
 
 [ -d "$folder/$seed/calibration" ] || "$record" "$folder" "$seed"
 "$record" --sagging "$folder" "$later"

@@ -15,7 +15,7 @@ bool is_free(const Tour& tour, Point p) {
                         [&](const Disc& disc) { return disc.contains(p); });
 }
 
-/// Whether the car could circle left or right for ever.
+/// Returns whether the car could circle left or right for ever.
 bool can_circle(const Tour& tour, const Car& car) {
     for (const double side : {1.0, -1.0}) {
         const Point centre{car.position.x - side * kTurnRadius * std::sin(car.heading),

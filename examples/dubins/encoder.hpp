@@ -1,7 +1,6 @@
 // A small learned encoder: blur, then principal components.
-// Takes: camera images. Gives: embeddings of 32 float32 numbers, the `input z` of dubins.etl.
-// Keeps true: the same components encode the targets and the frames, so their distances mean
-// something.
+// Takes: camera images. Gives: embeddings of 32 float32 numbers, the `input z` of dubins.etl. Keeps
+// true: the same components encode the targets and the frames, so their distances are meaningful.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,12 +15,13 @@ namespace demo {
 inline constexpr int kDimension = 32;
 using Embedding = std::array<float, kDimension>;
 
-/// Ink (1 where the image is black) averaged over 2 x 2 pixels and blurred, row by row.
+/// Returns ink (1 where the image is black) averaged over 2 x 2 pixels and blurred, row by row.
 Eigen::VectorXf blurred(const Image& image);
 
 class Encoder {
 public:
-    /// Principal components of the blurred images (PCA by the eigenvectors of their covariance).
+    /// Computes principal components of the blurred images (PCA by the eigenvectors of their
+    /// covariance).
     static Encoder fit(const std::vector<Image>& images);
     /// Reads `mean.npy` (1 x 1024) and `components.npy` (32 x 1024). Throws std::runtime_error with
     /// the reason.
@@ -30,7 +30,7 @@ public:
     void save(const std::string& folder) const;
     Embedding encode(const Image& image) const;
 
-    /// Share of the images' variance that the components keep; known after fit.
+    /// The fraction of the images' variance that the components keep; known after fit.
     double kept_variance() const { return kept_; }
 
 private:

@@ -1,5 +1,5 @@
-// Apart from the rest of the encoder: only dubins_prepare fits one, and eigenvectors take long to
-// compile.
+// Separate from the rest of the encoder, because only dubins_prepare fits one, and Eigen's
+// eigenvectors compile slowly.
 #include <Eigen/Eigenvalues>
 
 #include "encoder.hpp"
@@ -16,7 +16,8 @@ Encoder Encoder::fit(const std::vector<Image>& images) {
     rows.rowwise() -= encoder.mean_.transpose();
     const Eigen::MatrixXd covariance =
         (rows.transpose() * rows).cast<double>() / static_cast<double>(images.size());
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);  // eigenvalues ascend
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);  // eigenvalues are in
+                                                                              // ascending order
     encoder.components_ =
         solver.eigenvectors().rightCols(kDimension).rowwise().reverse().transpose().cast<float>();
     encoder.kept_ = solver.eigenvalues().tail(kDimension).sum() / solver.eigenvalues().sum();

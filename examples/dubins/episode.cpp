@@ -17,7 +17,7 @@ struct Plan {
     Tour tour;
 };
 
-/// The goals with a margin, so that a forbidden goal is missed by little.
+/// The goals with a margin, so that a forbidden goal is missed narrowly.
 Disc widened(Disc disc, double margin) {
     return {disc.centre, disc.radius + margin};
 }
@@ -39,11 +39,11 @@ const std::vector<Plan>& plans() {
     return all;
 }
 
-/// Spreads the plans over the drives in a fixed pattern: 37 has no factor in common with 100.
+/// Distributes the plans over the drives in a fixed pattern: 37 has no factor in common with 100.
 std::size_t plan_of(int drive) {
     int slot = drive * 37 % 100;
     std::size_t plan = 0;
-    while (slot >= plans()[plan].share) slot -= plans()[plan++].share;  // the shares add up to 100
+    while (slot >= plans()[plan].share) slot -= plans()[plan++].share;  // the shares sum to 100
     return plan;
 }
 
@@ -53,7 +53,7 @@ Car random_state(Random& random) {
     return {{x, y}, random.uniform(-kPi, kPi)};
 }
 
-/// Away from the goals and from C, and with room to turn.
+/// Returns a place away from the goals and from C, with room to turn.
 Car random_start(const Route& route, Random& random) {
     for (;;) {
         const Car car = random_state(random);
@@ -64,8 +64,8 @@ Car random_start(const Route& route, Random& random) {
     }
 }
 
-/// One drive. A slowly wandering disturbance acts on the steering; empty if it pushed the car out
-/// of the world.
+/// Simulates one drive. A slowly wandering disturbance acts on the steering; the result is empty if
+/// it pushed the car out of the world.
 std::vector<Car> drive(const Route& route, int steps, Random& random) {
     Car car = random_start(route, random);
     Driver driver(route);

@@ -1,6 +1,6 @@
-// Drives: seeded, the same on every run.
-// Takes: an episode's number or a seed. Gives: the car's state at every step.
-// Keeps true: every state lies inside the world; the drives mix success with every kind of failure.
+// Drives from seeds, the same on every run.
+// Takes: an episode's number or a seed. Gives: the car's state at every step. Keeps true: every
+// state is inside the world; the drives include successes and every kind of failure.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@
 namespace demo {
 
 struct Episode {
-    std::string_view plan;    ///< what the driver was told, "A then B"
-    std::vector<Car> states;  ///< one a step
+    std::string_view plan;    ///< the driver's plan, "A then B"
+    std::vector<Car> states;  ///< one per step
 };
 
-/// `count` tours of `steps` steps each, from the seed alone.
+/// Returns `count` tours of `steps` steps each, from the seed.
 std::vector<Episode> drive_tours(std::uint64_t seed, int count, int steps);
 
-/// States of cars that steer at random, spread evenly over the world: what the encoder is fitted
-/// on.
+/// Returns states of cars that steer at random, evenly distributed over the world, for fitting the
+/// encoder.
 std::vector<Car> wander(std::uint64_t seed, int count);
 
 }  // namespace demo

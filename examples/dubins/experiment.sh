@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # experiment.sh ETLC DUBINS_RECORD FOLDER [SEED...]: the paper's Dubins experiment. For each seed
-# (default: 1 to 5) it records 300 drives, takes thresholds from 120 of them, by F1 and by
+# (default: 1 to 5) it records 300 drives, calibrates thresholds on 120 of them, by F1 and by
 # conformal calibration with alpha = 0.10, and evaluates on the other 180. It prints the mean and
-# the standard deviation over the seeds next to the paper's table. All files stay in FOLDER/SEED.
+# the standard deviation over the seeds beside the paper's table. All files stay in FOLDER/SEED.
 set -euo pipefail
 etlc=$1 record=$2 folder=$3
 shift 3

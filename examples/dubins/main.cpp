@@ -1,6 +1,6 @@
-// dubins [OUTPUT_FOLDER]: a hundred drives past the generated monitor of dubins.etl.
+// dubins [OUTPUT_FOLDER]: runs a hundred drives through the generated monitor of dubins.etl.
 // Gives: on standard output a line per drive, then how often verdicts and truth agree; in
-// OUTPUT_FOLDER, where one is named, the drives as episodes for `etlc report`, 001.npz to 100.npz.
+// OUTPUT_FOLDER, if given, the drives as episodes for `etlc report`, 001.npz to 100.npz.
 #include <fmt/core.h>
 
 #include <exception>
@@ -15,7 +15,7 @@
 namespace demo {
 namespace {
 
-constexpr std::uint64_t kSeed = 2025;  // another than those in prepare.cpp
+constexpr std::uint64_t kSeed = 2025;  // differs from those in prepare.cpp
 constexpr int kDrives = 100;
 constexpr int kSteps = 240;  // 12 s
 
@@ -25,7 +25,7 @@ void write_drive(const std::string& path, const Recording& recording) {
     write_npz(path, recording.episode.states, embeddings);
 }
 
-/// `folder`: null where nothing is recorded.
+/// `folder`: null if nothing is recorded.
 void show(const char* folder) {
     if (folder != nullptr) std::filesystem::create_directories(folder);
     const Encoder encoder = Encoder::load(DUBINS_FOLDER "/encoder");

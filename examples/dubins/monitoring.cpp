@@ -17,7 +17,7 @@ Claim claim(const etlmon::Verdict& verdict) {
     return {verdict.satisfied(), verdict.final(), verdict.robustness};
 }
 
-/// The four formulas of dubins.etl over what is true, written by hand.
+/// The four formulas of dubins.etl over the truth, written by hand.
 class Truth {
 public:
     std::array<bool, kMonitors.size()> step(const std::array<bool, kPredicates.size()>& now) {

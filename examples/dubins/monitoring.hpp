@@ -1,7 +1,7 @@
-// One drive as the generated monitor saw it, beside the truth.
-// Takes: an episode and the encoder. Gives: per step the embedding, the distances, and what the
-// monitors said and should have said. Keeps true: the truth comes from the car's position alone,
-// not from anything that the monitor computed.
+// Monitors one drive with the generated class, beside the truth.
+// Takes: an episode and the encoder. Gives: per step the embedding, the distances, the verdicts and
+// the true verdicts. Keeps true: the truth depends on the car's position only, not on anything that
+// the monitor computed.
 #pragma once
 
 #include <array>
@@ -17,11 +17,11 @@ namespace demo {
 inline constexpr std::array<std::string_view, 3> kPredicates{"at_a", "at_b", "near_c"};
 inline constexpr std::array<std::string_view, 4> kMonitors{"reach", "avoid", "reach_avoid",
                                                            "sequential"};
-extern const std::array<float, 3> kThresholds;  ///< per predicate, from the generated class
+extern const std::array<float, 3> kThresholds;  ///< one per predicate, from the generated class
 
 struct Claim {
     bool satisfied = false;
-    bool final = false;  ///< whatever follows, the verdict stays
+    bool final = false;  ///< whether the verdict is final
     float robustness = 0;
 };
 
@@ -29,7 +29,7 @@ struct Step {
     Embedding embedding;
     std::array<float, kPredicates.size()> distances;
     std::array<bool, kPredicates.size()> seen;       ///< the predicates
-    std::array<bool, kPredicates.size()> true_now;   ///< what they are meant to mean
+    std::array<bool, kPredicates.size()> true_now;   ///< their intended meaning
     std::array<Claim, kMonitors.size()> claims;      ///< the monitors' verdicts on the steps so far
     std::array<bool, kMonitors.size()> true_so_far;  ///< the same formulas over the truth
 };
@@ -39,7 +39,7 @@ struct Recording {
     std::vector<Step> steps;
 };
 
-/// Photographs, encodes and monitors a drive, step by step.
+/// Renders, encodes and monitors a drive, step by step.
 Recording monitor_drive(Episode episode, const Encoder& encoder);
 
 }  // namespace demo

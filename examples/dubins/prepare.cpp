@@ -1,4 +1,4 @@
-// dubins_prepare [FOLDER]: makes what the example commits, from seeds alone.
+// dubins_prepare [FOLDER]: makes the committed files of the example from seeds.
 // Gives: FOLDER/encoder/{mean,components}.npy, FOLDER/targets/*.npy, and on standard output the
 // thresholds for dubins.etl. Keeps true: the encoder is fitted on cars that wander at random, the
 // thresholds on tours that `dubins` does not show.
@@ -19,7 +19,7 @@ namespace demo {
 namespace {
 
 constexpr std::uint64_t kWanderSeed = 7;
-constexpr std::uint64_t kTuningSeed = 11;  // another than that of the tours in main.cpp
+constexpr std::uint64_t kTuningSeed = 11;  // differs from that of the tours in main.cpp
 constexpr int kImages = 3000;
 constexpr int kTours = 100;
 constexpr int kSteps = 240;
@@ -37,8 +37,8 @@ struct Frame {
     bool inside;
 };
 
-/// Of all thresholds between neighbouring observed distances, the one with the best F1 ("F1-Optimal
-/// Threshold").
+/// Returns the threshold with the best F1 among all thresholds between neighbouring observed
+/// distances ("F1-Optimal Threshold").
 std::pair<double, Score> best_threshold(std::vector<Frame> frames) {
     std::sort(frames.begin(), frames.end(),
               [](const Frame& a, const Frame& b) { return a.distance < b.distance; });

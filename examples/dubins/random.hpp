@@ -1,6 +1,6 @@
 // Pseudo-random numbers that are the same on every machine.
 // Takes: a seed. Gives: splitmix64 (Steele, Lea, Flood 2014) and uniform numbers made from it.
-// Keeps true: no std distribution is used, since those differ between standard libraries.
+// Keeps true: it uses no std distribution, since those differ between standard libraries.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ public:
         return x ^ (x >> 31U);
     }
 
-    /// Uniform in [low, high).
+    /// Returns a number uniform in [low, high).
     double uniform(double low, double high) {
         return low + (high - low) * (static_cast<double>(bits() >> 11U) * 0x1p-53);
     }

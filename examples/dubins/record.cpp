@@ -1,11 +1,12 @@
-// dubins_record FOLDER SEED...: drives as episodes for `etlc calibrate` and `etlc evaluate`.
+// dubins_record FOLDER SEED...: records drives as episodes for `etlc calibrate` and `etlc
+// evaluate`.
 // Gives: for each seed 300 drives, 120 in FOLDER/SEED/calibration, 180 in FOLDER/SEED/test, one
-// .csv each. Keeps true: which drive is on which side is drawn from the seed, whatever its plan, so
-// the two sides are exchangeable.
+// .csv each. Keeps true: the seed assigns drives to the two sides at random, whatever their plan,
+// so the two sides are exchangeable.
 //
 // dubins_record --sagging FOLDER SEED...: for each seed 300 drives in FOLDER/SEED/sagging, in the
-// order of their names, of a camera whose picture loses contrast: none over the first 100, up to a
-// half over the next, a half over the last.
+// order of their names, from a camera whose picture moves: not over the first 100, increasingly
+// over the next 100, and fully over the last.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -33,7 +34,7 @@ constexpr int kForCalibration = 120;  // 40 %
 constexpr int kSteps = 240;           // 12 s
 constexpr double kMostRows = 3;       // of the picture, 14 cm
 
-/// 0 to n - 1 in a random order (Fisher and Yates).
+/// Returns 0 to n - 1 in a random order (Fisher and Yates).
 std::vector<int> shuffled(int n, std::uint64_t seed) {
     Random random(seed);
     std::vector<int> order(static_cast<std::size_t>(n));
@@ -58,7 +59,7 @@ void record(const std::string& folder, std::uint64_t seed, const Encoder& encode
     }
 }
 
-/// What a camera sees whose mount gave way: the picture moved up, by a share of a row too, and
+/// Returns the image of a camera whose mount gave way: moved up, by fractions of a row too, with
 /// ground below it.
 Image moved_up(const Image& image, double rows) {
     Image result;

@@ -1,7 +1,7 @@
-// A drive as an episode for etlc.
+// Writes a drive as an episode for etlc.
 // Takes: the car's states and one embedding each. Gives: px, py and z, as .csv (columns px, py,
-// z[0] ... z[31], a row a step) or as .npz, which holds the camera's pictures too. Both throw
-// std::runtime_error where the file cannot be written.
+// z[0] ... z[31], one row per step) or as .npz, which also holds the camera's pictures. Both throw
+// std::runtime_error if the file cannot be written.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// A step of a recorded drive, as the programs read it that need nothing but a generated header.
+// Reads a step of a recorded drive, for programs that need only a generated header.
 // Takes: a row of a .csv file of dubins_record, columns px, py, z[0] ... z[31]. Gives: its numbers.
 #pragma once
 
@@ -17,7 +17,7 @@ struct Frame {
     }
 };
 
-/// False where the row is too short or not of numbers.
+/// Returns false if the row is too short or contains text that is not a number.
 inline bool read(const std::string& row, Frame& frame) {
     const char* at = row.c_str();
     char* end = nullptr;

@@ -11,7 +11,7 @@
 namespace demo {
 namespace {
 
-constexpr int kColumn = 15;  // characters for a monitor
+constexpr int kColumn = 15;  // width of a monitor's column
 
 enum class Colour { none, green, red, yellow, faint };
 
@@ -27,8 +27,8 @@ std::string painted(const std::string& text, Colour colour, bool enabled) {
     return fmt::format("\x1b[{}m{}\x1b[0m", codes[static_cast<int>(colour)], text);
 }
 
-/// "yes  3.40 s": the verdict on the whole drive, and when it became final (nothing: only the end
-/// of the drive made it).
+/// Returns "yes  3.40 s": the verdict on the whole drive, and when it became final (nothing if only
+/// the end of the drive decided it).
 std::string cell(const Recording& recording, std::size_t monitor) {
     std::string decided = "";
     for (std::size_t i = 0; i < recording.steps.size(); ++i) {

@@ -1,6 +1,6 @@
-// What the demo prints: a line per drive, then how often the monitors agree with the truth.
-// Keeps true: colour only on a terminal (and not where NO_COLOR is set); widths do not depend on
-// it.
+// Prints the output of the demo: a line per drive, then how often the monitors agree with the
+// truth.
+// Keeps true: colour only on a terminal (and not if NO_COLOR is set); widths do not depend on it.
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ public:
 private:
     bool colour_;
     std::size_t drives_ = 0;
-    std::array<Score, kMonitors.size()> at_end_;    ///< one count a drive
-    std::array<Score, kMonitors.size()> at_steps_;  ///< one count a step
+    std::array<Score, kMonitors.size()> at_end_;    ///< one count per drive
+    std::array<Score, kMonitors.size()> at_steps_;  ///< one count per step
     std::array<Score, kPredicates.size()> frames_;
 };
 

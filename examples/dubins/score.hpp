@@ -1,4 +1,4 @@
-// Counting how often a verdict agrees with the truth.
+// Counts how often a verdict agrees with the truth.
 #pragma once
 
 namespace demo {
@@ -25,7 +25,7 @@ struct Score {
     double agreement() const { return share(true_positives + true_negatives, total()); }
 
 private:
-    /// 0 where it would divide by zero.
+    /// Returns 0 instead of dividing by zero.
     static double share(long part, long whole) {
         return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
     }

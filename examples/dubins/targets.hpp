@@ -1,6 +1,6 @@
-// The target sets of dubins.etl: what the camera sees where a goal or the obstacle is.
-// Takes: an encoder. Gives: one embedding a row, the car at the centre with eight headings.
-// Keeps true: the places are not taken from any recorded drive.
+// The target sets of dubins.etl: camera images at a goal or at the obstacle.
+// Takes: an encoder. Gives: one embedding per row, with the car at the centre and eight headings.
+// Keeps true: the places do not come from any recorded drive.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 namespace demo {
 
 struct Region {
-    std::string_view name;       ///< of the file in targets/
-    std::string_view predicate;  ///< of the spec
+    std::string_view name;       ///< name of the file in targets/
+    std::string_view predicate;  ///< name in the spec
     Disc disc;
 };
 

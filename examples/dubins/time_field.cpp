@@ -8,11 +8,11 @@ namespace {
 
 constexpr double kCell = 0.06;  // m
 constexpr int kCells =
-    57;  // grid points along x and y: the world and a rim of three cells around it
+    57;  // grid points along x and y: the world and a margin of three cells around it
 constexpr double kOrigin = -kHalfWidth - 3 * kCell;
 constexpr int kHeadings = 40;
 constexpr double kHeadingStep = 2 * kPi / kHeadings;
-constexpr double kStep = 0.12;     // s: two cells far, less than the rim is wide
+constexpr double kStep = 0.12;     // s: two cells, less than the margin
 constexpr float kSettled = 0.01F;  // s
 constexpr int kMaxSweeps = 300;
 
@@ -52,7 +52,7 @@ TimeField::TimeField(const std::function<bool(const Car&)>& reached,
     }
 }
 
-/// One sweep in place; the largest change, s.
+/// One sweep in place; returns the largest change, s.
 float TimeField::relax(const std::vector<Stencil>& moves) {
     float change = 0;
     for (const std::size_t index : open_) {

@@ -1,8 +1,7 @@
-// How long a Dubins car needs at best, from every state, to a set of states without leaving the
-// free ones. Takes: which states are the goal and which places are free. Gives: seconds,
-// interpolated between grid states. Keeps true: the semi-Lagrangian fixed point of T(s) = min over
-// turn rates of h + T(s after h), the Hamilton-Jacobi reachability value, on a grid of positions
-// and headings.
+// The shortest time in which a Dubins car reaches a set of states from every state without leaving
+// the free ones. Takes: the goal states and the free places. Gives: seconds, interpolated between
+// grid states. Keeps true: it is the semi-Lagrangian fixed point of T(s) = min over turn rates of h
+// + T(s after h), the Hamilton-Jacobi reachability value, on a grid of positions and headings.
 #pragma once
 
 #include <array>
@@ -16,12 +15,12 @@ namespace demo {
 
 class TimeField {
 public:
-    static constexpr double kNever = 30;  ///< s: stands for "cannot be reached"
+    static constexpr double kNever = 30;  ///< s: means "cannot be reached"
 
     TimeField(const std::function<bool(const Car&)>& reached,
               const std::function<bool(Point)>& free);
 
-    /// Seconds to the goal, at most kNever; the grid blurs the two next to forbidden places.
+    /// Returns seconds to the goal, at most kNever; the grid blurs the two beside forbidden places.
     double at(const Car& car) const;
     bool reachable(const Car& car) const { return at(car) < 0.5 * kNever; }
 
@@ -36,7 +35,7 @@ private:
     float relax(const std::vector<Stencil>& moves);
 
     std::vector<float> values_;  ///< s, [heading][y][x]
-    /// Indices of the free states that are not the goal: those to solve for.
+    /// Indices of the free states that are not the goal: the unknowns.
     std::vector<std::size_t> open_;
 };
 

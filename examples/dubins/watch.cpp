@@ -1,7 +1,7 @@
-// watch FOLDER: recorded drives, .csv files as dubins_record writes them, past the class that etlc
-// made of paper.etl, compiled with its thresholds. Gives: per monitor in how many episodes its last
-// verdict is what was true, by the car's position. Needs nothing but the generated header and
-// etlmon: c++ -std=c++17 -O2 -I runtime/include -I FOLDER_OF_THE_HEADER watch.cpp
+// watch FOLDER: runs recorded drives, .csv files of dubins_record, through the class that etlc made
+// of paper.etl with its thresholds. Prints per monitor the number of episodes whose last verdict
+// agrees with the truth from the car's position. It needs only the generated header and etlmon: c++
+// -std=c++17 -O2 -I runtime/include -I FOLDER_OF_THE_HEADER watch.cpp
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace {
 
-/// The four formulas over what is true, written by hand.
+/// The four formulas over the truth, written by hand.
 struct Truth {
     bool reached = false;
     bool avoided = true;

@@ -1,9 +1,9 @@
-// whole FOLDER: recorded drives, .csv files as dubins_record writes them, past the classes that
-// etlc made of union.etl and whole.etl, compiled with their thresholds. Gives: for both, in how
-// many drives some verdict misses a success (of `sequential`) or an alarm (of `in_order`), which is
-// what is guaranteed, and in how many some verdict is wrong the other way, which is what the
-// guarantee costs. Needs nothing but the generated headers and etlmon: c++ -std=c++17 -O2 -I
-// runtime/include -I FOLDER_OF_THE_HEADERS whole.cpp
+// whole FOLDER: runs recorded drives, .csv files of dubins_record, through the classes that etlc
+// made of union.etl and whole.etl with their thresholds. Prints, for both, in how many drives some
+// verdict misses a success (of `sequential`) or an alarm (of `in_order`), which the guarantee
+// bounds, and in how many some verdict is wrong the other way, which is the price of the guarantee.
+// It needs only the generated headers and etlmon: c++ -std=c++17 -O2 -I runtime/include -I
+// FOLDER_OF_THE_HEADERS whole.cpp
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -15,11 +15,11 @@
 
 namespace {
 
-/// One monitor over all drives: in how many some verdict says satisfied where that is false, or
-/// does not where it is true.
+/// Counts for one monitor over all drives: in how many some verdict is wrongly satisfied, or
+/// wrongly not satisfied.
 struct Score {
-    int unfounded = 0;  // satisfied is said, and is not true
-    int missing = 0;    // it is true, and is not said
+    int unfounded = 0;  // a verdict is satisfied, but the truth is not
+    int missing = 0;    // the truth is satisfied, but a verdict is not
 
     void count(bool any_unfounded, bool any_missing) {
         unfounded += any_unfounded ? 1 : 0;
@@ -42,7 +42,7 @@ struct Scores {
     Score in_order;
 };
 
-/// The two formulas over what is true, written by hand.
+/// The two formulas over the truth, written by hand.
 struct Truth {
     bool been_at_a = false;
     bool been_at_b = false;
@@ -84,8 +84,8 @@ bool watch(const std::filesystem::path& path, Scores& scores, Truth& truth) {
 }
 
 void print(const char* by, int drives, int successes, int alarms, const Scores& scores) {
-    // `sequential` misses a success where it does not say satisfied, `in_order` an alarm where it
-    // does.
+    // `sequential` misses a success by a verdict that is not satisfied, `in_order` an alarm by one
+    // that is.
     std::printf("%s,sequential,%d,%d,%d,%d\n", by, drives, successes, scores.sequential.missing,
                 scores.sequential.unfounded);
     std::printf("%s,in_order,%d,%d,%d,%d\n", by, drives, alarms, scores.in_order.unfounded,

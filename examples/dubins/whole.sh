@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# whole.sh ETLC DUBINS_RECORD FOLDER [SEED...]: the guarantee of a formula, by the union bound over
-# its predicates and by calibrating the monitor as a whole, for each seed (default: 1 to 5) on the
-# drives of experiment.sh. Both calibrate on the same 120 drives; as a whole, 60 of them give the
-# thresholds and the other 60 the shift. It prints the errors on 180 others.
+# whole.sh ETLC DUBINS_RECORD FOLDER [SEED...]: compares the guarantee of a formula by the union
+# bound over its predicates with calibrating the monitor as a whole, for each seed (default: 1 to 5)
+# on the drives of experiment.sh. Both calibrate on the same 120 drives; as a whole, 60 of them give
+# the thresholds and the other 60 the shift. It prints the errors on 180 others.
 set -euo pipefail
 etlc=$1 record=$2 folder=$3
 shift 3

@@ -34,12 +34,12 @@ inline constexpr Disc kGoalA{{0.8, 0.8}, 0.25};
 inline constexpr Disc kGoalB{{-0.8, 0.8}, 0.25};
 inline constexpr Disc kObstacleC{{0.8, -0.8}, 0.5};
 
-/// Position and heading; constant speed, steered by the turn rate alone.
+/// Position and heading; the speed is constant, and the turn rate steers.
 struct Car {
     Point position;
     double heading = 0;
 
-    /// One step along the exact arc. A turn rate beyond the limit is cut to it.
+    /// Takes one step along the exact arc. A turn rate beyond the limit is clamped to it.
     Car moved(double turn_rate, double seconds) const {
         const double rate = std::clamp(turn_rate, -kMaxTurnRate, kMaxTurnRate);
         const double half_turn = 0.5 * rate * seconds;

@@ -1,7 +1,7 @@
 #!/bin/sh
-# build.sh ETLC RUNTIME OUT BOARD...: compiles the specs to headers and the programs for
-# each board, into the folder OUT. RUNTIME: the folder that holds etlmon/, unless ETLC_OPTIONS is
-# --standalone. BOARD: cortex_m4, rv32 (QEMU's mps2-an386 and virt machines), host.
+# build.sh ETLC RUNTIME OUT BOARD...: compiles the specs to headers and the programs for each board,
+# into the folder OUT. RUNTIME: the folder with etlmon/, unless ETLC_OPTIONS is --standalone. BOARD:
+# cortex_m4, rv32 (QEMU's mps2-an386 and virt machines), host.
 set -eu
 etlc=$1 runtime=$2 out=$3
 shift 3

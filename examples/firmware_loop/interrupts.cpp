@@ -1,7 +1,7 @@
-// Two ways to share a monitor, or its input, with an interrupt, where the interrupt comes at any
-// instruction of a step. Writes a line for each: how many steps there were, how many interrupts
-// came while the monitor was at work, and in how many steps a verdict differed from that of the
-// same monitor without interrupts. docs/firmware.md explains the two.
+// Two ways to share a monitor, or its input, with an interrupt that comes at any instruction of a
+// step. Writes a line for each: the number of steps, the number of interrupts while the monitor was
+// at work, and the number of steps in which a verdict differed from the same monitor without
+// interrupts. docs/firmware.md explains both.
 #include <stdint.h>
 
 #include "board.hpp"
@@ -17,7 +17,7 @@ constexpr uint32_t kSteps = 2000;
 volatile bool at_work = false;  // the monitor is in the middle of a call
 volatile uint32_t interruptions = 0;
 
-/// A call of the monitor, as long as it lives.
+/// Marks a call of the monitor, for its own lifetime.
 struct AtWork {
     AtWork() noexcept {
         at_work = true;
@@ -45,12 +45,12 @@ void report(const char* name, uint32_t different) noexcept {
     line.write();
 }
 
-/// The loop measures, the interrupt judges: a verdict is at most two steps behind.
+/// The loop measures, the interrupt judges: a verdict is at most two steps late.
 struct Halves {
     grasp::Monitor monitor;
     grasp::Monitor::Atoms atoms[2];
     grasp::Verdicts verdicts[2];
-    volatile uint32_t measured = 0, judged = 0;  // steps; each is written by one side only
+    volatile uint32_t measured = 0, judged = 0;  // steps; only one side writes each
 };
 Halves* halves;
 
@@ -95,11 +95,11 @@ void run_halves() noexcept {
     report("halves", different);
 }
 
-/// The interrupt fills a buffer, the loop steps with the newest one: what it skips is gone, what it
-/// reads is whole.
+/// The interrupt fills a buffer, the loop steps with the newest one: it may skip buffers, but
+/// always reads a complete one.
 constexpr uint8_t kNone = 3;
 float frames[3][6];
-uint32_t number[3];  // which frame each is: to make it again for the comparison
+uint32_t number[3];  // the number of each frame, to make it again for the comparison
 volatile uint8_t newest, reading;
 volatile uint32_t produced;
 

@@ -1,7 +1,7 @@
-// Lines of text that need no library.
+// Writes lines of text without a library.
 // Takes: a name, numbers, floats, verdicts, bytes. Gives: one line to the board: the name, numbers
-// in hexadecimal, of a verdict its status, lower bound, robustness and upper bound, floats as their
-// bits.
+// in hexadecimal, for a verdict its status, lower bound, robustness and upper bound, floats as
+// their bits.
 #pragma once
 
 #include <stddef.h>

@@ -1,7 +1,7 @@
-// Six monitors in loops as firmware has them: no heap, no operating system, inputs in buffers that
-// are used again. Writes a line per step: the monitor class, the step, and of every verdict its
-// status, lower bound, robustness and upper bound, as the bits of the floats. Everywhere the same
-// lines, which tests/firmware compares.
+// Six monitors in firmware-like loops: no heap, no operating system, reused input buffers. Writes a
+// line per step: the monitor class, the step, and for every verdict its status, lower bound,
+// robustness and upper bound, as the bits of the floats. The lines are the same on all platforms,
+// which tests/firmware checks.
 #include <stdint.h>
 
 #include "belt.hpp"
@@ -37,8 +37,7 @@ void show(const sort::Verdicts& v, Line& to) noexcept {
     to.verdict(v.sorted), to.verdict(v.found);
 }
 
-// What a driver would do: fill the buffers that live as long as the loop, and hand out views of
-// them.
+// Like a driver: fills buffers that live as long as the loop, and passes views of them.
 float embedding[384];
 uint16_t halves[16];
 int8_t bytes[16];
@@ -46,7 +45,7 @@ int8_t bytes[16];
 void sample(Recording& from, grasp::Inputs& in) noexcept {
     from.fill(embedding, 384, 0.0f, 1.0f);
     if (!from.once_in(17)) in.z = embedding;
-    in.force = 2.0f + 2.25f * from.noise();  // at times beyond its range
+    in.force = 2.0f + 2.25f * from.noise();  // sometimes outside its range
 }
 void sample(Recording& from, dock::Inputs& in) noexcept {
     static float z[6];
@@ -77,7 +76,7 @@ void sample(Recording& from, sort::Inputs& in) noexcept {
     if (!from.once_in(9)) in.z = z;
 }
 
-/// All episodes of one monitor class. Returns the instructions of a step, on average.
+/// Runs all episodes of one monitor class. Returns the average number of instructions per step.
 template <class Monitor, class Inputs>
 uint32_t run(const char* name) noexcept {
     static Monitor monitor;

@@ -1,6 +1,7 @@
-// A monitor with a flight recorder: `dock`, until there is no room for another incident. Then
+// A monitor with a flight recorder: steps `dock` until there is no room for another incident. Then
 // writes every incident as a driver would write it to flash, here as lines of text: its number, and
-// up to 32 bytes in hexadecimal. Everywhere the same bytes, which `etlc incident` reads.
+// up to 32 bytes in hexadecimal. The bytes are the same on all platforms, and `etlc incident` reads
+// them.
 #include <stdint.h>
 
 #include "board.hpp"
@@ -12,7 +13,7 @@ namespace {
 
 constexpr uint32_t kEpisodes = 8, kSteps = 20;
 
-/// What write_incident() calls: one line for each call.
+/// The sink of write_incident(): writes one line per call.
 struct Flash {
     uint32_t incident;
     void operator()(const uint8_t* bytes, size_t size) const noexcept {

@@ -1,7 +1,7 @@
-// Other parameters on the board: `dock` with --retargetable. The parameters of dock.etl and of
-// dock_moved.etl lie in flash. The second are on trial beside the first, are promoted, and a
-// damaged page is refused. It writes each verdict, what the trial counted, and why pages were
-// refused. Everywhere the same lines.
+// Changes parameters on the board: `dock` with --retargetable. The parameters of dock.etl and of
+// dock_moved.etl are in flash. The second set is on trial beside the first, and then promoted; a
+// damaged page is refused. Writes each verdict, the counts of the trial, and the reasons for
+// refusals. The lines are the same on all platforms.
 #include <stdint.h>
 
 #include "board.hpp"
@@ -9,7 +9,7 @@
 #include "line.hpp"
 #include "recording.hpp"
 
-// What a linker script, or whoever flashes the page, would put there.
+// A linker script, or the tool that flashes the page, would put them there.
 asm(".pushsection .rodata\n"
     ".balign 64\n"
     ".global dock_first\n"
@@ -49,7 +49,7 @@ void write_state(etlmon::ParamsState state) noexcept {
     line.write();
 }
 
-/// A page in memory with one bit turned.
+/// A page in memory with one flipped bit.
 etlmon::ParamsState with_damage(dock_retargetable::Monitor& monitor, uint32_t bit) noexcept {
     alignas(64) static uint8_t page[Params::kSize];
     for (size_t i = 0; i < Params::kSize; ++i) page[i] = dock_moved[i];
@@ -78,7 +78,7 @@ int main() {
         if (episode == 7)
             for (uint32_t bit = 0; bit < 8 * Params::kSize; bit += 97)
                 write_state(with_damage(shadow.active(), bit));
-        // The third begins, and the seventh goes on, in the middle of an episode.
+        // The third begins, and the seventh continues, in the middle of an episode.
         if (episode != 1 && episode != 5) shadow.reset();
     }
     return 0;

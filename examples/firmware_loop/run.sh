@@ -1,6 +1,6 @@
 #!/bin/sh
-# run.sh OUT BOARD [PROGRAM]: runs what build.sh made, loop, interrupts, recorder, why or
-# retarget, in QEMU where the board is one, and prints what it writes.
+# run.sh OUT BOARD [PROGRAM]: runs a program of build.sh, loop, interrupts, recorder, why or
+# retarget, in QEMU for an emulated board, and prints its output.
 set -eu
 out=$1 board=$2 program=${3:-loop}
 name=$out/${board}_$program

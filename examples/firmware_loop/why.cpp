@@ -1,6 +1,6 @@
-// A monitor that says why: `dock` with --explain. After each step, for each monitor, the sample
-// whose value decides its verdict: the predicate's name, its step, its distance and threshold as
-// the bits of the floats, and the row of the nearest target. Everywhere the same lines.
+// A monitor with --explain: `dock`. After each step, for each monitor, it writes the sample that
+// decides the verdict: the predicate's name, its step, its distance and threshold as the bits of
+// the floats, and the row of the nearest target. The lines are the same on all platforms.
 #include <stdint.h>
 
 #include "board.hpp"

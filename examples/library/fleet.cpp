@@ -1,6 +1,6 @@
-// Steps one spec for several robots, each in a thread of its own, in C++.
+// Steps one spec for several robots, each in its own thread, in C++.
 //
-// fleet SPEC.etl: prints, of each robot, at which step `returns` raised its alarm.
+// fleet SPEC.etl: prints, for each robot, the step at which `returns` raised its alarm.
 #include <etlc.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ void check(etlc_status status) {
     if (status != ETLC_OK) throw std::runtime_error(etlc_message());
 }
 
-/// A session that is closed when it goes. Used by one thread at a time.
+/// A session that is closed at the end of its scope. Only one thread may use it at a time.
 class Monitor {
 public:
     explicit Monitor(const std::string& path) {

@@ -28,7 +28,7 @@ Map pixels(const Image& image) {
     return map;
 }
 
-/// The mean of each of side x side squares.
+/// Returns the means over side x side squares.
 Map pooled(const Map& map, Eigen::Index side) {
     const Eigen::Index edge = map.side / side;
     Map result{side, Rows::Zero(side * side, map.values.cols())};
@@ -58,7 +58,7 @@ Map convolved(const Map& map, const Convolution& layer) {
     return {side, ((patches * filters).rowwise() + bias).cwiseMax(0)};
 }
 
-/// Normal numbers by Box and Muller, each filter with mean 0 and norm 1.
+/// Returns normal numbers by Box and Muller; each filter has mean 0 and norm 1.
 Convolution random_layer(Eigen::Index width, Eigen::Index channels, Eigen::Index count,
                          Eigen::Index stride, Random& random) {
     Eigen::MatrixXf filters(width * width * channels, count);
@@ -72,7 +72,7 @@ Convolution random_layer(Eigen::Index width, Eigen::Index channels, Eigen::Index
     return {width, stride, filters, Eigen::RowVectorXf::Zero(count)};
 }
 
-/// The next numbers of the file.
+/// Reads the next numbers of the file.
 Convolution read_layer(std::istream& file, Eigen::Index width, Eigen::Index channels,
                        Eigen::Index count, Eigen::Index stride) {
     Convolution layer{width, stride, Eigen::MatrixXf(width * width * channels, count),

@@ -1,4 +1,4 @@
-// What turns camera images into embeddings.
+// Encoders of camera images.
 // Takes: an image. Gives: float32 embeddings. Keeps true: the same image gives the same embedding;
 // nothing is fitted to a task: pixels and random convolutions are not trained at all, the trained
 // ones (train.cpp) saw images without a label.
@@ -20,12 +20,12 @@ Eigen::VectorXf encode_pixels(const Image& image);
 struct Convolution {
     Eigen::Index width = 0;
     Eigen::Index stride = 1;
-    Eigen::MatrixXf filters;  ///< a column each; rows go by y, x, channel
-    Eigen::RowVectorXf bias;  ///< a number for each filter
+    Eigen::MatrixXf filters;  ///< one column each; rows are ordered by y, x, channel
+    Eigen::RowVectorXf bias;  ///< one number per filter
 };
 
 /// Two layers of convolutions with random filters, then means over 4 x 4 squares: 512 numbers.
-/// Random filters keep what is where, as trained ones do (Jarrett, Kavukcuoglu, Ranzato, LeCun:
+/// Random filters preserve positions, like trained ones (Jarrett, Kavukcuoglu, Ranzato, LeCun:
 /// "What is the best multi-stage architecture for object recognition?", 2009).
 class RandomConvolutions {
 public:
@@ -36,7 +36,7 @@ private:
     std::array<Convolution, 2> layers_;
 };
 
-/// What train.cpp makes: the layers of an encoder, the first half of an autoencoder.
+/// The layers of an encoder from train.cpp, the first half of an autoencoder.
 struct LayerShape {
     int width;
     int stride;
@@ -44,20 +44,20 @@ struct LayerShape {
 };
 inline constexpr std::array<LayerShape, 4> kTrainedLayers{
     {{5, 2, 16}, {3, 2, 32}, {3, 2, 32}, {3, 2, 32}}};
-inline constexpr int kTrainedSide = kSide / 16;  ///< of the last layer
-inline constexpr int kTrainedCode = 128;         ///< numbers of an embedding
+inline constexpr int kTrainedSide = kSide / 16;  ///< filters of the last layer
+inline constexpr int kTrainedCode = 128;         ///< numbers per embedding
 
 /// Four layers of trained convolutions, then a linear map to 128 numbers.
 class TrainedConvolutions {
 public:
-    /// A file of float32: filters and bias of each layer, then the map's matrix, column by column,
-    /// and its bias. Throws std::runtime_error where it cannot be read or has another size.
+    /// Reads a file of float32: filters and bias of each layer, then the map's matrix, column by
+    /// column, and its bias. Throws std::runtime_error if it cannot be read or has another size.
     explicit TrainedConvolutions(const std::string& path);
     Eigen::VectorXf encode(const Image& image) const;
 
 private:
     std::array<Convolution, kTrainedLayers.size()> layers_;
-    Convolution last_;  ///< of the whole last map; without ReLU
+    Convolution last_;  ///< over the whole last map; without ReLU
 };
 
 }  // namespace manipulation

@@ -17,7 +17,7 @@ bool is_in(const Position& block, Place zone) {
     return std::abs(block[0] - zone[0]) <= kZone && std::abs(block[1] - zone[1]) <= kZone;
 }
 
-/// The specs say the same of the recorded state.
+/// The specs define the same over the recorded state.
 bool is_done(const Simulator& simulator, Task task, bool was_held) {
     const Position red = simulator.block(0);
     if (task == Task::pick_place) return was_held && is_in(red, kGoal) && red[2] < 0.6 * kBlock;

@@ -1,6 +1,6 @@
 // Episodes of a task, simulated from random numbers.
-// Takes: a task, whether it looks as usual. Gives: images, and the simulator's state at each step.
-// Keeps true: the same random numbers give the same episode.
+// Takes: a task, and whether it looks as usual. Gives: images, and the simulator's state at each
+// step. Keeps true: the same random numbers give the same episode.
 #pragma once
 
 #include <map>
@@ -12,8 +12,8 @@
 
 namespace manipulation {
 
-/// The state has a row a step: the tip of the gripper (tip_x, ...), each block (red_x, ...,
-/// red_held), and `success`, at every step whether the task is done in the end.
+/// The state has one row per step: the tip of the gripper (tip_x, ...), each block (red_x, ...,
+/// red_held), and `success`, which is at every step whether the task is done in the end.
 struct Episode {
     std::map<std::string, Rows> state;
     std::vector<Image> images;

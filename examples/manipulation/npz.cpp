@@ -10,7 +10,8 @@ namespace manipulation {
 
 namespace {
 
-/// NumPy's format 1.0: magic, length of the header, the header padded to 64 bytes, the numbers.
+/// Writes NumPy's format 1.0: magic, length of the header, the header padded to 64 bytes, the
+/// numbers.
 std::string npy(const Rows& rows) {
     const std::string shape = rows.cols() == 1 ? fmt::format("({},)", rows.rows())
                                                : fmt::format("({}, {})", rows.rows(), rows.cols());
@@ -32,7 +33,7 @@ std::string npy(const Rows& rows) {
 void write_npz(const std::string& path, const std::map<std::string, Rows>& arrays) {
     zip_t* archive = zip_open(path.c_str(), ZIP_CREATE | ZIP_TRUNCATE, nullptr);
     if (archive == nullptr) throw std::runtime_error(path + " cannot be written");
-    std::map<std::string, std::string> files;  // libzip reads them as it closes
+    std::map<std::string, std::string> files;  // libzip reads them when it closes
     for (const auto& [name, rows] : arrays) {
         const std::string& file = files[name] = npy(rows);
         zip_source_t* source = zip_source_buffer(archive, file.data(), file.size(), 0);

@@ -1,6 +1,6 @@
-// Episodes as .npz files.
-// Takes: arrays of float32 by name, one row a step. Gives: a file that numpy and etlc read.
-// Keeps true: the same arrays give the same bytes.
+// Writes episodes as .npz files.
+// Takes: arrays of float32 by name, one row per step. Gives: a file that numpy and etlc read. Keeps
+// true: the same arrays give the same bytes.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@ namespace manipulation {
 
 using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// An array of one column is written with one dimension. Throws std::runtime_error.
+/// Writes an array of one column with one dimension. Throws std::runtime_error.
 void write_npz(const std::string& path, const std::map<std::string, Rows>& arrays);
 
 }  // namespace manipulation

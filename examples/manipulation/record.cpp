@@ -1,7 +1,8 @@
-// manipulation_record TASK SEED EPISODES FOLDER [--shifted] [--model FILE]: episodes for etlc.
-// Gives: FOLDER/ENCODER/NNN.npz, the same episodes by each encoder: pixels, conv, and trained where
-// there is a model. Each has the embedding `z` and the simulator's state (episodes.hpp).
-// Keeps true: the same call gives the same episodes.
+// manipulation_record TASK SEED EPISODES FOLDER [--shifted] [--model FILE]: records episodes for
+// etlc.
+// Gives: FOLDER/ENCODER/NNN.npz, the same episodes for each encoder: pixels, conv, and trained if
+// there is a model. Each has the embedding `z` and the simulator's state (episodes.hpp). Keeps
+// true: the same call gives the same episodes.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// The three scenes: a table, coloured blocks, where they belong, a gripper that hangs from above.
+// The three scenes: a table, coloured blocks, their goals, a gripper that hangs from above.
 // Takes: a task. Gives: its model in MuJoCo's XML. Keeps true: all scenes have the same table,
 // gripper and camera; lengths are metres, z points up and is 0 on the table.
 #pragma once
@@ -22,10 +22,10 @@ inline constexpr double kZone = 0.07;   ///< half the edge of a zone
 inline constexpr double kWall = 0.09;   ///< height of the wall of pick_place
 inline constexpr Place kRedZone{-0.15, 0.12};
 inline constexpr Place kBlueZone{0.15, 0.12};
-inline constexpr Place kRegion{0.0, 0.12};  ///< where stacking builds
+inline constexpr Place kRegion{0.0, 0.12};  ///< the place of the stack
 inline constexpr Place kGoal{0.16, 0.04};   ///< behind the wall
 
-/// The blocks that a task has: "red", "blue".
+/// Returns the blocks of a task: "red", "blue".
 std::vector<std::string> blocks(Task task);
 
 std::string model_xml(Task task);

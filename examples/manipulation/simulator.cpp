@@ -72,7 +72,7 @@ struct Simulator::State {
         return mj_name2id(model, kind, name.c_str());
     }
 
-    Context context;  // first: the renderer needs it
+    Context context;  // first, because the renderer needs it
     mjModel* model;
     mjData* data = nullptr;
     mjvScene scene{};
@@ -169,7 +169,7 @@ Image Simulator::image() const {
     Image upside_down(3UL * kSide * kSide);
     mjr_readPixels(upside_down.data(), nullptr, whole, &s.renderer);
     Image result(upside_down.size());
-    for (std::size_t row = 0; row < kSide; ++row)  // OpenGL begins at the bottom
+    for (std::size_t row = 0; row < kSide; ++row)  // OpenGL starts at the bottom
         std::copy_n(
             upside_down.begin() + static_cast<std::ptrdiff_t>((kSide - 1 - row) * 3 * kSide),
             3 * kSide, result.begin() + static_cast<std::ptrdiff_t>(row * 3 * kSide));

@@ -1,6 +1,6 @@
-// One task in MuJoCo: physics, the gripper's setpoints, and the camera.
+// Simulates one task in MuJoCo: physics, the gripper's setpoints, and the camera.
 // Takes: a task, then setpoints. Gives: positions and images. Keeps true: the same setpoints give
-// the same positions; a simulator is used by one thread.
+// the same positions; only one thread uses a simulator.
 #pragma once
 
 #include <array>
@@ -14,12 +14,12 @@
 namespace manipulation {
 
 inline constexpr int kSide = 96;       ///< pixels
-inline constexpr double kRate = 20.0;  ///< steps a second
+inline constexpr double kRate = 20.0;  ///< steps per second
 /// Row by row from the top, red, green, blue.
 using Image = std::vector<std::uint8_t>;
 using Position = std::array<double, 3>;
 
-/// How an episode looks; the first one is what encoders and thresholds are made from.
+/// The look of an episode; encoders and thresholds are made from the first one.
 struct Look {
     Color light{0.55, 0.55, 0.55};
     Color table{0.78, 0.74, 0.68};
@@ -36,18 +36,18 @@ struct Setpoint {
 
 class Simulator {
 public:
-    /// Throws std::runtime_error where MuJoCo refuses.
+    /// Throws std::runtime_error if MuJoCo refuses.
     explicit Simulator(Task task);
     ~Simulator();
     Simulator(const Simulator&) = delete;
     Simulator& operator=(const Simulator&) = delete;
 
     void begin(const std::vector<Place>& blocks, const Look& look, const Setpoint& gripper);
-    /// One step of 1/20 s.
+    /// Takes one step of 1/20 s.
     void step(const Setpoint& gripper);
     Position tip() const;
     Position block(std::size_t index) const;
-    /// Both fingers touch it.
+    /// Returns whether both fingers touch it.
     bool is_held(std::size_t index) const;
     Image image() const;
 

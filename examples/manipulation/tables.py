@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""tables.py ETLC RECORD FOLDER [SEEDS]: the tables of tables.md, as Markdown.
+"""tables.py ETLC RECORD FOLDER [SEEDS]: makes the tables of tables.md, as Markdown.
 
-Records episodes of three tasks in FOLDER, SEEDS times each (5), fits and calibrates the specs
-beside this file by each encoder, and evaluates them on other episodes and on shifted ones.
-The program that trains an encoder stands beside RECORD; FOLDER/model.f32 is what it makes.
-What FOLDER has already is not made again; where a spec changed, remove what it made.
+Records episodes of three tasks in FOLDER, for SEEDS seeds each (5), fits and calibrates the specs
+beside this file with each encoder, and evaluates them on other episodes and on shifted ones.
+The program that trains an encoder is beside RECORD; its result is FOLDER/model.f32.
+Existing files in FOLDER are not made again; if a spec changed, remove its results.
 """
 import concurrent.futures
 import itertools
@@ -25,11 +25,11 @@ PARTS = {"fit": 100, "calibration": 40, "tests": 40, "shifted": 40}  # and their
 BASELINES = ["pca_kmeans", "logpzo"]
 METHODS = {"f1": "calibrated(f1)", "conformal": "calibrated(conformal, alpha = 0.1)"}
 PLACES = {"tests": "in distribution", "shifted": "shifted"}
-STUDENT = {3: 4.303, 4: 3.182, 5: 2.776}  # 97.5 % quantiles for so many seeds
+STUDENT = {3: 4.303, 4: 3.182, 5: 2.776}  # 97.5 % quantiles for this many seeds
 
 
 def run(*command):
-    """Runs a command and gives what it prints. Its messages matter only if it fails."""
+    """Runs a command and returns its output. Its messages matter only if it fails."""
     done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{' '.join(map(str, command))}\n{done.stderr}")
@@ -37,7 +37,7 @@ def run(*command):
 
 
 def train(trainer, folder):
-    """Of seed 7, with which no episode of the tables is made."""
+    """Trains with seed 7, which no episode of the tables has."""
     model = folder / "model.f32"
     if not model.exists():
         folder.mkdir(parents=True, exist_ok=True)
@@ -56,7 +56,7 @@ def record(recorder, folder, task, seed):
 
 
 def judge(etlc, folder, task, seed, encoder):
-    """Leaves FOLDER/TASK/SEED/ENCODER/SPEC.METHOD.PART.json, and what fit says in SPEC.fit.txt."""
+    """Writes FOLDER/TASK/SEED/ENCODER/SPEC.METHOD.PART.json, and fit's output to SPEC.fit.txt."""
     episodes = folder / task / str(seed)
     into = episodes / encoder
     into.mkdir(parents=True, exist_ok=True)
@@ -83,16 +83,16 @@ def judge(etlc, folder, task, seed, encoder):
 
 
 def figures(folder, task, encoder, spec, method, part, pick):
-    """A figure of every seed. pick takes it from the result of 'etlc evaluate'."""
+    """Returns a figure of every seed. pick takes it from the result of 'etlc evaluate'."""
     paths = [folder / task / str(s) / encoder / f"{spec}.{method}.{part}.json" for s in SEEDS]
     picked = [pick(json.loads(p.read_text())) for p in paths]
     return [p for p in picked if p is not None]
 
 
 def cell(values):
-    """The mean over the seeds, and Student's 95 % interval of it, cut at 0 and 1.
+    """Returns the mean over the seeds with its 95 % interval by Student's t, cut at 0 and 1.
 
-    Of one or two seeds, for which that says nothing, each figure.
+    For one or two seeds, too few for an interval, it returns each figure.
     """
     if not values:
         return "-"
@@ -124,7 +124,7 @@ def frames_table(folder, part):
 
 
 def separations(report):
-    """Of each predicate: the AUROC of the plain distance and of the fitted one."""
+    """Returns for each predicate the AUROC of the plain distance and of the fitted one."""
     line = re.compile(r"^  (\w+) +([\d.]+) \[.*\] +([\d.]+) \[.*\]$", re.MULTILINE)
     return {name: (float(plain), float(fitted)) for name, plain, fitted in line.findall(report)}
 

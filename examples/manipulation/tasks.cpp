@@ -6,8 +6,8 @@ namespace manipulation {
 
 namespace {
 
-constexpr double kAbove = 0.17;  ///< where the gripper travels
-constexpr double kGrasp = 0.02;  ///< of the tip over what a block stands on
+constexpr double kAbove = 0.17;  ///< height at which the gripper travels
+constexpr double kGrasp = 0.02;  ///< height of the tip above the support of a block
 
 double distance(Place a, Place b) {
     return std::hypot(a[0] - b[0], a[1] - b[1]);
@@ -17,7 +17,7 @@ Place near(Place at, double most, Random& random) {
     return {at[0] + random.uniform(-most, most), at[1] + random.uniform(-most, most)};
 }
 
-/// In the front half of the table, away from other blocks.
+/// Returns a place in the front half of the table, away from other blocks.
 Place start(const std::vector<Place>& others, Random& random) {
     for (;;) {
         const Place at{random.uniform(-0.2, 0.2), random.uniform(-0.16, -0.02)};
@@ -30,11 +30,11 @@ Place start(const std::vector<Place>& others, Random& random) {
 struct Move {
     Place from;
     Place to;
-    double height = 0;  ///< that it is put down on
+    double height = 0;  ///< height at which it is put down
     Failure failure = Failure::none;
 };
 
-/// Picks a block up and puts it down; a failure keeps the number of motions.
+/// Picks a block up and puts it down; a failure has the same number of motions.
 void append(std::vector<Waypoint>& way, Move move, Random& random) {
     if (move.failure == Failure::missed_grasp) move.from[1] += random.uniform(0.05, 0.07);
     const double low = move.failure == Failure::forgotten ? kAbove - 0.06 : kGrasp;
@@ -64,7 +64,7 @@ void home(Plan& plan, Random& random) {
          static_cast<int>(random.bits() % 30)});
 }
 
-/// Both blocks, each to where it belongs, in either order; with a failure in one of them.
+/// Moves both blocks to their goals, in either order, with a failure in one of them.
 void two_moves(Plan& plan, std::array<Move, 2> moves, std::size_t first, Random& random) {
     const std::size_t failing = random.bits() % 2;
     for (const std::size_t b : {first, 1 - first}) {
@@ -94,7 +94,7 @@ void stacking(Plan& plan, Random& random) {
     two_moves(plan, moves, base, random);
 }
 
-/// Over the wall to the goal, or back from it.
+/// Moves the block over the wall to the goal, or back.
 void pick_place(Plan& plan, Random& random) {
     const bool back = random.bits() % 3 == 0;
     const Place goal = near(kGoal, 0.03, random);

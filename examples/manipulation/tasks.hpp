@@ -1,7 +1,7 @@
-// What the gripper is told to do in an episode: the three tasks, done well or not.
-// Takes: a task and random numbers. Gives: where the blocks begin and the way of the gripper.
-// Keeps true: how long an episode takes does not tell whether it goes well; a failed grasp goes
-// through all motions.
+// The motions of the gripper in an episode: the three tasks, done well or not.
+// Takes: a task and random numbers. Gives: the start of the blocks and the path of the gripper.
+// Keeps true: the length of an episode does not reveal its success; a failed grasp goes through all
+// motions.
 #pragma once
 
 #include <string_view>
@@ -18,29 +18,28 @@ enum class Failure {
     none,
     missed_grasp,  ///< the fingers close beside the block
     dropped,       ///< on the way
-    wrong_place,   ///< beside where it belongs, or in the other one's zone
+    wrong_place,   ///< beside its goal, or in the other block's zone
     forgotten,     ///< the gripper goes through its motions above the block
 };
 
 struct Waypoint {
     Position tip{};
     bool closed = false;
-    int steps_there = 0;  ///< to wait once there
+    int steps_there = 0;  ///< steps to wait there
 };
 
 struct Plan {
-    std::vector<Place> blocks;  ///< where they begin
+    std::vector<Place> blocks;  ///< start of the blocks
     std::vector<Waypoint> way;
     Failure failure = Failure::none;
 };
 
 Plan plan(Task task, Random& random);
 
-/// Out of distribution: other light, another table, a camera that was pushed, something that was
-/// never there.
+/// Out of distribution: other light, another table, a moved camera, an unknown object.
 Look shifted_look(Random& random);
 
-/// Moves setpoints along a way at a bounded speed.
+/// Moves setpoints along a path at a bounded speed.
 class Gripper {
 public:
     Gripper(const std::vector<Waypoint>& way, double speed) : way_(way), speed_(speed) {}

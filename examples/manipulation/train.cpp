@@ -1,8 +1,8 @@
-// manipulation_train SEED EPISODES MODEL: the trained encoder, for manipulation_record --model.
-// A convolutional autoencoder: from 128 numbers the image is drawn again. It sees EPISODES of
-// each task without a label. The light of its input is changed at random, the image to draw is
-// not: so the numbers should not follow the light (a denoising autoencoder; Vincent, Larochelle,
-// Bengio, Manzagol 2008).
+// manipulation_train SEED EPISODES MODEL: trains the encoder for manipulation_record --model. It is
+// a convolutional autoencoder that reconstructs the image from 128 numbers. It sees EPISODES of
+// each task without a label. The lighting of its input is changed at random, that of the image to
+// reconstruct is not, so the numbers should not depend on the light (a denoising autoencoder;
+// Vincent, Larochelle, Bengio, Manzagol 2008).
 #include <fmt/core.h>
 #include <malloc.h>
 #include <torch/torch.h>
@@ -20,7 +20,7 @@
 namespace manipulation {
 namespace {
 
-constexpr int kEvery = 3;  // neighbouring images are nearly the same
+constexpr int kEvery = 3;  // neighbouring images are almost equal
 constexpr int kBatch = 64;
 
 struct Order {
@@ -86,7 +86,7 @@ struct AutoencoderImpl : torch::nn::Module {
 };
 TORCH_MODULE(Autoencoder);
 
-/// Another light: each channel of each image times 0.7 to 1.3.
+/// Changes the light: each channel of each image times 0.7 to 1.3.
 torch::Tensor lit(const torch::Tensor& batch) {
     return (batch * (0.7 + 0.6 * torch::rand({batch.size(0), 3, 1, 1}))).clamp(0, 1);
 }
@@ -101,7 +101,7 @@ void train(Autoencoder& net, const torch::Tensor& bytes, int epochs) {
         double sum = 0;
         for (const torch::Tensor& some : order.split(kBatch)) {
             const torch::Tensor batch = bytes.index_select(0, some).to(torch::kFloat) / 255;
-            // What moves is small: a pixel counts by how far it is from its mean.
+            // Moving parts are small: a pixel counts by its deviation from its mean.
             const torch::Tensor weight = 0.05 + (batch - mean).abs().amax(1, true);
             const torch::Tensor error = net->forward(lit(batch)) - (batch - mean);
             const torch::Tensor loss = (weight * error.square()).mean() / weight.mean();
@@ -122,7 +122,8 @@ void write(std::ostream& file, const torch::Tensor& values) {
                static_cast<std::streamsize>(flat.numel() * flat.element_size()));
 }
 
-/// As TrainedConvolutions reads them: a filter after the other, each by row, column, channel.
+/// Writes the format of TrainedConvolutions: one filter after the other, each by row, column,
+/// channel.
 void write(const Autoencoder& net, const std::string& path) {
     std::ofstream file(path, std::ios::binary);
     for (std::size_t i = 0; i < kTrainedLayers.size(); ++i) {
@@ -139,8 +140,8 @@ void write(const Autoencoder& net, const std::string& path) {
 }
 
 void run(const Order& order) {
-    // Each batch takes and frees the same large blocks. Giving them back to the system each time
-    // took a third of the processor's time.
+    // Each batch allocates and frees the same large blocks. Returning them to the system each time
+    // took a third of the processor time.
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
     torch::manual_seed(order.seed);

@@ -1,5 +1,5 @@
-// Steps the monitor of example.etl through the four steps of the paper's Example 2 and prints what
-// it says after each.
+// Steps the monitor of example.etl through the four steps of the paper's Example 2 and prints the
+// verdict after each.
 #include <cstdio>
 
 #include "example.hpp"  // generated from example.etl
@@ -8,7 +8,7 @@ namespace {
 
 constexpr float kEpsilon = 0.409F;  // the threshold in example.etl
 
-// Each embedding lies 0.327, 0.374, 0.403 and 0.427 away from the nearest target, along (0.6, 0.8)
+// The embeddings are 0.327, 0.374, 0.403 and 0.427 away from the nearest target, along (0.6, 0.8)
 // or (-0.6, 0.8).
 constexpr float kEmbeddings[][2] = {
     {0.1962F, 0.2616F},

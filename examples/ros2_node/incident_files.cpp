@@ -10,7 +10,7 @@ namespace patrol_node {
 void IncidentFiles::write(patrol::Monitor& monitor) {
     while (done_ < monitor.incidents() && write(monitor, done_)) ++done_;
     lost_ = lost_before_ + monitor.lost_incidents();
-    // All that there is room for are in files, and none waits for steps.
+    // The recorder is full, and all its incidents are in files and complete.
     if (done_ < kMostIncidents) return;
     lost_before_ = lost_;
     monitor.forget_incidents();

@@ -13,7 +13,7 @@ std::string text(float x) {
     return digits;
 }
 
-/// What an operator reads; only an alarm is an error.
+/// The text for an operator; only an alarm is an error.
 Status status_of(const char* monitor, const etlmon::Verdict& verdict) {
     Status status{Level::ok, std::string("patrol: ") + monitor, "no verdict yet", {}};
     if (!verdict.decided()) return status;

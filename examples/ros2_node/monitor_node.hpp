@@ -1,7 +1,7 @@
-// What the node does, in no types of ROS.
-// Takes: embeddings whenever one comes, and a tick at the rate of the spec. Gives: at each tick
-// what to publish. Keeps true: a tick is one step of the monitors, with the newest embedding since
-// the tick before it or with none; an embedding is used once. One thread at a time.
+// The logic of the node, without types of ROS.
+// Takes: embeddings as they arrive, and ticks at the rate of the spec. Gives: the statuses to
+// publish at each tick. Keeps true: a tick is one step of the monitors, with the newest embedding
+// since the previous tick or with none; an embedding is used once. One thread at a time.
 #pragma once
 
 #include <array>
@@ -16,12 +16,12 @@
 
 namespace patrol_node {
 
-/// Of the input z.
+/// The dimension of input z.
 inline constexpr std::size_t kDimension = 4;
-/// Of the spec's rate.
+/// The period of the spec's rate.
 inline constexpr std::chrono::milliseconds kTick{100};
 
-/// As diagnostic_msgs/DiagnosticStatus has them.
+/// The fields of diagnostic_msgs/DiagnosticStatus.
 enum class Level : std::uint8_t { ok = 0, warn = 1, error = 2, stale = 3 };
 
 struct KeyValue {
@@ -36,24 +36,24 @@ struct Status {
     std::vector<KeyValue> values;
 };
 
-/// What a tick gives.
+/// The result of a tick.
 struct Report {
     std::vector<Status> diagnostics;  ///< of the embeddings, of the incidents, of each monitor
     std::vector<Status> verdicts;     ///< of each monitor
-    bool verdicts_changed = false;    ///< an answer is another one than at the tick before
+    bool verdicts_changed = false;    ///< whether a verdict differs from the previous tick
 };
 
 class MonitorNode {
 public:
-    /// Incidents go to files of this folder.
+    /// Writes incidents to files in this folder.
     explicit MonitorNode(std::string incident_folder) : files_(std::move(incident_folder)) {}
 
-    /// An embedding. One of another size is refused, and counted.
+    /// Takes an embedding. Refuses and counts one of another size.
     void take(const float* elements, std::size_t count);
 
     Report tick();
 
-    /// A new episode: the robot begins another patrol.
+    /// Begins a new episode: another patrol.
     void reset();
 
 private:
@@ -67,9 +67,9 @@ private:
     bool is_new_ = false;
     std::uint64_t ticks_without_ = 0;  ///< in a row
     std::uint64_t taken_ = 0;
-    std::uint64_t replaced_ = 0;  ///< by a newer one, before a tick
+    std::uint64_t replaced_ = 0;  ///< replaced by a newer one before a tick
     std::uint64_t refused_ = 0;
-    std::size_t refused_size_ = 0;  ///< of the last one; 0: the last one was taken
+    std::size_t refused_size_ = 0;  ///< size of the last refused one; 0: the last one was accepted
     std::vector<std::uint32_t> answers_;
     IncidentFiles files_;
 };

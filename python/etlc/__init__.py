@@ -7,8 +7,8 @@
     if verdicts.returns.alarm:
         print(verdicts.returns.robustness, verdicts.returns.bounds)
 
-The verdicts are those of the class that etlc generates, bit for bit. docs/python.md has an example
-of everything.
+The verdicts equal those of the class that etlc generates, bit for bit. docs/python.md has examples
+of all functions.
 """
 
 from ._library import library as _native

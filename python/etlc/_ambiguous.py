@@ -1,4 +1,4 @@
-"""What an answer is, that is none to a question which was not asked."""
+"""The base class of results without a truth value."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ _VALUES = (bool, int, float, complex, str, bytes, np.generic, np.ndarray)
 
 
 class Ambiguous:
-    """Its truth value could mean several things, and raises, as that of a numpy array does.
+    """A result whose truth value could mean several things, and raises, like that of a numpy array.
 
-    So does a comparison with a value: a verdict is neither True nor "violated". Two of a kind are
-    equal where all that they say is.
+    A comparison with a plain value raises too: a verdict is neither True nor "violated". Two
+    objects of one class are equal if their contents are.
     """
 
     __slots__ = ()
-    __array_ufunc__ = None  # array == verdict asks the verdict
-    #: What to ask instead.
+    __array_ufunc__ = None  # array == verdict calls the verdict's __eq__
+    #: The attributes to use instead.
     _ask: ClassVar[str] = ""
 
     def __bool__(self) -> NoReturn:
@@ -42,7 +42,7 @@ class Ambiguous:
         return hash(self._content())
 
     def _content(self) -> tuple[Any, ...]:
-        """Of a dataclass: all its fields."""
+        """Returns the values to compare: for a dataclass all its fields."""
         return tuple(getattr(self, field.name) for field in fields(self))  # type: ignore[arg-type]
 
     def _shown(self) -> str:

@@ -1,4 +1,4 @@
-"""libetlc.so by ctypes: its structs, its functions, and exceptions in place of its statuses."""
+"""Wraps libetlc.so with ctypes: structs, functions, and exceptions in place of statuses."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "etlc_describe_monitor": [c_uint64, c_uint32, POINTER(MonitorDescription)],
     "etlc_describe_predicate": [c_uint64, c_uint32, POINTER(PredicateDescription)],
     "etlc_describe_let": [c_uint64, c_uint32, POINTER(c_char_p)],
-    # Without types: a step passes objects that are already what the function takes.
+    # No types: a step passes ctypes objects that already have the right types.
     "etlc_step": None,
     "etlc_run": [c_uint64, c_void_p, c_size_t, c_uint64, c_void_p, c_size_t],
     "etlc_finish": [c_uint64, c_void_p, c_size_t],
@@ -121,7 +121,7 @@ NATIVE = _HERE / "_native"
 
 
 def own(name: str, in_wheel: str) -> Path | None:
-    """What was installed with this package: in it, of a wheel; else below the same prefix."""
+    """Finds a file installed with this package: inside it for a wheel, else below its prefix."""
     places = [NATIVE / in_wheel]
     try:
         from . import _installed  # type: ignore[attr-defined]
@@ -133,7 +133,7 @@ def own(name: str, in_wheel: str) -> Path | None:
 
 
 def _load() -> ctypes.CDLL:
-    """The library: $ETLC_LIBRARY, the one that was installed with this package, or the system's."""
+    """Loads $ETLC_LIBRARY, the library installed with this package, or the system's."""
     path = os.environ.get("ETLC_LIBRARY") or own("LIBRARY", "lib/libetlc.so.1") or "libetlc.so.1"
     try:
         library = ctypes.CDLL(os.fspath(path))
@@ -153,7 +153,7 @@ library = _load()
 
 
 def decoded(text: bytes | None) -> str:
-    """Of C. Names of files may be of any bytes."""
+    """Decodes a C string. File names in it may contain any bytes."""
     return (text or b"").decode(errors="replace")
 
 
@@ -164,7 +164,7 @@ _EXCEPTIONS: dict[int, type[Error]] = {
 
 
 def raise_for(status: int) -> None:
-    """Raises what the status of the last call of this thread means."""
+    """Raises the exception for the status of this thread's last call."""
     message = decoded(library.etlc_message())
     if status == 1:
         raise SpecError(message, diagnostics_of(library.etlc_message_json()))
@@ -174,12 +174,12 @@ def raise_for(status: int) -> None:
 
 
 def encoded(what: str, text: str) -> bytes:
-    """A text as C has it: none is cut off at a NUL."""
+    """Encodes a text for C. Refuses a NUL, which would cut it off."""
     return _checked(what, text, str.encode)
 
 
 def encoded_path(what: str, path: str | bytes | os.PathLike[str]) -> bytes:
-    """The name of a file, of any bytes that a file system has."""
+    """Encodes the name of a file, which may contain any bytes of the file system."""
     return _checked(what, path, os.fsencode)
 
 
@@ -197,7 +197,7 @@ def _checked(what: str, text: Any, encode: Callable[[Any], bytes]) -> bytes:
 
 
 def call(function: Any, *arguments: Any) -> None:
-    """Calls the function; raises an exception where it fails."""
+    """Calls the function, and raises an exception if it fails."""
     status = function(*arguments)
     if status != 0:
         raise_for(status)

@@ -1,4 +1,4 @@
-"""The commands of etlc themselves, run as processes: `calibrate`, `embed`, `evaluate`, ..."""
+"""Runs commands of etlc as processes: `calibrate`, `embed`, `evaluate`, ..."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ Paths = Union[str, "os.PathLike[str]", Iterable[Union[str, "os.PathLike[str]"]]]
 
 @dataclass(frozen=True)
 class Written:
-    """What a command made. True, as it is there.
+    """The output of a command. Always true.
 
     Attributes:
-        path: of the file that it wrote.
-        report: what it says about it, for people.
-        diagnostics: what it warned of.
+        path: the file that the command wrote.
+        report: the printed report, for people.
+        diagnostics: the warnings.
     """
 
     path: Path
@@ -34,14 +34,14 @@ class Written:
 
 @dataclass(frozen=True, eq=False)
 class Evaluation(Ambiguous):
-    """How good monitors are.
+    """The result of `evaluate`.
 
     Its truth value raises AmbiguousError.
 
     Attributes:
-        data: for programs, as `etlc evaluate --json` has it (docs/evaluation.md).
-        report: for people.
-        diagnostics: what it warned of.
+        data: the figures of `etlc evaluate --json`, for programs (docs/evaluation.md).
+        report: the printed tables, for people.
+        diagnostics: the warnings.
     """
 
     data: dict[str, Any]
@@ -52,10 +52,10 @@ class Evaluation(Ambiguous):
 
 
 def command_path() -> str:
-    """The command: $ETLC_COMMAND, the one installed with this package, or the one in the path.
+    """Returns $ETLC_COMMAND, the command installed with this package, or the one in the path.
 
     Raises:
-        Error: there is none.
+        Error: none of these exists.
     """
     path = os.environ.get("ETLC_COMMAND") or own("COMMAND", "bin/etlc") or shutil.which("etlc")
     if path is None:
@@ -83,17 +83,17 @@ def calibrate(
         spec: the path of the spec.
         data: episodes: files (.csv, .npz, .h5), folders or patterns.
         output: the file of thresholds; by default SPEC.thresholds.json beside the spec.
-        thresholds: those of the predicates, to calibrate monitors as a whole.
-        fitted: what `fit` found; by default SPEC.fitted.npz beside the spec.
+        thresholds: a file with the thresholds of the predicates, to calibrate monitors as a whole.
+        fitted: the file of `fit`; by default SPEC.fitted.npz beside the spec.
         settings: other values for constants.
-        names: what inputs are called in the files: {"z": "obs/z"}.
-        groups: of .h5 files that are episodes: "data/*".
-        allow_overlap: why episodes may share most of their content.
-        folds: also say what the thresholds would be without each of so many folds.
-        jobs: threads; by default as many as the machine has.
+        names: names of inputs in the files: {"z": "obs/z"}.
+        groups: a pattern for the groups of .h5 files that are episodes: "data/*".
+        allow_overlap: the reason why episodes may share most of their content.
+        folds: also report the thresholds without each of this many folds.
+        jobs: the number of threads; by default that of the machine.
 
     Raises:
-        SpecError: the command failed, and says why.
+        SpecError: the command failed; the message gives the reason.
     """
     path = _output(spec, output, ".thresholds.json")
     ran = _run(
@@ -115,16 +115,16 @@ def fit(
     allow_overlap: str | None = None,
     jobs: int | None = None,
 ) -> Written:
-    """Finds what a spec declares `fitted(...)` from labelled demonstrations.
+    """Computes everything that a spec declares as `fitted(...)` from labelled demonstrations.
 
     Args:
         spec: the path of the spec.
         data: episodes: files (.csv, .npz, .h5), folders or patterns.
-        output: the file of what is fitted; by default SPEC.fitted.npz beside the spec.
-        settings, names, groups, allow_overlap, jobs: as `calibrate`.
+        output: the file of the fit; by default SPEC.fitted.npz beside the spec.
+        settings, names, groups, allow_overlap, jobs: as in `calibrate`.
 
     Raises:
-        SpecError: the command failed, and says why.
+        SpecError: the command failed; the message gives the reason.
     """
     path = _output(spec, output, ".fitted.npz")
     ran = _run(
@@ -151,15 +151,15 @@ def evaluate(
     """Compares predicates and monitors with ground truth on recorded episodes.
 
     Args:
-        specs: the path of the spec, or of several, which are set side by side.
+        specs: the path of the spec, or of several, which are compared side by side.
         data: episodes: files (.csv, .npz, .h5), folders or patterns.
-        thresholds, fitted: of the spec; by default beside it.
-        folds: calibrate on all folds but one and evaluate on that, in turn.
-        by_episode: also each episode, the worst first.
-        settings, names, groups, allow_overlap, jobs: as `calibrate`.
+        thresholds, fitted: files for the spec; by default those beside it.
+        folds: calibrate on all folds but one and evaluate on that one, in turn.
+        by_episode: also report each episode, the worst first.
+        settings, names, groups, allow_overlap, jobs: as in `calibrate`.
 
     Raises:
-        SpecError: the command failed, and says why.
+        SpecError: the command failed; the message gives the reason.
     """
     import tempfile
 
@@ -190,20 +190,20 @@ def embed(
     Args:
         spec: the path of the spec. The embeddings of its targets go into SPEC.embedded.npz beside
             it.
-        data: recordings to make episodes of: videos, folders of images, patterns.
-        output: the folder where the episodes go; given with `data`.
+        data: recordings to turn into episodes: videos, folders of images, patterns.
+        output: the folder for the episodes; required with `data`.
         settings: other values for constants.
-        onnxruntime: what runs the spec's networks: the library, or a folder that has it; without it
-            the one that the environment, pip, npm or the system has.
+        onnxruntime: the library that runs the spec's networks, or its folder; by default
+            the one of the environment, pip, npm or the system.
         encoder_command: a command that encodes (docs/encoders.md), in place of the spec's network.
-        encoder_timeout: seconds after which an encoder that does nothing is stopped.
+        encoder_timeout: stop an encoder that does nothing for this many seconds.
 
     Returns:
-        Its `path` is the folder of episodes, or the file of embeddings.
+        The output; its `path` is the folder of episodes, or the file of embeddings.
 
     Raises:
-        SpecError: the command failed, and says why: E1016 where etlc was installed without it,
-            or where there is no ONNX Runtime.
+        SpecError: the command failed; the message gives the reason. E1016: etlc was installed
+            without `etlc embed`, or ONNX Runtime is missing.
     """
     ran = _run(
         "embed", [spec], data, settings, None,
@@ -223,16 +223,16 @@ def incident(
     fitted: str | os.PathLike[str] | None = None,
     settings: Mapping[str, object] | None = None,
 ) -> str:
-    """Reads what the flight recorder of a monitor kept: the steps around an alarm.
+    """Prints an incident of a monitor's flight recorder: the steps around an alarm.
 
     Args:
         spec: the path of the spec.
         data: one of `Monitor.incidents`, or the path of a file.
         form: "table", "csv", "trace" or "spec" (docs/data.md).
-        thresholds, fitted, settings: what the monitor was opened with.
+        thresholds, fitted, settings: the arguments that the monitor was opened with.
 
     Raises:
-        SpecError: it is damaged, or of another spec.
+        SpecError: the incident is damaged, or belongs to another spec.
     """
     import tempfile
 
@@ -303,7 +303,7 @@ def _run(
 
 
 def _said(stderr: bytes) -> tuple[list[Diagnostic], str]:
-    """The diagnostics, and what libraries that etlc loads said beside them."""
+    """Separates the diagnostics from output of libraries that etlc loads."""
     text = stderr.decode(errors="replace")
     begin = text.find('{\n  "diagnostics"')
     if begin < 0:

@@ -1,7 +1,7 @@
-"""Samples as libetlc takes them: of its types and shapes, or refused.
+"""Converts samples to the types and shapes of libetlc, or refuses them.
 
-A number is rounded at most once, as `etlc run` rounds what it reads. What would lose more, or means
-something else, is refused: integers for float32 embeddings, floats for int8, numbers for bools.
+A number is rounded at most once, as in `etlc run`. Conversions that lose more, or change the
+meaning, are refused: integers for float32 embeddings, floats for int8, numbers for bools.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .errors import InputError
 
 
 def as_bool(name: str, value: Any) -> int:
-    """0 or 1."""
+    """Returns 0 or 1."""
     array = _array(name, value)
     if array.shape == () and array.dtype.kind in "biu" and (array == 0 or array == 1):
         return int(array)
@@ -23,8 +23,8 @@ def as_bool(name: str, value: Any) -> int:
 
 
 def as_number(name: str, value: Any) -> float:
-    """A scalar, rounded to float32."""
-    if isinstance(value, int) and abs(value) >> 63:  # numpy's integers end
+    """Returns a scalar, rounded to float32."""
+    if isinstance(value, int) and abs(value) >> 63:  # beyond numpy's integers
         return _rounded(value)
     array = _array(name, value)
     if array.shape == () and array.dtype.kind in "fiu":
@@ -34,7 +34,7 @@ def as_number(name: str, value: Any) -> float:
 
 
 def _rounded(value: int) -> float:
-    """The nearest float32. What is cut off counts as one more digit, which no rounding loses."""
+    """Returns the nearest float32. One extra sticky bit stands for the bits cut off."""
     cut = abs(value).bit_length() - 62
     kept = abs(value) >> cut
     kept |= kept << cut != abs(value)
@@ -43,7 +43,7 @@ def _rounded(value: int) -> float:
 
 
 def as_elements(name: str, value: Any, dtype: np.dtype, shape: tuple[int, ...]) -> np.ndarray:
-    """An embedding, as elements of the type."""
+    """Returns an embedding as an array of the type."""
     array = _array(name, value)
     if array.shape != shape:
         raise InputError(f"input {name!r} is {_shown(array)}, expected the shape {shape}")
@@ -53,9 +53,9 @@ def as_elements(name: str, value: Any, dtype: np.dtype, shape: tuple[int, ...]) 
 def as_rows(
     name: str, value: Any, dtype: np.dtype, shape: tuple[int, ...]
 ) -> tuple[np.ndarray | None, np.ndarray]:
-    """An input at every step: which steps have it (None: all), and rows of elements.
+    """Returns which steps have the input (None: all), and its rows of elements.
 
-    The elements of a row are contiguous and aligned; it is the caller's array where that allows it.
+    The elements of a row are contiguous and aligned. The rows are the caller's array if possible.
     """
     masked = isinstance(value, np.ma.MaskedArray)
     array = _array(name, value.data if masked else value)
@@ -75,7 +75,7 @@ def as_rows(
 
 
 def _array(name: str, value: Any) -> np.ndarray:
-    """What numpy makes of it. It would forget what is masked."""
+    """Converts to a numpy array. Refuses masked arrays, whose mask would be lost."""
     if isinstance(value, np.ma.MaskedArray):
         raise InputError(f"input {name!r} is a masked array; one that is missing is None")
     if isinstance(value, (list, tuple)) and any(
@@ -92,7 +92,7 @@ def _converted(
     name: str, array: np.ndarray, dtype: np.dtype, is_list: bool, present: np.ndarray | None = None
 ) -> np.ndarray:
     kind = array.dtype.kind
-    if array.size == 0 and is_list:  # of no type
+    if array.size == 0 and is_list:  # an empty list has no type
         return array.astype(dtype)
     if dtype == np.uint8:
         if kind == "b":

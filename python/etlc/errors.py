@@ -1,4 +1,4 @@
-"""What goes wrong: exceptions with the words, and the diagnostics, of etlc."""
+"""Exceptions and warnings, with the messages and diagnostics of etlc."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """One finding of etlc.
+    """One diagnostic of etlc.
 
     Attributes:
-        code: as in docs/diagnostics.md, "E0204".
+        code: the code, "E0204"; docs/diagnostics.md lists all codes.
         severity: "error", "warning" or "note".
         message: what was found and what was expected.
-        file: the spec, or another file that it names.
-        line, column: from 1; 0 where they are not known.
-        notes: more about it, each behind its place where it is about another one.
+        file: the spec, or a file that it names.
+        line, column: counted from 1; 0 if unknown.
+        notes: further messages, each with its place if that is a different one.
     """
 
     code: str
@@ -44,7 +44,7 @@ def _place(file: str, line: int, column: int) -> str:
 
 
 def diagnostics_of(text: str | bytes) -> list[Diagnostic]:
-    """The diagnostics in what `etlc --diagnostics json` prints; none where it is something else."""
+    """Parses the output of `etlc --diagnostics json`; returns none if it is something else."""
     if isinstance(text, bytes):
         text = text.decode(errors="replace")
     try:
@@ -67,14 +67,14 @@ def _note(note: dict[str, Any]) -> str:
 
 
 class Error(Exception):
-    """What etlc refuses. All exceptions of this package are of this class."""
+    """The base class of all exceptions of this package."""
 
 
 class SpecError(Error):
-    """A spec, or what it names, that does not compile; or a command that failed.
+    """A spec, or a file that it names, does not compile; or a command failed.
 
     Attributes:
-        diagnostics: the findings, in the order of their places, each with its notes.
+        diagnostics: the diagnostics in the order of their places, each with its notes.
     """
 
     def __init__(self, message: str, diagnostics: list[Diagnostic] | None = None) -> None:
@@ -83,39 +83,39 @@ class SpecError(Error):
 
     @property
     def notes(self) -> list[str]:
-        """Of all diagnostics."""
+        """The notes of all diagnostics."""
         return [note for one in self.diagnostics for note in one.notes]
 
 
 class InputError(Error, ValueError):
-    """A sample, an option or a name that the spec does not know or cannot take."""
+    """The spec does not have or accept this sample, option or name."""
 
 
 class ClosedError(Error):
-    """A monitor that was closed, or whose episode has ended."""
+    """The monitor is closed, or its episode has ended."""
 
 
 class BusyError(Error):
-    """A monitor that another thread is in a call of."""
+    """Another thread is in a call of the monitor."""
 
 
 class NotKeptError(Error):
-    """What the monitor was not asked to keep when it was opened."""
+    """The monitor was not opened with the option that keeps this."""
 
 
 class UndecidedError(Error):
-    """A monitor that says nothing yet."""
+    """The monitor has no verdict yet."""
 
 
 class AmbiguousError(Error, ValueError):
-    """What is no answer by itself, such as a verdict, was taken for one: `if verdict`."""
+    """A result without a truth value, such as a verdict, was used as one: `if verdict`."""
 
 
 class EtlcWarning(UserWarning):
-    """What is surely not meant.
+    """A warning of etlc about something that is hardly intended.
 
     Attributes:
-        diagnostic: the finding of etlc; None: it is about the samples of `run`.
+        diagnostic: the diagnostic; None if the warning is about the samples of `run`.
     """
 
     def __init__(self, message: str, diagnostic: Diagnostic | None = None) -> None:
@@ -127,7 +127,7 @@ _PACKAGE = os.path.dirname(__file__)
 
 
 def warn(warning: EtlcWarning) -> None:
-    """A warning about the line that called this package."""
+    """Issues a warning at the line that called this package."""
     level, frame = 1, sys._getframe()
     while frame.f_back is not None and os.path.dirname(frame.f_code.co_filename) == _PACKAGE:
         level, frame = level + 1, frame.f_back
@@ -135,7 +135,7 @@ def warn(warning: EtlcWarning) -> None:
 
 
 def warn_of(diagnostics: list[Diagnostic]) -> None:
-    """Of each warning among them."""
+    """Issues each warning among the diagnostics."""
     for one in diagnostics:
         if one.severity == "warning":
             warn(EtlcWarning(str(one), one))

@@ -1,4 +1,4 @@
-"""The monitors of a spec, stepped from Python."""
+"""Steps the monitors of a spec."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ class Input:
     """An input of the spec.
 
     Attributes:
-        name: of the argument of `step`.
-        dtype: of its elements: float32, bool, float16 or int8.
-        shape: () of a scalar or bool, (D,) of an embedding.
-        hold: missing samples in a row that the last one stands for.
-        low, high: a scalar's range; others count as missing.
-        is_used: whether a monitor looks at it.
+        name: the name of the argument of `step`.
+        dtype: the type of its elements: float32, bool, float16 or int8.
+        shape: () for a scalar or bool, (D,) for an embedding.
+        hold: the number of missing samples in a row that the last one replaces.
+        low, high: the range of a scalar; values outside count as missing.
+        is_used: whether a monitor uses it.
     """
 
     name: str
@@ -44,15 +44,14 @@ class Input:
 
 @dataclass(frozen=True, eq=False)
 class Measurement(Ambiguous):
-    """What a predicate came to at the last step.
+    """The values of a predicate at the last step.
 
-    Its truth value raises AmbiguousError: whether the predicate holds is in its distance and its
-    threshold.
+    Its truth value raises AmbiguousError: compare its distance with its threshold.
 
     Attributes:
-        distance: or the expression; NaN where it is unknown, or no monitor needs it.
-        threshold: what it is compared with.
-        nearest: the nearest row of the target, of a plain distance; else None.
+        distance: the distance or expression; NaN if it is unknown, or no monitor needs it.
+        threshold: the number it is compared with.
+        nearest: the nearest row of the target for a plain distance, else None.
     """
 
     distance: float
@@ -63,29 +62,29 @@ class Measurement(Ambiguous):
 
 
 class Monitor:
-    """The monitors of a spec. Used by one thread at a time.
+    """The monitors of a spec. Only one thread may use it at a time.
 
     Args:
-        spec: the path of the spec, a .etl file; with `text`, where files are looked for beside it.
-        text: the spec itself.
-        thresholds: a file; by default SPEC.thresholds.json beside the spec, where it exists.
-        fitted: a file; by default SPEC.fitted.npz beside the spec, where it exists.
+        spec: the path of the spec, a .etl file; with `text`, files are looked up beside this path.
+        text: the text of the spec.
+        thresholds: a file; by default SPEC.thresholds.json beside the spec, if it exists.
+        fitted: a file; by default SPEC.fitted.npz beside the spec, if it exists.
         settings: other values for constants: {"limit": 0.25, "deadline": "2s"}.
-        values: "robustness", or "boolean": truth values, and only what can still change a verdict.
-        targets_as: "f32", "f16" or "i8": how target sets are stored.
-        lets: keeps what lets say of each step, for `let`.
-        history: how many steps `why` and `explain` can look back at. Each takes some bytes a
-            predicate, and is measured once more.
-        recorder: keeps the steps around each alarm, for `incidents`: steps before it, steps after
-            it, and how many alarms, as (40, 20, 4) or, of a spec with a rate, "2s,1s,4".
+        values: "robustness", or "boolean" for verdicts without numbers.
+        targets_as: the storage of target sets: "f32", "f16" or "i8".
+        lets: keep the robustness of lets at each step, for `let`.
+        history: the number of steps that `why` and `explain` can look back. Each takes some bytes
+            per predicate, and measures it once more.
+        recorder: keep the steps around each alarm, for `incidents`: the numbers of steps before and
+            after it, and of alarms, as (40, 20, 4) or, if the spec has a rate, "2s,1s,4".
         max_state, max_code, max_work: limits of the plan, as the options of etlc.
 
     Raises:
-        SpecError: the spec does not compile; its `diagnostics` say where.
-        InputError: an argument means nothing.
+        SpecError: the spec does not compile; its `diagnostics` give the places.
+        InputError: an argument is invalid.
 
     Warns:
-        EtlcWarning: what the spec says is surely not meant; its `diagnostic` says where.
+        EtlcWarning: the spec is legal but hardly intended; its `diagnostic` gives the place.
 
     Example:
         >>> monitor = etlc.Monitor("dock.etl")
@@ -141,13 +140,13 @@ class Monitor:
 
     def _describe(self) -> None:
         spec = _described(_library.Description, library.etlc_describe, self._session)
-        #: Of the spec.
+        #: The name of the spec.
         self.name: str = spec.name.decode()
-        #: Of a step, in seconds; 0: the spec says no rate.
+        #: The length of a step in seconds; 0 if the spec has no rate.
         self.step_seconds: float = spec.step_seconds
-        #: What etlc warned of; empty: nothing.
+        #: The warnings of etlc; empty if there are none.
         self.warnings: str = decoded(spec.warnings)
-        #: The most steps that a sliding monitor is late by.
+        #: The greatest delay of a sliding monitor, in steps.
         self.horizon: int = spec.horizon
         #: XXH64 of the spec, its data and its thresholds, as in the generated class.
         self.fingerprint: tuple[int, int, int] = (
@@ -159,7 +158,7 @@ class Monitor:
         ]
         self._types: list[int] = [one.type for one in inputs]
         self._counts: list[int] = [one.dimension for one in inputs]
-        #: By name, in the order of the spec.
+        #: The inputs by name, in the order of the spec.
         self.inputs: dict[str, Input] = {
             one.name.decode(): Input(
                 one.name.decode(),
@@ -173,9 +172,9 @@ class Monitor:
             _described(_library.MonitorDescription, library.etlc_describe_monitor, self._session, m)
             for m in range(spec.monitors)
         ]
-        #: Their names, in the order of the spec.
+        #: The names of the monitors, in the order of the spec.
         self.monitors: tuple[str, ...] = tuple(one.name.decode() for one in monitors)
-        #: By name of the monitor, as text.
+        #: The formulas as text, by name of the monitor.
         self.formulas: dict[str, str] = {
             one.name.decode(): decoded(one.formula) for one in monitors
         }
@@ -185,7 +184,7 @@ class Monitor:
             )
             for p in range(spec.predicates)
         ]
-        #: By name, as text: "min l2(z, goal) <= 0.25".
+        #: The predicates as text, by name: "min l2(z, goal) <= 0.25".
         self.predicates: dict[str, str] = {
             decoded(one.name): decoded(one.text) for one in predicates
         }
@@ -200,7 +199,7 @@ class Monitor:
             self._let_at[(name.value or b"").decode()] = let
 
     def _make_room(self) -> None:
-        """Where the samples of a step are put, and its verdicts."""
+        """Allocates the samples and verdicts of a step."""
         self._samples = (_library.Sample * len(self.inputs))()
         self._elements: list[np.ndarray] = []
         self._put: dict[str, Callable[[Any], None]] = {}
@@ -214,9 +213,9 @@ class Monitor:
             put = self._scalar_put if one.shape == () else self._embedding_put
             self._put[one.name] = put(one, elements, self._samples[at], place)
         self._verdicts = (_library.VerdictStruct * len(self.monitors))()
-        self._said = 0  # how often verdicts were given
-        self._begin = 0  # of that, before the episode
-        # All that a step passes, as C has it.
+        self._said = 0  # how often verdicts were returned
+        self._begin = 0  # how often before this episode
+        # The arguments of a step, as ctypes objects.
         self._call = (
             library.etlc_step, self._session, self._samples, c_size_t(len(self.inputs)),
             self._verdicts, c_size_t(len(self.monitors)), memoryview(self._verdicts).cast("B"),
@@ -256,7 +255,7 @@ class Monitor:
             if value.__class__ is np.ndarray and value.dtype == dtype and value.shape == shape:
                 try:
                     view[:] = value
-                except ValueError:  # it is not aligned: its buffer says another type
+                except ValueError:  # not aligned: its buffer reports another type
                     elements[:] = value
             elif value is None:
                 self._mark_missing(name, sample)
@@ -274,19 +273,19 @@ class Monitor:
         sample.data = None
 
     def step(self, /, **samples: Any) -> Verdicts:
-        """One step.
+        """Takes one step.
 
         Args:
-            **samples: by the name of the input: a number of a scalar, a bool, or an array of shape
-                (D,) of an embedding. One that is None or not given is missing, and so is one that
-                is not finite, or out of its range. Arrays of the input's own dtype are copied once;
+            **samples: by the name of the input: a number for a scalar, a bool, or an array of shape
+                (D,) for an embedding. A sample that is None, omitted, not finite or out of range is
+                missing. Arrays of the input's own dtype are copied once;
                 float16 and float64 in place of float32 are rounded once; others are refused.
 
         Returns:
-            What each monitor says.
+            The verdict of each monitor.
 
         Raises:
-            InputError: a name, shape or type that the spec does not know; no step was made.
+            InputError: the spec does not have this name, shape or type; no step was taken.
             ClosedError: the monitor is closed, or `finish` was called.
         """
         put = self._put
@@ -309,22 +308,22 @@ class Monitor:
         return Verdicts(self, raw.tobytes(), said)
 
     def run(self, arrays: Mapping[str, Any] | None = None, **more: Any) -> Episode:
-        """A whole episode at once: `reset`, then a step for each row.
+        """Runs a whole episode: `reset`, then a step for each row.
 
         Args:
-            arrays: by the name of the input: an array of shape (N,) of a scalar or bool, (N, D) of
-                an embedding. What is NaN, masked (numpy.ma) or not given is missing. Arrays of the
-                input's own dtype are read where they lie, whatever their stride from row to row.
+            arrays: by the name of the input: an array of shape (N,) for a scalar or bool, (N, D)
+                for an embedding. Samples that are NaN, masked (numpy.ma) or omitted are missing.
+                Arrays of the input's own dtype are read without a copy, with any row stride.
             **more: the same, as arguments.
 
         Returns:
-            What each monitor says at each step.
+            The verdicts of each monitor at each step.
 
         Raises:
-            InputError: as `step`; no step was made.
+            InputError: as in `step`; no step was taken.
 
         Warns:
-            EtlcWarning: an input that a monitor looks at is missing at every step, and not None.
+            EtlcWarning: an input that a monitor uses is missing at every step, and not None.
         """
         if arrays is not None and not isinstance(arrays, Mapping):
             raise InputError(f"arrays is of {type(arrays).__name__}, expected a dict by input")
@@ -366,7 +365,7 @@ class Monitor:
         return Episode(self.monitors, table)
 
     def _warn_of_missing(self, steps: int, given: Mapping[str, Any]) -> None:
-        """Of inputs that monitors look at, and that have no sample throughout."""
+        """Warns of inputs that monitors use and that have no sample in the episode."""
         said = []
         for name, one in self.inputs.items():
             if steps == 0 or not one.is_used or given.get(name, ...) is None:
@@ -386,9 +385,9 @@ class Monitor:
             warn(EtlcWarning("; ".join(said) + end))
 
     def finish(self) -> Verdicts:
-        """The episode has ended: sliding monitors report one of the positions that are left.
+        """Ends the episode: sliding monitors report one of the remaining positions.
 
-        Called `horizon` times it gives all of them. `reset` begins another episode.
+        Call it `horizon` times to get all of them. `reset` begins another episode.
         """
         call(library.etlc_finish, self._session, self._verdicts, len(self.monitors))
         self._said += 1
@@ -396,22 +395,22 @@ class Monitor:
         return Verdicts(self, self._call[-1].tobytes(), self._said)
 
     def reset(self) -> None:
-        """Begins a new episode. Thresholds that have moved stay where they are."""
+        """Begins a new episode. Adaptive thresholds keep their values."""
         call(library.etlc_reset, self._session)
         self._said += 1
         self._begin = self._said
 
     def restart(self, monitor: str) -> None:
-        """From the next step on, this monitor is about that step. It is one that restarts."""
+        """Restarts a restartable or repeating monitor: it judges from the next step on."""
         call(library.etlc_restart, self._session, self._at(self._monitor_at, "monitor", monitor))
 
     def observe(self, predicate: str, distance: float, truth: bool) -> None:
-        """A label for an adaptive threshold.
+        """Passes a label to an adaptive threshold.
 
         Args:
-            predicate: its name.
-            distance: on a frame.
-            truth: whether it should have held there.
+            predicate: the name of the predicate.
+            distance: its distance at some frame.
+            truth: whether it should have held at that frame.
         """
         at = self._at(self._predicate_at, "predicate", predicate)
         call(
@@ -421,18 +420,18 @@ class Monitor:
 
     @property
     def steps(self) -> int:
-        """Made since the monitor was opened or reset."""
+        """The number of steps since the monitor was opened or reset."""
         return self._said - self._begin
 
     def position(self, monitor: str) -> int:
-        """The step that the last verdict of a monitor is about."""
+        """Returns the step that the last verdict of a monitor is about."""
         position = c_uint64()
         at = self._at(self._monitor_at, "monitor", monitor)
         call(library.etlc_position, self._session, at, byref(position))
         return position.value
 
     def measure(self, predicate: str) -> Measurement:
-        """What a predicate came to at the last step."""
+        """Returns the values of a predicate at the last step."""
         at = self._at(self._predicate_at, "predicate", predicate)
         measured = _library.Measured()
         call(library.etlc_measure, self._session, at, byref(measured))
@@ -440,7 +439,7 @@ class Monitor:
         return Measurement(measured.distance, measured.threshold, nearest)
 
     def let(self, name: str) -> float:
-        """The robustness of a let at the last step; NaN where a missing sample leaves it open."""
+        """Returns the robustness of a let at the last step; NaN if a missing sample hides it."""
         at = self._at(self._let_at, "let", name)
         verdict = _library.VerdictStruct()
         call(library.etlc_let, self._session, at, byref(verdict))
@@ -448,7 +447,7 @@ class Monitor:
         return verdict.robustness if known else float("nan")
 
     def sample_counts(self, name: str) -> dict[str, int]:
-        """What became of the samples of an input: how many were missing, out_of_range, held."""
+        """Counts the samples of an input that were missing, out_of_range and held."""
         at = self._at({one: i for i, one in enumerate(self.inputs)}, "input", name)
         counts = _library.Counts()
         call(library.etlc_count, self._session, at, byref(counts))
@@ -458,10 +457,10 @@ class Monitor:
 
     @property
     def incidents(self) -> tuple[bytes, ...]:
-        """The alarms that began, each with the steps around it, as `etlc incident` reads them.
+        """The complete incidents, each an alarm with the steps around it, for `etlc incident`.
 
-        One is complete some steps after its alarm, or with the end of the episode (`reset`,
-        `close_incidents`); its steps do not change from then on.
+        An incident is complete some steps after its alarm, or at the end of the episode (`reset`,
+        `close_incidents`). It does not change after that.
 
         Raises:
             NotKeptError: the monitor was opened without a recorder.
@@ -475,15 +474,15 @@ class Monitor:
 
     @property
     def lost_incidents(self) -> int:
-        """Alarms that began while there was no room for another incident."""
+        """The number of alarms that began while there was no room for another incident."""
         return self._incident_counts()[1]
 
     def close_incidents(self) -> None:
-        """Completes the incidents that wait for steps, with the steps that there are."""
+        """Completes pending incidents with the steps so far."""
         call(library.etlc_close_incidents, self._session)
 
     def forget_incidents(self) -> None:
-        """Makes room for new ones."""
+        """Deletes the incidents to make room for new ones."""
         call(library.etlc_forget_incidents, self._session)
 
     def _incident_counts(self) -> tuple[int, int]:
@@ -492,7 +491,7 @@ class Monitor:
         return complete.value, lost.value
 
     def explain(self, monitor: str) -> Explanation:
-        """Why the last verdict of a monitor is what it is, as `etlc explain` says it.
+        """Explains the last verdict of a monitor, like `etlc explain`.
 
         Raises:
             NotKeptError: the monitor was opened without a history as long as the episode.
@@ -509,7 +508,7 @@ class Monitor:
         return Explanation(said[0], json.loads(said[1]))
 
     def close(self) -> None:
-        """Frees it. Every later call raises ClosedError, but for another close()."""
+        """Closes the monitor. Every later call except close() raises ClosedError."""
         if self._session.value != 0:
             session, self._session.value = self._session.value, 0
             call(library.etlc_close, session)
@@ -523,7 +522,7 @@ class Monitor:
     def __del__(self) -> None:
         try:
             self.close()
-        except (Error, AttributeError, TypeError):  # in use, or the interpreter is going
+        except (Error, AttributeError, TypeError):  # in use, or the interpreter is exiting
             pass
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""What monitors say: of one step, and of an episode."""
+"""The verdicts of monitors, for one step and for an episode."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ VERDICT_DTYPE = np.dtype(
 
 @dataclass(frozen=True, eq=False)
 class Explanation(Ambiguous):
-    """Why a verdict is what it is, as `etlc explain` says it.
+    """The explanation of a verdict by `etlc explain`.
 
     Attributes:
-        text: for people.
-        data: for programs; docs/explanations.md lists the keys.
+        text: the explanation for people.
+        data: the same for programs; docs/explanations.md lists the keys.
     """
 
     text: str
@@ -40,15 +40,15 @@ class Explanation(Ambiguous):
 
 
 class Verdict(Ambiguous):
-    """What one monitor said after one step. It does not change with later steps.
+    """The verdict of one monitor after one step. It does not change with later steps.
 
-    Its truth value raises AmbiguousError: whether it is an alarm is `alarm`.
+    Its truth value raises AmbiguousError: use `alarm`.
 
     Attributes:
-        name: of the monitor.
-        robustness: how far from the other answer, in the units of its predicates; pessimistic where
-            a sample is missing; NaN where nothing is decided.
-        lower, upper: what no continuation takes the robustness below, and above.
+        name: the name of the monitor.
+        robustness: the margin, in the units of its predicates; pessimistic if
+            a sample is missing; NaN if undecided.
+        lower, upper: bounds on the robustness for every continuation.
     """
 
     __slots__ = ("_monitor", "_said", "_status", "lower", "name", "robustness", "upper")
@@ -70,37 +70,37 @@ class Verdict(Ambiguous):
 
     @property
     def alarm(self) -> bool:
-        """Violated for good: nothing that may come repairs it."""
+        """Whether it is violated for good: nothing can repair it."""
         return self._status & ALARM == ALARM
 
     @property
     def fulfilled(self) -> bool:
-        """Satisfied for good."""
+        """Whether it is satisfied for good."""
         return self._status & FULFILLED == FULFILLED
 
     @property
     def satisfied(self) -> bool:
-        """Were the episode to end now."""
+        """Whether it would be satisfied if the episode ended now."""
         return self._status & SATISFIED != 0
 
     @property
     def violated(self) -> bool:
-        """Were the episode to end now; until it is final this mostly means "not yet"."""
+        """Whether it would be violated if the episode ended now; mostly "not yet" until final."""
         return self._status & VIOLATED != 0
 
     @property
     def decided(self) -> bool:
-        """False only before a sliding monitor has seen its horizon."""
+        """Whether there is a verdict; false only before a sliding monitor has seen its horizon."""
         return self._status & DECIDED != 0
 
     @property
     def unknown(self) -> bool:
-        """A missing sample leaves it open."""
+        """Whether a missing sample leaves it open."""
         return self.decided and not self.satisfied and not self.violated
 
     @property
     def final(self) -> bool:
-        """No continuation changes it between satisfied and violated."""
+        """Whether no continuation can change it between satisfied and violated."""
         return self._status & FINAL != 0
 
     @property
@@ -112,10 +112,10 @@ class Verdict(Ambiguous):
 
     @property
     def why(self) -> Explanation:
-        """Why it is what it is. It is computed when it is asked for.
+        """The explanation of this verdict, computed on demand.
 
         Raises:
-            NotKeptError: the monitor was opened without a history, or has stepped on since.
+            NotKeptError: the monitor was opened without a history, or has stepped since.
             UndecidedError: there is no verdict.
         """
         if self._said != self._monitor._said:
@@ -135,9 +135,9 @@ class Verdict(Ambiguous):
 
 
 class Verdicts(Ambiguous):
-    """What all monitors said after one step: `verdicts.NAME` or `verdicts["NAME"]`.
+    """The verdicts of all monitors after one step: `verdicts.NAME` or `verdicts["NAME"]`.
 
-    Its truth value raises AmbiguousError: which monitors raise an alarm is `alarms`.
+    Its truth value raises AmbiguousError: use `alarms`.
     """
 
     __slots__ = ("_monitor", "_raw", "_said")
@@ -177,7 +177,7 @@ class Verdicts(Ambiguous):
 
     @property
     def alarms(self) -> list[Verdict]:
-        """Those that are violated for good, in the order of the spec."""
+        """The verdicts that are violated for good, in the order of the spec."""
         return [verdict for verdict in self if verdict.alarm]
 
     def __repr__(self) -> str:
@@ -185,13 +185,13 @@ class Verdicts(Ambiguous):
 
 
 class EpisodeVerdicts(Ambiguous):
-    """What one monitor said at every step of an episode, as arrays of N steps.
+    """The verdicts of one monitor at every step of an episode, as arrays of N steps.
 
-    Its truth value raises AmbiguousError: whether there is an alarm is `alarm.any()`.
+    Its truth value raises AmbiguousError: use `alarm.any()`.
 
     Attributes:
-        name: of the monitor.
-        robustness, lower, upper: float32; NaN where nothing is decided.
+        name: the name of the monitor.
+        robustness, lower, upper: float32; NaN where undecided.
     """
 
     __hash__ = None  # type: ignore[assignment]
@@ -236,7 +236,7 @@ class EpisodeVerdicts(Ambiguous):
 
     @property
     def first_alarm(self) -> int | None:
-        """The first step with an alarm; None: there is none."""
+        """The first step with an alarm, or None."""
         alarms = self.alarm
         return int(np.argmax(alarms)) if alarms.any() else None
 
@@ -254,14 +254,14 @@ class EpisodeVerdicts(Ambiguous):
 
 
 class Episode(Ambiguous):
-    """What all monitors said of an episode: `episode.NAME` or `episode["NAME"]`.
+    """The verdicts of all monitors for an episode: `episode.NAME` or `episode["NAME"]`.
 
-    Its truth value raises AmbiguousError: `len` of it is how many steps it has.
+    Its truth value raises AmbiguousError: `len` is its number of steps.
 
     Attributes:
         table: a structured array (N steps, M monitors) with the fields robustness, lower, upper
             and status.
-        monitors: their names, in the order of its columns.
+        monitors: the names of the monitors, in the order of the columns.
     """
 
     __hash__ = None  # type: ignore[assignment]
@@ -300,7 +300,7 @@ class Episode(Ambiguous):
 
 
 def _contains(verdicts: Verdicts | Episode, one: object, ask: str) -> bool:
-    """`in` asks for a verdict: whether "violated", or a name, is in it means several things."""
+    """Implements `in` for verdicts; "violated", or a name, would be ambiguous."""
     if isinstance(one, (Verdict, EpisodeVerdicts)):
         return any(one == other for other in verdicts)
     raise AmbiguousError(

@@ -25,7 +25,7 @@ std::string threshold_of(Method method, const std::string& alpha, Random& random
     return random.word({"0.4", "0.7", "1.1"});
 }
 
-/// A truth, over what the methods allow.
+/// Returns a truth that the methods allow.
 std::string truth_of(const World& world, Random& random) {
     std::vector<std::string> all{"y > limit", "y > limit || b && y > 0.2", "high",
                                  "y > limit && l2([x, y], k) < 1.5"};
@@ -151,7 +151,7 @@ Chain random_chain(Random& random) {
     world.arrays = random.chance(0.3);
     const bool silent = world.arrays && random.chance(0.7);
     const std::string alpha = random.word({"0.1", "0.2", "0.3"});
-    const bool keeps = !world.frames_alike;  // what is held makes frames depend on each other
+    const bool keeps = !world.frames_alike;  // `held` makes frames depend on each other
 
     std::string& spec = chain.spec;
     spec = "spec t; rate 10 Hz; const limit = 0.5;\ninput x : f32";

@@ -1,7 +1,7 @@
-// Random chains from a world to a promise, for the campaign over them.
-// Takes: random numbers. Gives: a world that episodes are drawn from, a spec with something that is
-// calibrated on them, and what may become of the spec afterwards. Keeps true: episodes of a world
-// are drawn alike, so they are exchangeable.
+// Random chains from a world to a guarantee, for the campaign in test_chains.cpp.
+// Takes: random numbers. Gives: a world to draw episodes from, a spec with something to calibrate
+// on them, and changes of the spec. Keeps true: episodes of a world are drawn independently in the
+// same way, so they are exchangeable.
 #pragma once
 
 #include <string>
@@ -11,16 +11,16 @@
 
 namespace etlc::tests {
 
-/// Where episodes come from.
+/// The source of episodes.
 struct World {
-    bool frames_alike = false;  ///< frames are drawn one by one
-    double missing = 0;         ///< of each sample
+    bool frames_alike = false;  ///< whether frames are drawn one by one
+    double missing = 0;         ///< P(a sample is missing)
     double missing_truth = 0;   ///< of y
     double noise = 0;
-    bool arrays = false;  ///< labels are recorded, by a rule that no spec states
+    bool arrays = false;  ///< whether labels are recorded, by a rule that no spec states
 };
 
-/// As the text of a .csv file. `with_array`: with labels.
+/// Returns an episode as the text of a .csv file, with labels if `with_array`.
 std::string episode_of(const World& world, bool with_array, Random& random);
 
 enum class Method { f1, conformal, class_conditional, adaptive, whole, whole_of_f1 };
@@ -34,13 +34,13 @@ struct Chain {
 
 Chain random_chain(Random& random);
 
-/// The first `from` in a spec becomes `to`; where both are empty, nothing does.
+/// Replaces the first `from` in a spec by `to`; if both are empty, nothing changes.
 struct Edit {
     std::string from, to;
     std::string name() const { return from.empty() ? "none" : from + " -> " + to; }
 };
 
-/// One that applies; or none, now and then.
+/// Returns an edit that applies; sometimes none.
 Edit random_edit(const std::string& spec, Random& random);
 
 }  // namespace etlc::tests

@@ -10,7 +10,7 @@ using check::Index;
 using check::kNone;
 
 void change(std::string& text) {
-    text += '1';  // of a number another number, of a name another name
+    text += '1';  // replaces numbers and names
 }
 void change(bool& value) {
     value = !value;
@@ -57,7 +57,7 @@ void change(std::map<Key, Value>& values) {
 void change(std::vector<check::Expr>& arguments) {
     if (arguments.size() == 2) std::swap(arguments[0], arguments[1]);
 }
-/// Only where as many arguments are taken.
+/// Calls it only if the number of arguments matches.
 void change(check::Expr::Kind& kind) {
     using enum check::Expr::Kind;
     switch (kind) {
@@ -77,7 +77,7 @@ void change(Enum& value) {
     value = static_cast<Enum>(static_cast<int>(value) == 0 ? 1 : 0);
 }
 
-/// An index into a list: what stands at another place.
+/// Changes an index into a list to that of another element.
 struct Place {
     Index& index;
     std::size_t size;
@@ -144,7 +144,7 @@ void visit(check::Model& model, check::Point& of, Changing& changing) {
     if (projection != kNone)
         field(changing, "projection", Place{projection, model.projections.size()});
     field(changing, "text", text);
-    // Of those before it.
+    // Only to earlier ones.
     if (inner != kNone) field(changing, "inner", Place{inner, inner + 1});
 }
 
@@ -233,7 +233,7 @@ void visit(check::Model& model, check::Monitor& of, Changing& changing) {
     field(changing, "formula", Place{formula, model.formulas.size()});
     field(changing, "sliding", sliding);
     field(changing, "restarts", restarts);
-    of.sliding = true;  // of others there is no horizon
+    of.sliding = true;  // others have no horizon
     field(changing, "horizon", horizon);
     of.sliding = false;
     field(changing, "calibration", calibration);

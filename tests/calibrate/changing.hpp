@@ -1,7 +1,7 @@
-// Every field of a model, changed in turn.
-// Takes: a model, or a part of it. Gives: a call after each change, which is then taken back. Keeps
-// true: structs are taken apart into all their fields, so this does not compile with a field that
-// nobody has thought of; what a changed index points to is there.
+// Changes every field of a model in turn.
+// Takes: a model, or a part of it. Gives: a call after each change, which is then undone. Keeps
+// true: structs are decomposed into all their fields, so a forgotten field does not compile; a
+// changed index stays valid.
 #pragma once
 
 #include <functional>
@@ -12,18 +12,18 @@
 
 namespace etlc::tests {
 
-/// What is changed, and which of the changes were noticed.
+/// The changes, and which of them were noticed.
 class Changing {
 public:
-    /// `is_read`: whether anything is read otherwise now.
+    /// `is_read`: whether the text of reads changed.
     using IsRead = std::function<bool()>;
     explicit Changing(IsRead is_read) : is_read_(std::move(is_read)) {}
 
-    /// A struct of this name begins.
+    /// Enters a struct with this name.
     void of(std::string name);
-    /// The field is another now.
+    /// Records that the field has changed.
     void note(const std::string& name);
-    /// Whether a field of this struct is read.
+    /// Returns whether a field of this struct is read.
     bool some() const { return some_; }
 
     std::set<std::string> read, all;  ///< "Input.hold"

@@ -1,5 +1,5 @@
-"""Demonstrations for tests of what voids a guarantee: one embedding, and the labels of a predicate
-in arrays."""
+"""Demonstrations for tests of void guarantees: one embedding, and the labels of a predicate in
+arrays."""
 import subprocess
 
 import numpy as np
@@ -14,7 +14,7 @@ def codes(text):
 
 
 class World:
-    """Demonstrations of one input z in a folder of their own, and a spec."""
+    """Demonstrations of one input z in their own folder, and a spec."""
 
     def __init__(self, etlc, folder, seed):
         self.etlc, self.folder = etlc, folder

@@ -8,7 +8,7 @@ namespace etlc::tests {
 
 namespace {
 
-/// A trace that keeps the text alive that it reads.
+/// A trace that keeps its text alive.
 class Kept final : public data::Trace {
 public:
     Kept(std::shared_ptr<std::string> text, std::unique_ptr<data::Trace> trace)

@@ -1,6 +1,6 @@
 // Episodes in memory, for tests of calibration.
-// Takes: the text of a .csv file. Gives: what opens it as an episode. Keeps true: nothing is
-// written to disk.
+// Takes: the text of a .csv file. Gives: a function that opens it as an episode. Keeps true:
+// nothing is written to disk.
 #pragma once
 
 #include <string>
@@ -9,11 +9,10 @@
 
 namespace etlc::tests {
 
-/// Opens this text as a .csv episode; it is copied.
+/// Opens a copy of this text as a .csv episode.
 episodes::Opener csv_episode(std::string text);
 
-/// "y n ? y": the labels of a predicate, frame after frame; the failure's message where there was
-/// one.
+/// Returns the labels of a predicate, frame by frame, as "y n ? y", or the message of the failure.
 std::string labels(const episodes::Wanted& wanted, const episodes::Opener& open,
                    episodes::Index predicate);
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""leaks_test.py ETLC: every road from a frame of a demonstration to a row of a target. `etlc
-calibrate` refuses it and `evaluate` warns of it; on each road rows of another recording pass."""
+"""leaks_test.py ETLC: every way from a frame of a demonstration to a row of a target. `etlc
+calibrate` refuses it and `evaluate` warns; rows of another recording pass in the same way."""
 import itertools
 import pathlib
 import sys
@@ -10,7 +10,7 @@ import numpy as np
 
 from demonstrations import CONFORMAL, D, EPISODES, WHOLE, World
 
-# How the rows are made of frames, where they are declared, what measures from them.
+# How rows are made from frames, where they are declared, and which point measures them.
 
 def as_recorded(world, z):
     return z
@@ -27,7 +27,7 @@ def by_float64(*maps):
 
 def by_float32(*maps):
     def rows(world, z):
-        for name in maps:  # term after term, from the last
+        for name in maps:  # term by term, from the last
             matrix = getattr(world, name)
             sums = np.zeros((len(z), len(matrix)), np.float32)
             for j in reversed(range(matrix.shape[1])):
@@ -47,13 +47,13 @@ def multiple(of, factor):
 
 
 def beside_the_map(world, z):
-    """Frames that only Q makes alike."""
+    """Frames that only Q makes equal."""
     null = np.linalg.svd(world.q.astype(np.float64))[2][len(world.q):]
     return z + world.random.normal(size=(len(z), len(null))) @ null
 
 
 def of_small_weight(world, z):
-    """Frames that differ where the weights are next to nothing."""
+    """Frames that differ only where the weights are almost zero."""
     z = z.copy()
     z[:, 5:] += 1
     return z
@@ -104,7 +104,7 @@ def target_spec(kind, space, point, metric, rows, monitor):
 
 
 def told_of_targets(world, spec):
-    """What calibrate and evaluate say."""
+    """Returns the messages of calibrate and evaluate."""
     world.spec(spec)
     calibrated = world.run("calibrate", "--data", "demos", "-o", "t.json")
     literal = spec.replace(CONFORMAL, "<= 0.5").replace(WHOLE, "")
@@ -145,7 +145,7 @@ def test_frames_and_single_rows(world):
             rows = f'frames("{"demos" if leaks else "aside"}/04.npz", "z", [3])'
             says = told_of_targets(world, target_spec(kind, "", point, "l2", rows, False))
             assert ("E0665" in says[0]) == leaks, (kind, point, says)
-        # What int8 rounds is too much to tell behind both maps.
+        # Behind both maps int8 rounds too much to tell.
         spaces = {" of Q(z)": "q", " of P(Q(z))": "p"} if kind[0] == "f" else {" of Q(z)": "q"}
         for space, name in spaces.items():
             frames = np.stack([z[3] for z, _ in written[:5]]) / (grain or 1)
@@ -160,7 +160,7 @@ def test_frames_and_single_rows(world):
 
 
 def test_honest_lines(world):
-    """On a line frames come to lie at rows by chance: many frames, many rows, many times."""
+    """On a line frames come near rows by chance: many frames, many rows, many times."""
     refused = 0
     for seed in range(6):
         random = np.random.default_rng(1000 + seed)

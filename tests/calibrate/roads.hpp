@@ -1,6 +1,6 @@
-// `etlc calibrate` in process, for tests that take every road to a guarantee.
-// Takes: the text of a spec and episodes as text. Gives: what was reported, and the thresholds
-// file. Keeps true: it is the whole way, from files to a file.
+// Runs `etlc calibrate` in process, for tests of every way to a guarantee.
+// Takes: the text of a spec and episodes as text. Gives: the diagnostics and the thresholds file.
+// Keeps true: it runs the whole command, from files to a file.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace etlc::tests {
 
-/// .csv files that are there as long as this is.
+/// .csv files that exist as long as this object.
 class Files {
 public:
     Files() = default;
@@ -30,32 +30,32 @@ private:
 };
 
 struct Calibrated {
-    std::vector<std::string> codes;  ///< of the errors, each once
+    std::vector<std::string> codes;  ///< codes of the errors, each once
     std::string report;
-    std::string thresholds;  ///< the file; empty where there were errors
+    std::string thresholds;  ///< the file; empty after errors
 };
 
-/// `before`: the thresholds file of the predicates, empty where they are calibrated now. `fitted`:
-/// the file of what is fitted.
+/// `before`: the thresholds file of the predicates; empty: calibrate them now. `fitted`: the file
+/// of `etlc fit`.
 Calibrated calibrated(const std::string& spec, const std::vector<std::string>& episodes,
                       const std::string& before = "", const std::string& fitted = "");
 
-/// The numbers in a thresholds file, without what it says of the spec.
+/// Returns the numbers in a thresholds file, without its description of the spec.
 std::string numbers(const std::string& thresholds);
 
-/// The file that `etlc fit` makes; empty where there were errors.
+/// Returns the file of `etlc fit`; empty after errors.
 std::string fitted(const std::string& spec, const std::vector<std::string>& episodes);
 
-/// A spec with these files beside it, as every command reads it.
+/// Reads a spec with these files beside it, like every command.
 struct Checked {
-    std::optional<check::Model> model;  ///< nothing: it is refused
+    std::optional<check::Model> model;  ///< empty: refused
     std::vector<std::string> codes;
-    std::string text;  ///< of the errors and their notes
+    std::string text;  ///< messages of the errors with their notes
 };
 Checked checked(const std::string& spec, const std::string& thresholds,
                 const std::string& fitted = "");
 
-/// Codes of the errors, each once.
+/// Returns the codes of the errors, each once.
 std::vector<std::string> error_codes(const diag::Sink& sink);
 
 }  // namespace etlc::tests

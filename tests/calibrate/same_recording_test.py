@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""same_recording_test.py ETLC: every road from a recording to another episode, in every storage.
-`etlc calibrate` refuses it, `evaluate` and what is calibrated on what was fitted as well; on each
-road another recording passes."""
+"""same_recording_test.py ETLC: every way from a recording to another episode, in every storage.
+`etlc calibrate`, `evaluate`, and calibration on the episodes of a fit refuse it; other recordings
+pass in the same way."""
 import ctypes
 import ctypes.util
 import itertools
@@ -34,7 +34,7 @@ def fortran(path, z, label):
 
 
 def h5(path, z, label):
-    """By the C library: the arrays of a group."""
+    """Writes the arrays of a group with the C library."""
     lib = ctypes.CDLL(ctypes.util.find_library("hdf5_serial") or ctypes.util.find_library("hdf5"))
     for name in ("H5Fcreate", "H5Screate_simple", "H5Dcreate2"):
         getattr(lib, name).restype = ctypes.c_int64
@@ -65,7 +65,7 @@ def negative_zeros(z):
 
 
 def gaps(value):
-    """Missing frames, which one of the numbers says or all."""
+    """Missing frames, marked by one number or by all."""
     def edit(z):
         z = z.copy()
         z[2::5] = value
@@ -79,7 +79,7 @@ def first(n):
 
 
 def few(n):
-    """So many frames are there, the rest is missing."""
+    """Keeps this many frames; the rest is missing."""
     def edit(z):
         z = z.copy()
         z[n:] = np.nan
@@ -99,7 +99,7 @@ def same(z):
     return z
 
 
-#     input, what all are stored as and the other one is made from, what it is stored as
+# input, original storage of all, storage of the copy
 EPISODE_ROADS = [
     ("f32", same, npz("f4"), same, npz("f4"), "E0664"),
     ("f32", same, npz("f4"), same, npz("f8"), "E0664"),
@@ -130,7 +130,7 @@ EPISODE_ROADS = [
 
 
 def held(z):
-    """What `hold` makes of it."""
+    """The effect of `hold`."""
     for t in range(1, len(z)):
         if np.isnan(z[t]).any():
             z[t] = z[t - 1]
@@ -188,7 +188,7 @@ def test_episodes(world):
 
 
 def test_scalars(world):
-    """A scalar out of its range is missing, as an empty cell is, and so is one that `hold` ends."""
+    """A scalar out of range is missing, like an empty cell, and so is one that `hold` ends."""
     world.spec("spec t; input s : f32 in [-1, 1] hold 1;\n"
                f"predicate a = s {CONFORMAL};\nmonitor m = F a;\n")
     clear(world, "demos", "new")
@@ -214,7 +214,7 @@ def test_scalars(world):
 
 
 def test_old_files(world):
-    """What an earlier version wrote is refused where episodes are compared."""
+    """Files of an earlier version are refused when episodes are compared."""
     world.spec(episode_spec("f32"))
     clear(world, "demos", "new")
     world.write("demos", world.demos)

@@ -1,6 +1,6 @@
-// Whole chains: fit, calibrate, change the spec, compile. Either the changed spec is refused, or
-// what is promised of new episodes holds in simulation, and the same demonstrations give the same
-// numbers for it. ETLC_CHAINS=5000 in the environment tries so many; the test is a slice.
+// Tests whole chains: fit, calibrate, change the spec, compile. Either the changed spec is refused,
+// or its guarantees hold for new episodes in simulation, and the same demonstrations give the same
+// numbers for it. The test is a sample; ETLC_CHAINS=5000 in the environment tries that many chains.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -24,8 +24,8 @@ namespace {
 using check::Index;
 using episodes::Label;
 
-constexpr int kNew = 150;           ///< episodes that a chain is tried on
-constexpr double kNoChance = 1e-9;  ///< of each figure; there are some hundred
+constexpr int kNew = 150;           ///< episodes per chain
+constexpr double kNoChance = 1e-9;  ///< significance per figure; there are some hundred
 
 Files files_of(const World& world, int count, Random& random) {
     Files files;
@@ -35,8 +35,8 @@ Files files_of(const World& world, int count, Random& random) {
 
 // ---- chance -------------------------------------------------------------------------------------
 
-/// P(at least m of n are missed), where the share that is missed is Beta(n + 1 - k, k): that of a
-/// threshold at rank k of n scores, or less (Vovk, 2012).
+/// Returns P(at least m of n are missed), where the missed fraction is Beta(n + 1 - k, k) or less,
+/// as for a threshold at rank k of n scores (Vovk, 2012).
 double chance_of(int missed, int all, std::uint64_t n, std::uint64_t k) {
     const auto a = static_cast<double>(n + 1 - k);
     const auto b = static_cast<double>(k);
@@ -48,8 +48,8 @@ double chance_of(int missed, int all, std::uint64_t n, std::uint64_t k) {
     return std::min(1.0, sum);
 }
 
-/// Of chances that are each uniform or larger, that their product is so small (Fisher): P(chi
-/// squared with 2 n degrees of freedom > -2 sum of logarithms).
+/// Returns the probability of so small a product of p-values that are each uniform or larger
+/// (Fisher): P(chi squared with 2 n degrees of freedom > -2 sum of logarithms).
 double chance_of_all(const std::vector<double>& chances) {
     double half = 0;
     for (const double one : chances) half -= std::log(one);
@@ -60,7 +60,7 @@ double chance_of_all(const std::vector<double>& chances) {
     return half == 0 ? 1.0 : std::min(1.0, sum);
 }
 
-// ---- what became of the promises ----------------------------------------------------------------
+// ---- the guarantees in simulation ---------------------------------------------------------------
 
 struct Misses {
     int missed = 0;
@@ -86,7 +86,7 @@ Index predicate_of(const check::Model& model) {
     return check::kNone;
 }
 
-/// Positive frames of known distance that are not found; by episode, or each.
+/// Counts positive frames of known distance that are missed, per episode or each.
 Misses misses_of_predicate(const check::Model& model, const std::vector<std::string>& fresh,
                            bool by_frame) {
     const Index a = predicate_of(model);
@@ -111,7 +111,7 @@ Misses misses_of_predicate(const check::Model& model, const std::vector<std::str
     return result;
 }
 
-/// Episodes in which some verdict of the monitor misses an alarm, or a success.
+/// Counts episodes in which some verdict of the monitor misses an alarm, or a success.
 Misses misses_of_monitor(const check::Model& model, const std::vector<std::string>& fresh,
                          bool alarms) {
     std::vector<Index> labelled;
@@ -166,7 +166,7 @@ private:
         Calibrated calibrated;
     };
 
-    /// From the same demonstrations.
+    /// Calibrates from the same demonstrations.
     static Made make(const Chain& chain, const std::string& spec, const std::vector<Files>& demos) {
         Made made;
         if (chain.has_fitted) made.fits = fitted(spec, demos[0].paths());
@@ -186,7 +186,7 @@ private:
             demos.push_back(files_of(chain.world, count, random));
         const Made made = make(chain, chain.spec, demos);
         const std::string& file = made.calibrated.thresholds;
-        if (file.empty()) {  // an infinite score, too few with one, nothing that is true
+        if (file.empty()) {  // an infinite score, too few episodes with a score, or no true frame
             ++void_;
             return;
         }
@@ -213,7 +213,7 @@ private:
 
     void judge(const Chain& chain, const Edit& edit, const std::string& spec,
                const check::Model& model, Random& random) {
-        // Labels are recorded for as long as nothing else says what is true.
+        // Labels are recorded if nothing else defines the truth.
         const bool stated_now = spec.find("truth a") != std::string::npos &&
                                 chain.spec.find("truth a") == std::string::npos;
         std::vector<std::string> fresh;
@@ -229,7 +229,7 @@ private:
         const check::Claim claim = check::claims(model, monitor)[0];
         const bool alarms = claim.kind == check::Claim::Kind::missed_alarm;
         const bool successes = claim.kind == check::Claim::Kind::missed_success;
-        // Of predicates nothing is said about successes where samples are missing.
+        // The guarantee on successes excludes missing samples.
         if (!claim.part.empty() || (!alarms && !successes)) return;
         const bool missing = chain.world.missing > 0 || chain.world.missing_truth > 0;
         if (!monitor.calibration && successes && missing) return;
@@ -256,11 +256,11 @@ private:
     int refused_ = 0;
     int accepted_ = 0;
     int figures_ = 0;
-    std::map<std::string, std::vector<double>> chances_;  ///< by what was promised
+    std::map<std::string, std::vector<double>> chances_;  ///< by guarantee
 };
 
-/// The figures of the campaign can fail: here they do, of a monitor that keeps its shift although
-/// it now takes a missing sample for what it wants.
+/// Checks that the campaign can fail: a monitor keeps its shift although a missing sample now
+/// counts as satisfied.
 TEST(Chains, ABrokenPromiseIsNoticed) {
     World world;
     world.missing = 0.3;

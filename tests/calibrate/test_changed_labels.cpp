@@ -1,5 +1,5 @@
-// Labels that came from elsewhere than the spec now says, and what was fitted to frames that they
-// chose: thresholds and fitted things are refused, with what the labels were and what they are.
+// Labels from another source than the spec now names, and fits to frames that they selected:
+// thresholds and fits are refused, with the old and the new source in the message.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ TEST_F(Labelled, ByArraysInPlaceOfATruthThatIsChangedOrRemoved) {
     for (const std::string& spec : specs()) {
         const Calibrated before = calibrated(spec, arrays.paths());
         ASSERT_FALSE(before.thresholds.empty()) << testing::PrintToString(before.codes);
-        // As it was it is accepted, and says what the guarantee is about.
+        // Unchanged, it is accepted, and names the source of the labels.
         const Checked same = checked(spec, before.thresholds);
         ASSERT_TRUE(same.model) << same.text;
         ASSERT_EQ(same.model->reservations.size(), 1U);
@@ -83,7 +83,7 @@ TEST_F(Labelled, ByATruthThatIsRemoved) {
     }
 }
 
-/// `array` may have stood in for a truth there.
+/// An array may have replaced a truth there.
 TEST_F(Labelled, AnEarlierVersionsArrayIsNoTruth) {
     for (const std::string& spec : predicate_specs()) {
         Json file = Json::parse(calibrated(spec, arrays.paths()).thresholds);
@@ -100,7 +100,7 @@ TEST_F(Labelled, AnEarlierVersionsArrayIsNoTruth) {
 
 // ---- what is fitted -----------------------------------------------------------------------------
 
-/// Every method, and each kind of predicate in what chooses the frames.
+/// Every method, and each kind of predicate that selects frames.
 const std::string kFitted =
     "spec t; input z : f32[2] hold 1; input x, y : f32; input b : bool; target t = [[0, 0.5]];\n"
     "projection P = {}; target u = fitted(mean, of = P(z), where = a);\n"

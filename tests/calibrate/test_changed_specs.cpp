@@ -1,4 +1,4 @@
-// A spec that was changed after its thresholds were calibrated: it is refused, or the same
+// Tests a spec that changed after its thresholds were calibrated: either it is refused, or the same
 // demonstrations give the same numbers for it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using Codes = std::vector<std::string>;
 
 const Codes kStaleSpec{"E0652"};
 
-/// What may become of a spec. Where there is no `from` in it, it does not apply.
+/// A change of a spec. It does not apply to a spec without `from`.
 const std::vector<Edit>& spec_edits() {
     static const std::vector<Edit> all{
         {"spec t;", "spec t; // a remark\n"},
@@ -113,7 +113,7 @@ const std::vector<Edit>& spec_edits() {
     return all;
 }
 
-/// Edits after which a spec asks for the same: they need no new calibration.
+/// Edits that keep the meaning of the spec and need no new calibration.
 bool is_harmless(const Edit& edit) {
     return edit.to.find("a remark") != std::string::npos || edit.to.starts_with("gamma") ||
            edit.to.starts_with("lo =") || edit.to.starts_with("hi =") ||
@@ -156,7 +156,8 @@ TEST(ChangedSpecs, AreRefusedOrGiveTheSameNumbers) {
     EXPECT_GT(accepted, 20);
 }
 
-// ---- monitors that are calibrated as wholes -----------------------------------------------------
+// ---- monitors that are calibrated as a whole
+// -----------------------------------------------------
 
 const std::string kSmall =
     "spec t; input z : f32[2]; input x, y : f32; input b : bool; target t = [[0, 0.5]];\n"
@@ -169,7 +170,7 @@ struct WholeMonitor : testing::Test {
     Random random{32};
     Files episodes{random_episodes(random, 24)};
 
-    /// Calibrated for the one spec, read for the other: how it is refused.
+    /// Calibrates for one spec, reads for the other, and returns the refusal.
     Checked after(const std::string& spec, const std::string& from, const std::string& to) {
         const Calibrated before = calibrated(spec, episodes.paths());
         EXPECT_FALSE(before.thresholds.empty()) << testing::PrintToString(before.codes);
@@ -217,7 +218,7 @@ TEST_F(WholeMonitor, ItIsSlidingOrNot) {
                    "monitor m", "monitor m was: sliding, horizon 2; it is: monitor");
 }
 
-/// As files of earlier versions have it: nobody knows what its monitor read.
+/// A file of an earlier version does not record what its monitor read.
 TEST_F(WholeMonitor, AnEntryThatDoesNotSayWhatItReadIsRefused) {
     Json file = Json::parse(calibrated(kSmall, episodes.paths()).thresholds);
     file["monitors"]["m"].erase("reads");
@@ -227,7 +228,7 @@ TEST_F(WholeMonitor, AnEntryThatDoesNotSayWhatItReadIsRefused) {
         << now.text;
 }
 
-/// Of a predicate it is believed as far as it goes.
+/// For predicates, the remaining keys are compared.
 TEST(ChangedSpecs, APredicatesEntryOfAnEarlierVersionIsCompared) {
     Random random(33);
     const Files episodes(random_episodes(random, 24));

@@ -1,4 +1,4 @@
-// A thresholds file of which one thing was changed: it is refused, or what is believed of it is the
+// Tests a thresholds file with one change: either it is refused, or the accepted contents are the
 // same.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -46,9 +46,9 @@ std::vector<std::string> two_predicate_episodes(Random& random, int count) {
     return episodes;
 }
 
-/// All that is believed of a file: what the monitors compute with, and what is said of them.
-/// Nothing: it is refused. Of the pooled methods, which promise nothing of episodes, it is the
-/// threshold.
+/// Returns everything that is accepted from a file: the numbers that monitors compute with, and the
+/// stated guarantees. Empty: refused. For the pooled methods, which have no guarantee for episodes,
+/// it is the threshold.
 std::string believed(const std::string& json) {
     const TemporaryPath path("thresholds.json", json);
     check::Options options;
@@ -76,7 +76,7 @@ std::string believed(const std::string& json) {
     return text;
 }
 
-/// Every JSON value below this one, with the way to it.
+/// Visits every JSON value below this one, with its path.
 void visit(Json& json, const std::string& path,
            const std::function<void(Json&, const std::string&)>& visitor) {
     visitor(json, path);
@@ -84,7 +84,7 @@ void visit(Json& json, const std::string& path,
     for (auto& [key, value] : json.items()) visit(value, path + "/" + key, visitor);
 }
 
-/// What may become of a value by a slip of the hand, by a merge, or by wishful thinking.
+/// Changes of a value by a slip of the hand, by a merge, or on purpose.
 std::vector<Json> changes(const Json& value) {
     std::vector<Json> all;
     if (value.is_number()) {
@@ -128,7 +128,7 @@ std::vector<Json> changes(const Json& value) {
             renamed[key + "s"] = member;
             all.push_back(renamed);
             for (const auto& [other, replacement] :
-                 value.items()) {  // an entry that was pasted over another
+                 value.items()) {  // an entry pasted over another
                 Json pasted = value;
                 pasted[key] = replacement;
                 if (other != key) all.push_back(pasted);
@@ -170,8 +170,7 @@ TEST(ChangedThresholds, AreRefusedOrChangeNothing) {
     EXPECT_GT(harmless, 50);  // the version, the order of episodes, a score that is not at the rank
 }
 
-/// Predicates calibrated again on what the monitors were calibrated on, and the entries put
-/// together by hand.
+/// Predicates calibrated again on the episodes of the monitors, with the entries merged by hand.
 TEST(ChangedThresholds, MergedFilesWithAnEpisodeInBothAreRefused) {
     Random random(98);
     const Files first(two_predicate_episodes(random, 14));

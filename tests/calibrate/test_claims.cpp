@@ -1,4 +1,4 @@
-// What is claimed is true of episodes that nobody has seen.
+// Checks guarantees on new episodes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "check/guarantees/guarantees.hpp"
 #include "driver/compile/compile.hpp"
-#include "episodes/ground_truth.hpp"
+#include "episodes/truth.hpp"
 #include "plan/evaluate/evaluator.hpp"
 #include "random.hpp"
 #include "roads.hpp"
@@ -17,9 +17,9 @@ namespace etlc::tests {
 namespace {
 
 constexpr int kClaimDraws = 120;
-constexpr int kFresh = 8;  ///< episodes a draw
+constexpr int kFresh = 8;  ///< episodes per draw
 
-/// x is near 0 where the label holds; s comes to lie on the threshold of the comparisons with it.
+/// x is near 0 where the label holds; s may lie exactly on the threshold of its comparisons.
 struct Drawn {
     std::vector<float> x, s;
     std::vector<bool> label;
@@ -49,15 +49,15 @@ std::vector<std::string> drawn(Random& random, int count) {
     return episodes;
 }
 
-/// Of every monitor with a claim: the fresh episodes, and those in which some verdict was what the
-/// claim excludes.
+/// For every monitor with a guarantee: the number of fresh episodes, and of those with a verdict
+/// that the guarantee excludes.
 struct KeptClaims {
     check::Claim claim;
     int episodes = 0;
     int broken = 0;
 };
 
-/// `zero_aside`: a verdict with robustness 0 is not meant.
+/// `zero_aside`: ignore verdicts with robustness 0.
 bool breaks(const check::Claim& claim, const etlmon::Verdict& said, const etlmon::Verdict& is) {
     const bool alarm =
         is.violated() && said.satisfied() && !(claim.zero_aside && said.robustness == 0);
@@ -96,7 +96,7 @@ void count(const driver::Compiled& monitors, const driver::Compiled& truths, Ran
     }
 }
 
-/// Calibrates again for every draw. Draws that show too little to calibrate from are left out.
+/// Calibrates again for every draw. Skips draws with too few scores.
 std::map<std::string, KeptClaims> draws(const std::string& spec, bool of_predicates,
                                         bool of_monitors, check::Values values) {
     std::map<std::string, KeptClaims> kept;

@@ -1,7 +1,6 @@
-// What calibration promises, kept by compiled monitors: -O0, -O3 -march=native -ffast-math and
-// AArch64 measure within the interval that calibration reckons with, and a covered demonstration is
-// covered there too, ties and < included. As programs are commonly built, they measure what etlc
-// measures, to the bit.
+// Checks that compiled monitors keep the guarantees: -O0, -O3 -march=native -ffast-math and AArch64
+// measure within the interval that calibration assumes, and a covered demonstration is covered
+// there too, including ties and <. Common builds measure the same bits as etlc.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +24,8 @@ using calibrate::Interval;
 
 constexpr int kDimension = 24;
 constexpr int kDraws = 2000;
-constexpr int kDemonstrations = 9;  // the fewest for alpha = 0.1: the greatest score is taken
+constexpr int kDemonstrations = 9;  // the fewest for alpha = 0.1: the threshold is the greatest
+                                    // score
 constexpr int kFrames = 2;
 
 std::string matrix(Random& random, int rows, int columns) {
@@ -80,7 +80,7 @@ std::string spec_text() {
     return text;
 }
 
-/// Ordinary points; points on a grid, whose distances tie; points at a target or a rounding away
+/// Ordinary points; points on a grid, whose distances tie; points at a target or one rounding away
 /// from it.
 reference::Step random_step(Random& random, const check::Model& model) {
     reference::Step step;
@@ -110,7 +110,7 @@ struct Deployed : testing::Test {
     check::Model model = *load(spec_text());
     reference::Trace trace;
     std::vector<std::vector<Interval>> intervals;                  ///< [frame][predicate]
-    std::vector<std::vector<float>> measured;                      ///< by etlc
+    std::vector<std::vector<float>> measured;                      ///< measured by etlc
     std::map<std::string, std::vector<std::vector<float>>> built;  ///< by name
 
     void measure() {
@@ -136,13 +136,13 @@ struct Deployed : testing::Test {
         }
     }
 
-    /// Steps it through the first frames.
+    /// Steps through the first frames.
     void build(const Build& build, std::size_t frames) {
         GeneratedProgram program("deployed" + build.name);
         ASSERT_TRUE(program.add(model));
         ASSERT_TRUE(program.compile(build));
         std::vector<Request> requests;
-        constexpr std::size_t kSteps = 500;  // the harness takes no traces of any length
+        constexpr std::size_t kSteps = 500;  // the harness needs traces of equal length
         for (std::size_t at = 0; at < frames; at += kSteps) {
             const auto first = trace.begin() + static_cast<std::ptrdiff_t>(at);
             const auto last =
@@ -159,7 +159,7 @@ struct Deployed : testing::Test {
         ASSERT_EQ(deltas.size(), frames);
     }
 
-    /// In how many distances it differs from etlc, and stays within the interval.
+    /// Returns how many distances differ from etlc, and checks that all stay within the interval.
     std::size_t differing(const std::string& build) const {
         std::size_t result = 0;
         const std::vector<std::vector<float>>& deltas = built.at(build);
@@ -170,13 +170,14 @@ struct Deployed : testing::Test {
                 result += deltas[f][p] != measured[f][p] ? 1 : 0;
                 EXPECT_GE(delta, intervals[f][p].low) << build << " " << model.predicates[p].text;
                 EXPECT_LE(delta, intervals[f][p].high) << build << " " << model.predicates[p].text;
-                if (HasFailure()) return result;  // one is told
+                if (HasFailure()) return result;  // report one
             }
         return result;
     }
 };
 
-/// Of this predicate and the demonstration: the score with all that another build may measure.
+/// The score of the demonstration for this predicate, at the farthest that another build may
+/// measure.
 double reach(const Deployed& of, Index predicate, std::size_t first_frame) {
     double worst = -INFINITY;
     for (std::size_t f = first_frame; f < first_frame + kFrames; ++f) {
@@ -217,14 +218,14 @@ TEST_F(Deployed, EveryBuildStaysWithinItsIntervalAndCovers) {
             }
         }
     }
-    // Three standard errors of a binomial share.
+    // Three standard errors of a binomial proportion.
     const double least = 0.9 - 3 * std::sqrt(0.1 * 0.9 / kDraws);
     for (const auto& [which, count] : covered)
         EXPECT_GE(static_cast<double>(count) / kDraws, least)
             << which.first << " " << model.predicates[which.second].text;
 }
 
-/// It has kernels of its own, projections included.
+/// Whether it has its own kernels, projections included.
 TEST_F(Deployed, AnotherMachineStaysWithinItsInterval) {
     measure();
     build(kAarch64, 4000);
@@ -233,7 +234,7 @@ TEST_F(Deployed, AnotherMachineStaysWithinItsInterval) {
 
 TEST_F(Deployed, CommonBuildsMeasureWhatEtlcMeasures) {
     measure();
-#if defined(ETLMON_NO_DISPATCH)  // as etlc under sanitizers is built
+#if defined(ETLMON_NO_DISPATCH)  // like etlc with sanitizers
     const std::string flags = "-O2 -DETLMON_NO_DISPATCH";
 #else
     const std::string flags = "-O2";
@@ -251,7 +252,7 @@ TEST(StrictlyAbove, LeavesANormalDifference) {
         EXPECT_GT(epsilon, x);
         EXPECT_GE(epsilon - x, 1.17549435e-38F);
         EXPECT_LE(std::nextafter(epsilon, -INFINITY),
-                  std::max(x, x + 1.17549435e-38F));  // the first such
+                  std::max(x, x + 1.17549435e-38F));  // the first difference
     }
     EXPECT_TRUE(std::isinf(check::strictly_above(3.4028234663852886e38)));
 }

@@ -1,4 +1,5 @@
-// What calibrated thresholds guarantee: the words, and whether they are true of drawn episodes.
+// Tests the guarantees of calibrated thresholds: their texts, and whether they hold for drawn
+// episodes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +9,7 @@
 #include "calibrate/fit.hpp"
 #include "check/check.hpp"
 #include "check/guarantees/guarantees.hpp"
-#include "episodes/ground_truth.hpp"
+#include "episodes/truth.hpp"
 #include "ir/lower.hpp"
 #include "parse/parse.hpp"
 #include "plan/evaluate/evaluator.hpp"
@@ -43,7 +44,7 @@ constexpr const char* kDeclarations =
     "calibrated(conformal, alpha = 5e-1);\n"
     "predicate meant = s > 1; truth meant = s > 2;\n";
 
-/// All claims about one monitor, the parts in brackets.
+/// Returns all guarantees of one monitor, the parts in brackets.
 std::string claims_of(const std::string& formula) {
     const check::Model model =
         load_uncalibrated(std::string(kDeclarations) + "monitor m = " + formula + ";");
@@ -62,7 +63,7 @@ TEST(Claims, AreReadOffTheNegationNormalForm) {
     EXPECT_EQ(claims_of("F a"), success + "0.1");
     EXPECT_EQ(claims_of("F (a && F b)"), success + "0.15");
     EXPECT_EQ(claims_of("F (a && F a)"),
-              success + "0.1");  // one event, however often it is looked at
+              success + "0.1");  // one event, counted once
     EXPECT_EQ(claims_of("G !a"), alarm + "0.1");
     EXPECT_EQ(claims_of("!(F a || F b)"), alarm + "0.15");
     EXPECT_EQ(claims_of("G (a -> s >= 0.5)"), alarm + "0.1");
@@ -117,7 +118,7 @@ struct ScoredEpisode {
     std::vector<bool> a, b;
 };
 
-/// Near 0 where the label holds, near 1 where it does not, with noise that hides a good part of it.
+/// Near 0 where the label holds, near 1 where it does not, with enough noise to overlap.
 float noisy(Random& random, bool label) {
     double sum = 0;
     for (int i = 0; i < 4; ++i) sum += random.uniform() - 0.5;
@@ -138,7 +139,7 @@ ScoredEpisode random_scored_episode(Random& random) {
     return episode;
 }
 
-/// Per predicate.
+/// One per predicate.
 std::vector<calibrate::Scores> score(const ScoredEpisode& episode) {
     std::vector<calibrate::Scores> result(2);
     for (int t = 0; t < kEpisodeSteps; ++t)
@@ -169,7 +170,7 @@ private:
 };
 
 TEST(Claims, AreTrueOfDrawnEpisodes) {
-    // Positive, negative, mixed, whose conjuncts are the monitors after it.
+    // Positive, negative, mixed; the conjuncts of the mixed one are the monitors after it.
     check::Model model = load_uncalibrated(
         "spec t; input x, y, s : f32;\n"
         "predicate a = x <= calibrated(conformal, alpha = 0.2); predicate b = y <= "
@@ -199,7 +200,7 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
             else
                 fitted = false;
         }
-        if (!fitted) continue;  // too few demonstrations showed it
+        if (!fitted) continue;  // too few demonstrations with a positive frame
         ++draws;
         monitors.evaluator.reset();
         truths.evaluator.reset();
@@ -237,7 +238,7 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
             static_cast<double>((of_success ? missed_alarm : missed_success)[m]) / draws;
         EXPECT_LE(share, bound + 3 * std::sqrt(bound * (1 - bound) / draws))
             << model.monitors[m].name;
-        // Nothing is said about the other kind of error, and nothing could be.
+        // There is no guarantee about the other kind of error, and there could be none.
         vacuous += other > bound ? 1 : 0;
     }
     EXPECT_GE(vacuous, 4);

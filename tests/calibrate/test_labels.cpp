@@ -1,4 +1,4 @@
-// Labels and identity of episodes.
+// Tests labels and identity of episodes.
 #include <gtest/gtest.h>
 
 #include "check/check.hpp"
@@ -40,7 +40,7 @@ TEST_F(Labels, FromTheSpecsTruth) {
 TEST_F(Labels, AnArrayStandsInForTheTruth) {
     EXPECT_EQ(labels(wanted, csv_episode("x,v,truth.p,px\n1,1,0,0\n1,1,1,0\n1,1,,0\n"), 0),
               "n y ?");
-    // Then what only the truth reads need not be there.
+    // Then inputs that only the truth reads may be absent.
     EXPECT_EQ(labels(wanted, csv_episode("x,v,truth.p\n1,1,1\n"), 0), "y");
     auto recording = Recording::open(wanted, csv_episode("x,v,truth.p\n1,1,1\n"));
     ASSERT_TRUE(recording);
@@ -58,7 +58,7 @@ TEST_F(Labels, MessagesWhereTheyAreLacking) {
     wanted.predicates = {1};
     EXPECT_EQ(
         labels(wanted, csv_episode("x,v\n1,1\n"), 1),
-        "does not say when 'q' holds, nor does a truth in the spec: no column 'truth.q'; there "
+        "does not say when 'q' holds, and the spec has no truth for it: no column 'truth.q'; there "
         "are 'x' and 'v'");
     EXPECT_EQ(labels(wanted, csv_episode("x,v,truth.q\n1,1,1\n"), 1), "y");
 }
@@ -83,7 +83,7 @@ std::string hash(const Wanted& wanted, const std::string& text) {
 TEST_F(Labels, AnEpisodeIsWhatItsCalibratedPredicatesRead) {
     const std::string original = hash(wanted, "x,v,px\n1,2,3\n4,5,6\n");
     EXPECT_EQ(hash(wanted, "px,x,v\n0,1.0,\n0,4,7\n"),
-              original);  // other labels, another input: still the same scores
+              original);  // other labels, another input, but the same scores
     EXPECT_NE(hash(wanted, "x,v,px\n1,2,3\n4.5,5,6\n"), original);
     EXPECT_NE(hash(wanted, "x,v,px\n4,5,6\n1,2,3\n"), original);
     EXPECT_NE(hash(wanted, "x,v,px\n1,2,3\n"), original);

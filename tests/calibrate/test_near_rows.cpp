@@ -1,4 +1,4 @@
-// The rows that may be nearest by full weights, against the kernel on all rows.
+// Compares the rows that may be nearest by full weights with the kernel on all rows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,8 @@
 namespace etlc::tests {
 namespace {
 
-/// Weights A A^T + I / `condition`, points and rows of about `scale` around a point `off` away.
+/// Makes weights A A^T + I / `condition`, and points and rows of about `scale` around a point `off`
+/// away.
 struct Scene {
     check::Distance distance;
     check::Target target;
@@ -35,7 +36,7 @@ struct Scene {
         const auto coordinate = [&] { return static_cast<float>(scale * (off + number())); };
         target.values.resize(std::size_t{target.rows} * n);
         std::generate(target.values.begin(), target.values.end(), coordinate);
-        if (target.rows > 2 && random.chance(0.5))  // the last is the first again
+        if (target.rows > 2 && random.chance(0.5))  // the last row repeats the first
             std::copy_n(target.values.begin(), n, target.values.end() - n);
         z.resize(n);
         std::generate(z.begin(), z.end(), coordinate);

@@ -1,4 +1,4 @@
-// Ranks from the decimal text of alpha, and coverage given a rank.
+// Tests ranks from the decimal text of alpha, and coverage given a rank.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 using check::rank;
 
-/// ceil((1 - p / q) (n + 1)) in integers.
+/// Returns ceil((1 - p / q) (n + 1)) in integers.
 std::uint64_t by_integers(std::uint64_t p, std::uint64_t q, std::uint64_t n) {
     return ((q - p) * (n + 1) + q - 1) / q;
 }
@@ -40,10 +40,10 @@ TEST(Rank, DoublesWouldBeWrong) {
                 static_cast<std::uint64_t>(std::ceil((1 - alpha) * static_cast<double>(n + 1)));
             wrong += in_doubles != rank(fmt::format("0.{:03}", p), n) ? 1 : 0;
         }
-    EXPECT_GT(wrong, 0U);  // else the exactness tested above is tested by nothing
+    EXPECT_GT(wrong, 0U);  // otherwise the test above would not exercise exactness
     EXPECT_EQ(rank("0.1", 9), 9U);
     EXPECT_EQ(rank("0.1", 19), 18U);
-    EXPECT_EQ(rank("0.1", 8), 9U);  // more than there are
+    EXPECT_EQ(rank("0.1", 8), 9U);  // more than n
     EXPECT_EQ(rank("0.09999999999999999999999999", 9), 10U);
     EXPECT_EQ(rank("0.10000000000000000000000001", 9), 9U);
     EXPECT_EQ(rank("1e-400", 1000000), 1000001U);
@@ -72,7 +72,7 @@ TEST(Coverage, QuantilesOfTheBetaDistribution) {
         EXPECT_NEAR(check::coverage_quantile(n, n, 0.05), std::pow(0.05, power), 1e-12);
         EXPECT_NEAR(check::coverage_quantile(n, 1, 0.95), 1 - std::pow(0.05, power), 1e-12);
     }
-    // The 46th of 50 uniform numbers, by simulation: its standard error is about 0.0006 at either
+    // The 46th of 50 uniform numbers, by simulation; the standard error is about 0.0006 at either
     // end.
     std::mt19937_64 random(7);
     std::vector<double> kth;

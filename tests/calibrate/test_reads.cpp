@@ -1,5 +1,5 @@
-// What a guarantee was made from, on the model itself: every field of it is changed in turn. Either
-// what is read differs, or the field is listed as one that does not count, with the reason.
+// Tests what a guarantee depends on, on the model itself: every field is changed in turn. Either
+// the text of reads differs, or the field is listed as irrelevant, with the reason.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -13,7 +13,8 @@
 namespace etlc::tests {
 namespace {
 
-/// Whatever a model may hold is in it. `m` reads all of it, `p` what its threshold is taken from.
+/// Contains everything that a model may hold. `m` reads all of it, `p` everything its threshold
+/// depends on.
 const std::string kReadSpec =
     "spec t; rate 10 Hz;\n"
     "input z : f32[2] hold 1; input w : i8[2] scale 0.5; input x : f32 in [-9, 9]; input y : f32;\n"
@@ -48,7 +49,7 @@ check::Model model_of_everything() {
     return *model;
 }
 
-/// All that is read for the threshold of p, the shift of m, and `fit`.
+/// Returns the texts of reads for the threshold of p, the shift of m, and `fit`.
 std::vector<check::Reads> read(const check::Model& model) {
     return {check::reads(model, 0), check::reads(model, model.monitors[0]),
             check::reads(model, model.fitted[0])};
@@ -56,26 +57,26 @@ std::vector<check::Reads> read(const check::Model& model) {
 
 /// Fields that no score depends on.
 const std::set<std::string> kUnread{
-    // Of the fingerprint.
+    // Part of the fingerprint.
     "Encoder.model", "Encoder.image", "Encoder.mean", "Encoder.deviation", "Encoder.declaration",
     "Encoder.dimension", "Encoder.otherwise",
-    // Of the hash, which is of the values; or where these come from.
+    // Part of the hash of the values, or their source.
     "Projection.matrix", "Projection.offset", "Projection.origin", "Projection.path",
     "Projection.fitted", "Target.values", "Target.origin", "Target.path", "Target.encoded",
     "Target.fitted", "Distance.weights_fitted", "Distance.weights_path",
-    // Of the text.
+    // Part of the text.
     "Point.kind", "Point.dimension", "Point.inner", "Expr.number", "Expr.number32",
     "Predicate.inputs", "Threshold.value64",
     // Ranges follow from the expression, the inputs and the threshold.
     "Predicate.delta", "Predicate.robustness",
-    // How sure the threshold is, its own entry says.
+    // The entry itself records the quality of the threshold.
     "Threshold.alpha", "Threshold.n", "Threshold.k", "Threshold.adaptation", "Monitor.calibration",
-    // What it comes to.
+    // Derived.
     "Fitted.name", "Fitted.declaration", "Fitted.index", "Fitted.filled",
-    // Names of formulas, and what is shown of them.
+    // Names of formulas, and texts for people.
     "Let.name", "Let.formula", "Let.telemetry", "Model.constants", "Model.rounded",
     "Model.rounding",
-    // About other things.
+    // Unrelated.
     "Model.name", "Model.retargetable", "Model.encoded", "Model.dependencies",
     "Model.reservations"};
 
@@ -93,7 +94,7 @@ TEST(Reads, EveryFieldOfTheModelCountsOrIsListed) {
     for (const std::string& field : kUnread) EXPECT_TRUE(changing.all.contains(field)) << field;
 }
 
-/// What the monitor reads, it reads of each: no input, distance or predicate is passed over.
+/// The monitor reads every input, distance and predicate.
 TEST(Reads, EachThingOfAMonitorCounts) {
     check::Model model = model_of_everything();
     const check::Reads before = check::reads(model, model.monitors[0]);

@@ -1,5 +1,5 @@
-// Every road to a guarantee, and what voids it: targets that are frames, episodes that come twice,
-// episodes that thresholds have seen. On each road the same world without these faults is accepted.
+// Tests every way to a guarantee, and what voids it: targets that are frames, repeated episodes,
+// and episodes used for thresholds. In each case the same world without these faults is accepted.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ constexpr int kEpisodes = 12;
 constexpr int kRoadSteps = 5;
 constexpr int kElements = 3;
 
-/// A frame as it was recorded, before any input narrows it.
+/// A frame as recorded, before any input narrows it.
 struct RoadFrame {
     std::vector<double> z;
     double px = 0, py = 0;
@@ -47,12 +47,12 @@ std::vector<Road> random_roads(Random& random) {
     return episodes;
 }
 
-/// How the frames of a road are recorded, and what a row looks like that was taken from one of
-/// them.
+/// How frames are recorded, and the form of a row taken from one of them.
 struct Form {
-    std::string type;  ///< of z
+    std::string type;  ///< the declaration of z
     double grain = 0;  ///< int8: z is recorded as multiples of it
-    std::vector<double> (*row)(const RoadFrame&, double grain);  ///< of the target set
+    std::vector<double> (*row)(const RoadFrame&, double grain);  ///< the declaration of the target
+                                                                 ///< set
 };
 
 std::vector<double> as_it_is(const RoadFrame& frame, double) {
@@ -63,7 +63,7 @@ std::vector<double> of_twice_the_length(const RoadFrame& frame, double) {
     for (const double x : frame.z) row.push_back(2 * static_cast<double>(static_cast<float>(x)));
     return row;
 }
-/// The embedding that was recorded as integers, before that.
+/// The embedding before it was recorded as integers.
 std::vector<double> unrounded(const RoadFrame& frame, double grain) {
     std::vector<double> row;
     for (const double x : frame.z) row.push_back((std::round(x / grain) + 0.3) * grain);
@@ -81,8 +81,8 @@ const Form kDirection{"f32[3]", 0, of_twice_the_length};
 const Form kPosition{"f32[3]", 0, position};
 
 struct Road {
-    std::string measure;    ///< of predicate a
-    std::string threshold;  ///< and what it is compared with
+    std::string measure;    ///< the left side of predicate a
+    std::string threshold;  ///< and its threshold
     std::string monitor;
     const Form* form = &kF32;
 
@@ -137,8 +137,8 @@ std::string csv(const Road& episode, const Road& road) {
     return text;
 }
 
-/// The world of one road. Thresholds of predicates are calibrated on `first` where the monitor
-/// comes after them.
+/// One world. Thresholds of predicates are calibrated on `first` if the monitor is calibrated after
+/// them.
 class World {
 public:
     World(const Road& road, std::uint64_t seed) : road_(road) {
@@ -154,7 +154,7 @@ public:
     void repeat() { second_.push_back(second_[2]); }
     void see() { second_.push_back(first_[1]); }
 
-    /// Codes of what is refused, by the first call that refuses; the thresholds file of the last.
+    /// Returns the codes of the first call that refuses; the thresholds file of the last.
     Codes take() {
         std::string before;
         if (road_.of_predicates() && road_.of_monitor()) {
@@ -167,7 +167,7 @@ public:
         return last.codes;
     }
 
-    /// What compiling says of this thresholds file.
+    /// Returns the messages of compiling with this thresholds file.
     Codes compile() const {
         const TemporaryPath targets("g.npy", npy_rows());
         const TemporaryPath file("thresholds.json", thresholds);
@@ -230,7 +230,7 @@ TEST(Roads, RefuseWhatVoidsTheGuarantee) {
     }
 }
 
-/// A position may well be where somebody has written a target down.
+/// A position may well equal a target that is written down.
 TEST(Roads, AWrittenTargetOfScalarsIsNoLeak) {
     const Files files({"px,py,truth.a\n0,0,1\n3,4,0\n", "px,py,truth.a\n0,0.5,1\n3,4.5,0\n"});
     const std::string spec =
@@ -239,7 +239,7 @@ TEST(Roads, AWrittenTargetOfScalarsIsNoLeak) {
     EXPECT_EQ(calibrated(spec, files.paths()).codes, Codes{});
 }
 
-/// Compared with itself, a comparison cannot be wrong.
+/// A comparison that is its own truth cannot be wrong.
 TEST(Roads, AComparisonWithoutATruthGuaranteesNothing) {
     const Files files({"z[0]\n0\n1\n", "z[0]\n0.5\n2\n"});
     const std::string spec =

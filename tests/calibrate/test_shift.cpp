@@ -1,4 +1,4 @@
-// Monitors calibrated as a whole: the shift, and that it covers drawn episodes.
+// Tests monitors calibrated as a whole: the shift, and its coverage of drawn episodes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using calibrate::Index;
 constexpr int kShiftSteps = 6;
 constexpr int kShiftDraws = 2000;
 
-/// Literal thresholds: the shift alone is calibrated. It reads a, which is noisy, and the label px.
+/// Literal thresholds: only the shift is calibrated. It reads a, which is noisy, and the label px.
 std::string spec_text(const std::string& against) {
     return fmt::format(
         "spec t; input x, px : f32; predicate a = x <= 0.5; truth a = px > 0.5;\n"
@@ -85,7 +85,7 @@ Runs run(plan::Evaluator& said, plan::Evaluator& truth, const ShiftedEpisode& ep
     return runs;
 }
 
-/// The worst rho where the truth is what must not be missed, by hand.
+/// Returns the worst rho where the truth must not be missed, by hand.
 std::optional<double> score(const Runs& runs, bool alarms) {
     std::optional<double> worst;
     for (std::size_t t = 0; t < runs.said.size(); ++t) {
@@ -137,7 +137,7 @@ TEST(Shift, CoversDrawnEpisodes) {
     }
 }
 
-/// The whole way from files gives the score computed by hand.
+/// The whole command gives the score computed by hand.
 TEST(Shift, IsBeyondTheScoreAtTheRank) {
     for (const std::string against : {"missed_alarm", "missed_success"}) {
         const bool alarms = against == "missed_alarm";

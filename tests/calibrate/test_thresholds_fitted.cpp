@@ -1,4 +1,4 @@
-// Thresholds against brute force: every method and comparison, ties, n from 1 to 200.
+// Compares thresholds with brute force: every method and comparison, ties, n from 1 to 200.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ check::Model model_of(const std::string& comparison, const std::string& threshol
     return *check::check(parse::parse(file, sink), file, options, sink);
 }
 
-/// What scoring these episodes gives, scalars being exact; by the definitions of
+/// Returns the scores of these episodes for exact scalars, by the definitions of
 /// docs/calibration.md.
 calibrate::Evidence evidence(const std::vector<Episode>& episodes, bool upper) {
     calibrate::Evidence result;
@@ -71,15 +71,15 @@ bool holds(const std::string& comparison, float delta, float epsilon) {
 
 std::vector<Episode> random_episodes(Random& random, int n) {
     std::vector<Episode> episodes(static_cast<std::size_t>(n));
-    const double grain = random.chance(0.5) ? 0.25 : 0.001;  // many ties, or few
+    const double grain = random.chance(0.5) ? 0.25 : 0.001;  // many or few ties
     for (Episode& episode : episodes)
         for (int t = random.between(1, 6); t-- > 0;)
             episode.push_back({static_cast<float>(random.grid(-2, 2, grain)), random.chance(0.5)});
     return episodes;
 }
 
-/// The least covering number of `sorted` (worst first): every threshold on the right side of it
-/// covers k of them.
+/// Returns the least covering number of `sorted` (worst first): every threshold on the right side
+/// of it covers k of them.
 TEST(Fitted, RanksAsBruteForceDoes) {
     Random random(41);
     for (const std::string comparison : {"<=", "<", ">=", ">"}) {
@@ -114,7 +114,7 @@ TEST(Fitted, RanksAsBruteForceDoes) {
                 const auto& fitted = std::get<Fitted>(fit);
                 ASSERT_EQ(fitted.n, count);
                 ASSERT_EQ(fitted.k, k);
-                // The least float32 (mirrored: the greatest) strictly beyond at least k of the
+                // The least (mirrored: the greatest) float32 strictly beyond at least k of the
                 // scores, tried one by one.
                 float expected = upper ? kInfinity : -kInfinity;
                 for (const float score : scores) {
@@ -139,8 +139,8 @@ TEST(Fitted, RanksAsBruteForceDoes) {
     }
 }
 
-/// An adaptive threshold starts at the conformal one or, its grid (here 2^-23) being coarser, just
-/// beyond it.
+/// An adaptive threshold starts at the conformal one, or just beyond it if its grid (here 2^-23) is
+/// coarser.
 TEST(Fitted, AdaptiveOnesStartAtTheConformalThreshold) {
     Random random(44);
     int outside = 0;
@@ -178,8 +178,8 @@ TEST(Fitted, AdaptiveOnesStartAtTheConformalThreshold) {
     EXPECT_GT(outside, 10);
 }
 
-/// The observed value next to `taken` on the side where the answer changes; nothing where there is
-/// none. By <= and > it lies above, by < and >= below.
+/// Returns the observed value next to `taken` on the side where the result changes, if any: above
+/// for <= and >, below for < and >=.
 std::optional<float> next_observed(const std::string& comparison, float taken,
                                    const std::vector<Episode>& episodes) {
     const bool above = comparison == "<=" || comparison == ">";
@@ -262,13 +262,13 @@ TEST(Fitted, F1IsHalfwayToTheNextValue) {
     EXPECT_EQ(fit(">=", {{-1, true}, {-1.5F, true}, {-9, false}}).epsilon, -5.25F);
     EXPECT_EQ(fit(">=", {{-1, true}, {-1.5F, true}, {-9, false}}).scores,
               (std::vector<double>{-9, -1.5}));
-    EXPECT_EQ(fit("<", apart).epsilon, 5.25F);  // 9 takes in as much as 5.25 does
+    EXPECT_EQ(fit("<", apart).epsilon, 5.25F);  // 9 accepts the same frames as 5.25
     EXPECT_EQ(fit(">", {{-1, true}, {-1.5F, true}, {-9, false}}).epsilon, -5.25F);
-    // Nothing beyond, or nothing finite: what was observed.
+    // Nothing beyond, or nothing finite: the observed value.
     EXPECT_EQ(fit("<=", {{1, true}, {1.5F, true}}).epsilon, 1.5F);
     EXPECT_EQ(fit("<=", {{1, true}, {kInfinity, false}}).epsilon, 1.0F);
     EXPECT_EQ(fit("<", {{-kInfinity, true}, {1, false}}).epsilon, 1.0F);
-    // Nor is there a float32 between neighbours; between others none of the two is crossed.
+    // There is no float32 between neighbours either; between others none of the two is crossed.
     const float next = std::nextafter(1.0F, 2.0F);
     EXPECT_EQ(fit("<=", {{1, true}, {next, false}}).epsilon, 1.0F);
     EXPECT_EQ(fit("<=", {{1, true}, {next, false}}).scores, std::vector<double>{1});
@@ -289,7 +289,7 @@ TEST(Fitted, InfiniteScoresAreRefused) {
     EXPECT_EQ(std::get<Fitted>(fit(-kInfinity)).epsilon, std::nextafter(1.0F, 2.0F));
 }
 
-/// The whole way from files: the thresholds file is the same whatever the number of threads.
+/// The thresholds file is the same for any number of threads.
 TEST(Calibrate, ThreadsDoNotChangeTheResult) {
     Random random(43);
     std::vector<std::unique_ptr<TemporaryPath>> files;

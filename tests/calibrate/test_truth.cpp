@@ -1,11 +1,10 @@
-// Truths, frame by frame, against the reference; and the ground-truth monitor.
+// Compares truths, frame by frame, and the ground-truth monitor with the reference.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "episodes/exact_distance.hpp"
-#include "episodes/ground_truth.hpp"
 #include "episodes/truth.hpp"
 #include "loading.hpp"
 #include "random.hpp"
@@ -16,7 +15,7 @@ namespace {
 
 using episodes::Label;
 
-/// A formula of past operators over a, b and two comparisons.
+/// Returns a formula of past operators over a, b and two comparisons.
 std::string past_formula(Random& random, int depth) {
     if (depth == 0) return random.word({"a", "b", "(x > 0.375)", "(l2([x, y], goal) < 0.6875)"});
     const auto operand = [&] {
@@ -73,7 +72,7 @@ TEST(Truth, IsWhatTheReferenceSaysOfEveryFrame) {
         reference::Trace trace;
         for (int t = 0; t < 16; ++t) trace.push_back(random_frame(random));
         const reference::Run run = reference::evaluate(*model, trace);
-        for (int episode = 0; episode < 2; ++episode) {  // a reset forgets all
+        for (int episode = 0; episode < 2; ++episode) {  // a reset forgets the past
             truth.reset();
             for (std::size_t t = 0; t < trace.size(); ++t) {
                 truth.step(trace[t]);
@@ -103,10 +102,10 @@ TEST(Truth, ComparesDoublesExactly) {
     EXPECT_EQ(single("x < 0.1", static_cast<double>(0.1F)), Label::no);
     EXPECT_EQ(single("x < 0.25", std::nextafter(0.25, 0.0)), Label::yes);
     EXPECT_EQ(single("0 / x > 1", 0), Label::unknown);
-    EXPECT_EQ(single("l1(z, g) <= 0.25", 0), Label::yes);  // the integers 0 and 2 are 0 and 0.5
+    EXPECT_EQ(single("l1(z, g) <= 0.25", 0), Label::yes);  // the integers 0 and 2 become 0 and 0.5
     EXPECT_EQ(single("l1(z, g) < 0.25", 0), Label::no);
     EXPECT_EQ(single("x > 1", 1e39),
-              Label::unknown);  // no float32: the monitor takes it for missing
+              Label::unknown);  // not a float32: the monitor treats it as missing
 }
 
 TEST(Truth, DistancesInDouble) {
@@ -153,7 +152,7 @@ TEST(GroundTruth, ReplacesLabelledPredicatesOnly) {
     EXPECT_EQ(truth.inputs[1], check::kNone);
     EXPECT_EQ(check::print(truth.model, truth.model.monitors[0].formula), "F (truth.p && q)");
     EXPECT_EQ(check::print(truth.model, truth.model.monitors[1].formula), "G !truth.p");
-    // x and y say p && q, the label says otherwise, then agrees, then is missing.
+    // x and y give p && q; the label first disagrees, then agrees, then is missing.
     const auto step = [](std::vector<double> label) {
         return reference::Step{{0.0}, {0.0}, {0.0}, std::move(label)};
     };

@@ -7,7 +7,7 @@ namespace etlc::tests {
 
 namespace {
 
-/// What all of these specs declare. Scores of `a` depend on every number in it.
+/// Declarations of all these specs. Scores of `a` depend on every number in them.
 const std::string kWorld =
     "spec t; rate 10 Hz; const limit = 0.5;\n"
     "input x : f32 in [-9, 9] hold 1; input y : f32; input z : f32[2]; input b : bool missing "

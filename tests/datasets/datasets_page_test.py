@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""datasets_page_test.py ETLC DATASETS.MD ENCODERS.MD HDF5: the specs and commands of that page, as
-they stand there, on data sets that are made here."""
+"""datasets_page_test.py ETLC DATASETS.MD ENCODERS.MD HDF5: runs the specs and commands of that page
+on data sets made here."""
 import os
 import pathlib
 import re

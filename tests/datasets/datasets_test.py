@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
-"""datasets_test.py ETLC: data sets of both versions, read with the states, actions and labels that
-were written and with the frames that ffmpeg gives; as episodes of `etlc embed` and where they
-lie."""
+"""datasets_test.py ETLC: data sets of both versions give the states, actions and labels that were
+written and the frames that ffmpeg decodes, as episodes of `etlc embed` and when read directly."""
 import os
 import subprocess
 import sys
@@ -17,7 +16,7 @@ ETLC = os.path.abspath(sys.argv[1])
 LENGTHS = (20, 15, 12)
 TOP, WRIST = lerobot.CAMERAS
 
-# An encoder that tells every pixel: the checksum of a frame, as two numbers.
+# An encoder that distinguishes every pixel: the checksum of a frame, as two numbers.
 ENCODER = """
 import struct, sys, zlib
 write = sys.stdout.buffer.write
@@ -95,7 +94,7 @@ def check_version(release, **how):
     made = np.load(f"{name}.slow/{name}-000001.npz")
     assert np.array_equal(made["z"], checksums(frames)[::2])
 
-    # Two cameras, a part of the episodes, and labels.
+    # Two cameras, some of the episodes, and labels.
     embed("both.etl", "--data", f"{name}:1:3", "--camera", f"z={TOP}", f"w={WRIST}", "-o",
           f"{name}.both", "--map", "truth.near=next.success")
     assert sorted(os.listdir(f"{name}.both")) == [f"{name}-000001.npz", f"{name}-000002.npz"]
@@ -107,7 +106,7 @@ def check_version(release, **how):
 
 
 def check_ends_at_last_frames():
-    """Version 3.0 with a video for each episode, whose end is said to be its last frame's time."""
+    """Version 3.0 with a video for each episode, whose stated end is its last frame's time."""
     truth = lerobot.write("last", "v3.0", LENGTHS)
     table = lerobot.episode_table(LENGTHS)
     for camera in lerobot.CAMERAS:
@@ -132,7 +131,7 @@ def check_ends_at_last_frames():
 
 
 def check_in_place(version):
-    """Without an encoder: the same verdicts on the rows as on the episodes made of them."""
+    """Without an encoder, the rows and the episodes made from them give the same verdicts."""
     name = f"set{version[1]}"
     call(ETLC, "embed", "plain.etl", "--data", f"{name}/", *MAP, "-o", f"{name}.plain")
     for episode in range(len(LENGTHS)):

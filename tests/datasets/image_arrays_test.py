@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """image_arrays_test.py ETLC HDF5: arrays of images in .npz and .h5 files, and GIFs, become episodes
-of the same embeddings as the pixels; the arrays beside them become its other inputs."""
+with the embeddings of their pixels; other arrays in the file become the other inputs."""
 import os
 import subprocess
 import sys
@@ -87,7 +87,7 @@ def archives(random):
 
 
 def groups():
-    """As robomimic has them: the file is made by images_hdf5.cpp."""
+    """Files as in robomimic, made by images_hdf5.cpp."""
     subprocess.run([HDF5, "demos.h5"], check=True)
     embed("--data", "demos.h5", "--episodes", "data/*", "--camera", "obs/agentview_image",
           "--map", "q=obs/eef_pos", "grip=actions")

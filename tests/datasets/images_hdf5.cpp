@@ -1,5 +1,5 @@
-// images_hdf5 FILE: two demonstrations as robomimic has them, images packed by GZIP, of numbers
-// that image_arrays_test.py computes too.
+// images_hdf5 FILE: writes two demonstrations as robomimic does, images compressed with GZIP, with
+// numbers that image_arrays_test.py computes too.
 #include <hdf5.h>
 
 #include <string>

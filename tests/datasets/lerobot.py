@@ -1,5 +1,5 @@
-"""Data sets as LeRobot writes them, made for tests: `write(folder, release, lengths)`. Cameras are
-videos; `stored` has the images of those that are kept in the rows: by camera, a file's bytes each.
+"""Writes data sets in LeRobot's format for tests: `write(folder, release, lengths)`. Cameras are
+videos; `stored` has the images of cameras kept in the rows: for each camera, a file's bytes each.
 """
 import json
 import os
@@ -34,13 +34,13 @@ def video(path, frames, seed):
 
 
 def raw_frames(path):
-    """The frames as ffmpeg has them."""
+    """Returns the frames as ffmpeg decodes them."""
     raw = call("ffmpeg", "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "rgb24", "-")
     return np.frombuffer(raw, np.uint8).reshape(-1, *SIDES, 3)
 
 
 def rows_of(lengths, stored=None):
-    """The columns of all episodes, and the states, actions and labels as arrays by episode."""
+    """Returns the columns of all episodes, and states, actions and labels as arrays by episode."""
     random = np.random.default_rng(5)
     columns = {"observation.state": (parquet.FLOAT, []), "action": (parquet.FLOAT, []),
                "next.success": (parquet.BOOL, []), "note": (parquet.TEXT, []),
@@ -116,7 +116,7 @@ def write_21(folder, lengths, columns, how):
 
 
 def episode_table(lengths, stored=()):
-    """Two files of rows, of which the second has the last episode; one video for all."""
+    """Writes two files of rows, the second with the last episode, and one video for all."""
     begins = [sum(lengths[:i]) for i in range(len(lengths))]
     files = [int(i == len(lengths) - 1) for i in range(len(lengths))]
     zeros = [0] * len(lengths)
@@ -155,7 +155,7 @@ def write_30(folder, lengths, columns, how):
 
 
 def write(folder, release, lengths, stored=None, **how):
-    """Gives the states, actions and labels of each episode."""
+    """Returns the states, actions and labels of each episode."""
     os.makedirs(f"{folder}/meta")
     columns, truth = rows_of(lengths, stored)
     write_json(f"{folder}/meta/info.json", info_of(release, lengths, stored or ()))

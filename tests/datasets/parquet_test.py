@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""parquet_test.py ETLC: etlc-read-parquet gives the cells that were written, in every form that it
-takes; what it does not take, and what is damaged, it names."""
+"""parquet_test.py ETLC: etlc-read-parquet returns the cells that were written, in every supported
+form; it names unsupported and damaged parts."""
 import itertools
 import math
 import os
@@ -108,7 +108,7 @@ def forms_are_read():
 
 
 def some_rows_are_read(made):
-    """Those of one key; what is before and behind them is passed over, in pages or row by row."""
+    """Reads the rows of one key; others are skipped, in pages or row by row."""
     for key in range(ROWS // 9 + 1):
         _, some = read("t.parquet", ["l", "v", "s", "t"], "i", key)
         wanted = [i for i, value in enumerate(made["i"][1]) if value == key]
@@ -120,7 +120,7 @@ def some_rows_are_read(made):
 
 
 def pages_of_nulls_are_read():
-    """Some writers pack nothing where there is nothing, and give it no dictionary."""
+    """Some writers compress no bytes and write no dictionary for empty columns."""
     for codec, dictionary, version, bare in itertools.product(
             (parquet.NONE, parquet.SNAPPY, parquet.ZSTD), (False, True), (1, 2), (False, True)):
         made = {name: (kind, [None if row // 20 % 2 else value for row, value in enumerate(values)])
@@ -146,7 +146,7 @@ def rows_may_span_pages():
 
 
 def image_rows(optional, needed):
-    """Rows of bytes that are no text, of any length, some alike; nulls where they may be."""
+    """Rows of bytes that are not text, of any length, some equal; nulls where allowed."""
     rows = []
     for i in range(ROWS):
         row = {"bytes": bytes([0xFF, i % 40]) * (i % 40), "path": f"frame {i % 5}.png", "n": i / 4}
@@ -158,7 +158,7 @@ def image_rows(optional, needed):
 
 
 def structs_are_read():
-    """A field by its path, whatever may be null; names may have dots."""
+    """A field by its path, with nulls at every level; names may contain dots."""
     fields = {"bytes": parquet.TEXT, "path": parquet.TEXT, "n": parquet.DOUBLE}
     for optional, needed, dictionary, version, codec, pages in itertools.product(
             (False, True), ((), ("bytes",), ("bytes", "path", "n")), (False, True), (1, 2),
@@ -197,7 +197,7 @@ def structs_that_are_not_read_are_named():
 
 
 def images_may_be_large():
-    """Of 16 MB at most; a record is full where the next row does not fit."""
+    """At most 16 MB; a record is full if the next row does not fit."""
     small, large, huge = b"s" * 200_000, b"l" * 16_000_000, b"h" * 16_000_001
     kind = parquet.Struct({"bytes": parquet.TEXT, "path": parquet.TEXT})
     for dictionary in (False, True):
@@ -257,7 +257,7 @@ def damage_is_named():
         with open("t.parquet", "wb") as file:
             file.write(bytes_)
         assert words in refusal("t.parquet", "q"), (words, refusal("t.parquet", "q"))
-    for _ in range(300):  # and whatever else happens to a file, it is told
+    for _ in range(300):  # any other damage is reported too
         broken = bytearray(whole)
         for _ in range(random.randrange(1, 4)):
             broken[random.randrange(len(broken))] = random.randrange(256)

@@ -1,6 +1,6 @@
-"""Writes Parquet files for tests, from the format's own page (apache/parquet-format) and sharing
-nothing with the reader. `write(path, columns, **how)`: each column is (type, values); values of a
-list column are lists, None is a null. A type may be a Struct; its values are dicts."""
+"""Writes Parquet files for tests. It follows the format's own page (apache/parquet-format) and
+shares no code with the reader. `write(path, columns, **how)`: each column is (type, values); values
+of a list column are lists, None is a null. A type may be a Struct; its values are dicts."""
 import struct
 import zlib
 
@@ -26,8 +26,8 @@ def zigzag(n):
 
 
 class Struct:
-    """Of fields, each a type. `optional`: it may be null; `needed`: fields that may not be;
-    `repeated`: fields that are lists, which is only declared."""
+    """A struct of fields, each a type. `optional`: it may be null; `needed`: fields that may not
+    be; `repeated`: fields that are lists, which is only declared."""
 
     def __init__(self, fields, optional=True, needed=(), repeated=()):
         self.fields, self.optional = fields, optional
@@ -35,8 +35,8 @@ class Struct:
 
 
 class Leaf:
-    """Where values lie in the schema. `most`: the definition of one that is there; `field`: of the
-    struct, else None."""
+    """The place of values in the schema. `most`: the definition level of a present value; `field`:
+    of the struct, else None."""
 
     def __init__(self, path, kind, most, is_list=False, field=None):
         self.path, self.kind, self.most = path, kind, most
@@ -52,11 +52,11 @@ def leaves_of(name, kind, is_list):
 
 
 class I32(int):
-    """An integer of 32 bits; int itself is one of 64."""
+    """A 32-bit integer; int itself has 64 bits."""
 
 
 def thrift(value):
-    """(type, bytes) of a value: a dict is a struct of fields by number."""
+    """Encodes a value as (type, bytes): a dict is a struct of fields by number."""
     if isinstance(value, bool):
         return (1 if value else 2), b""
     if isinstance(value, I32):
@@ -82,7 +82,7 @@ def thrift(value):
 
 
 def hybrid(values, bits):
-    """Runs of eight or more are runs, all else is packed, eight numbers a group."""
+    """Encodes runs of eight or more as runs, others packed, eight numbers per group."""
     out, at = b"", 0
 
     def run(i):
@@ -124,7 +124,7 @@ def packed(codec, raw):
 
 
 def levels(rows, leaf):
-    """Of rows the repetitions, the definitions, and the values that are there."""
+    """Returns the repetition levels, the definition levels, and the present values of rows."""
     repetitions, definitions, there = [], [], []
     for row in rows:
         if leaf.field is not None:
@@ -148,8 +148,8 @@ def levels(rows, leaf):
 
 
 class Writer:
-    """`bare`: where a column has no value there is no dictionary, and where a page has none there
-    are no bytes of values, not even packed ones."""
+    """`bare`: a column without values has no dictionary, and a page without values has no bytes
+    of values, not even packed ones."""
 
     def __init__(self, codec=SNAPPY, dictionary=False, version=1, page_rows=1000, group_rows=10**6,
                  checksums=False, encoding=None, claims=None, codec_said=None, bad_place=False,
@@ -168,7 +168,8 @@ class Writer:
         self.out += thrift(head)[1] + body
 
     def pages(self, rows, leaf):
-        """The levels and values of each page: of whole rows, or cut anywhere, as writers of old."""
+        """Returns levels and values of each page: of whole rows, or cut anywhere, as by old
+        writers."""
         if not self.cut_anywhere:
             for first in range(0, len(rows), self.page_rows):
                 yield levels(rows[first:first + self.page_rows], leaf)
@@ -229,7 +230,7 @@ class Writer:
 
     @staticmethod
     def struct_schema(name, kind, values, nested):
-        """The schema of one. `nested`: its fields are in a struct more, which is only declared."""
+        """Returns a schema element. `nested`: its fields are in another struct, only declared."""
         schema = [{3: I32(int(kind.optional)), 4: name, 5: I32(len(kind.fields))}]
         if nested:
             schema = [{**schema[0], 5: I32(1)},
@@ -243,8 +244,8 @@ class Writer:
         return schema
 
     def write(self, columns, nested=(), unsigned=()):
-        """`nested`: columns of lists in lists, or structs in structs, which are only declared;
-        `unsigned`: of numbers without a sign, by their logical type."""
+        """`nested`: lists in lists, or structs in structs, only declared;
+        `unsigned`: unsigned numbers, by their logical type."""
         schema = [{4: "schema", 5: I32(len(columns))}]
         leaves = []
         for name, (kind, values) in columns.items():

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""refusals_test.py ETLC: data sets that lie, lack something or are damaged. What lacks is named and
-left out, and the rest is read; what cannot be read at all is an error."""
+"""refusals_test.py ETLC: contradictory, incomplete or damaged data sets. Missing parts are named
+and left out, and the rest is read; unreadable ones are an error."""
 import json
 import os
 import shutil
@@ -77,7 +77,7 @@ def rewrite_table(make):
                   nested=("stats/action/mean",))
 
 
-# What lacks: a change, the words of the warning, and the episodes that are left.
+# Incomplete sets: a change, the text of the warning, and the remaining episodes.
 ROWS = "set/data/chunk-000/episode_000001.parquet"
 VIDEO = f"set/videos/chunk-000/{TOP}/episode_000001.mp4"
 LACKING_21 = (
@@ -135,7 +135,7 @@ LACKING_30 = (
 
 
 def move(episode, by):
-    """Its window in the video, by so many seconds."""
+    """Moves its window in the video by this many seconds."""
     def change(table):
         for name in ("from_timestamp", "to_timestamp"):
             table[f"videos/{TOP}/{name}"][1][episode] += by
@@ -149,8 +149,7 @@ def place(begins, ends):
     return lambda: rewrite_table(change)
 
 
-# Of a video whose windows contradict each other nothing is known: a change, the words of the error
-# where any episode is asked for.
+# Videos with contradictory windows: a change, and the error for every episode.
 NEIGHBOURS = (
     (move(1, -0.3), "episode 0 (9 rows, from 0 to 0.9 s) and episode 1 (8 rows, from 0.6 to 1.4 s) "
                     "overlap"),
@@ -165,7 +164,7 @@ NEIGHBOURS = (
             f"set/videos/{TOP}/chunk-000", "set/videos/chunk-000"),
      f"it is the video of two cameras, '{TOP}' and '{WRIST}'"))
 
-# What is an error: a change, the code, the words.
+# Errors: a change, the code, the text.
 INFO = "set/meta/info.json"
 ERRORS_21 = (
     (lambda: write(INFO, "{"), "E0850", "is not JSON"),
@@ -212,7 +211,7 @@ def check(base, lacking, errors):
     for make, words, left in lacking:
         begin(make)
         if any(word in (words or "") for word in ("parquet", "lists")):
-            said = embed("rows.etl", "--data", "set", status=0)  # quicker, without frames
+            said = embed("rows.etl", "--data", "set", status=0)  # faster without frames
         else:
             said = embed("seen.etl", "--data", "set", "--camera", TOP, status=0)
         assert words is None and said == "" or words in said and "[W0850]" in said, (words, said)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""stored_images_test.py ETLC: data sets that keep images in their rows give the frames that the
-same images give as files; an image that is missing or damaged is named with its row."""
+"""stored_images_test.py ETLC: data sets with images in their rows give the same frames as these
+images as files; a missing or damaged image is reported with its row."""
 import json
 import os
 import pathlib
@@ -21,7 +21,7 @@ LENGTHS = (9, 8, 7)
 FIRST = [sum(LENGTHS[:i]) for i in range(len(LENGTHS))]
 TOP, WRIST = lerobot.CAMERAS
 
-# An encoder that tells every pixel: the checksum of a frame, as two numbers.
+# An encoder that distinguishes every pixel: the checksum of a frame, as two numbers.
 ENCODER = """
 import struct, sys, zlib
 write = sys.stdout.buffer.write
@@ -55,7 +55,7 @@ def made_of(episode, name="z"):
 
 
 def image_files(folder, ending, count, pixels="rgb24"):
-    """Different images, in a folder; their bytes."""
+    """Writes different images to a folder; returns their bytes."""
     os.mkdir(folder)
     height, width = lerobot.SIDES
     lerobot.call("ffmpeg", "-v", "error", "-f", "lavfi", "-i",
@@ -65,13 +65,13 @@ def image_files(folder, ending, count, pixels="rgb24"):
 
 
 def turned(jpeg):
-    """The same, to be shown a quarter turned (orientation 6 of EXIF)."""
+    """The same, to be shown rotated by 90 degrees (orientation 6 of EXIF)."""
     exif = b"Exif\0\0MM\0*" + struct.pack(">IHHHIHHI", 8, 1, 0x0112, 3, 1, 6, 0, 0)
     return jpeg[:2] + b"\xff\xe1" + struct.pack(">H", len(exif) + 2) + exif + jpeg[2:]
 
 
 def embeddings_of_files(images, ending):
-    """What `etlc embed` makes of a folder of these files."""
+    """Returns the frames that `etlc embed` reads from a folder of these files."""
     shutil.rmtree("files", ignore_errors=True)
     os.mkdir("files")
     for number, image in enumerate(images):
@@ -81,7 +81,7 @@ def embeddings_of_files(images, ending):
 
 
 def pixels_are_those_of_ffmpeg(files, folder):
-    """Of PNG: an oracle that shares no code."""
+    """Decodes PNG: an oracle that shares no code."""
     raw = lerobot.call("ffmpeg", "-v", "error", "-i", f"{folder}/%03d.png", "-f", "rawvideo",
                        "-pix_fmt", "rgb24", "-")
     frames = np.frombuffer(raw, np.uint8).reshape(len(files), -1)
@@ -105,7 +105,7 @@ def check_release(release, stored, expected, **how):
 
 
 def check_mixed(release, stored, expected):
-    """A camera that is videos and one in the rows."""
+    """One camera is videos, another is in the rows."""
     name = f"mixed{release[1]}"
     lerobot.write(name, release, LENGTHS, {WRIST: stored[WRIST]})
     embed("both.etl", "--data", name, "--camera", f"z={TOP}", f"w={WRIST}")
@@ -118,7 +118,7 @@ def check_mixed(release, stored, expected):
 
 
 def check_only_camera(stored, expected):
-    """It needs no name; release 2.0 is as 2.1."""
+    """It needs no name; release 2.0 equals 2.1."""
     shutil.copytree("set2", "only")
     info = json.loads(pathlib.Path("only/meta/info.json").read_text())
     info["codebase_version"] = "v2.0"
@@ -126,7 +126,7 @@ def check_only_camera(stored, expected):
     lerobot.write_json("only/meta/info.json", info)
     embed("seen.etl", "--data", "only")
     assert np.array_equal(made_of("only-000002"), expected[TOP][FIRST[2]:])
-    # A struct of bytes alone, none of which may be null.
+    # A struct of bytes only, none of which may be null.
     columns, _ = lerobot.rows_of(LENGTHS)
     kind = parquet.Struct({"bytes": parquet.TEXT}, optional=False, needed=("bytes",))
     columns[TOP] = (kind, [{"bytes": image} for image in stored[TOP]])
@@ -142,7 +142,7 @@ def write_episode(folder, columns, episode, nested=()):
 
 
 def images_are_named(stored):
-    """What is wrong with an image: an episode of rows in which the fourth has it."""
+    """A defect of an image: the fourth row of an episode has it."""
     png, jpeg = stored[TOP][0], stored[WRIST][0]
     deep = image_files("deep", "png", 1, "rgb48be")[0]
     clear = image_files("clear", "png", 1, "rgba")[0]
@@ -167,7 +167,7 @@ def images_are_named(stored):
         place = "bad:000001: error: data/chunk-000/episode_000001.parquet: row 3 of the episode"
         assert f"{place}: {TOP}: {fault}" in said and "[E1009]" in said, (fault, said)
         assert not os.path.exists("out/bad-000001.npz"), fault
-        embed("slow.etl", "--data", "bad:1", "--camera", TOP)  # which does not take that row
+        embed("slow.etl", "--data", "bad:1", "--camera", TOP)  # a step rate that skips that row
         assert len(made_of("bad-000001")) == 2, fault
     columns[TOP][1][FIRST[1] + 3] = None
     write_episode("bad", columns, 1)
@@ -176,7 +176,7 @@ def images_are_named(stored):
 
 
 def rows_of_shared_files_are_named(stored):
-    """A file of several episodes: the row is that of the episode."""
+    """A file of several episodes: the row counts within the episode."""
     columns, _ = lerobot.rows_of(LENGTHS, stored)
     columns[TOP][1][FIRST[1] + 3] = None
     own = {name: (kind, values[:FIRST[2]]) for name, (kind, values) in columns.items()}
@@ -187,7 +187,7 @@ def rows_of_shared_files_are_named(stored):
 
 
 def columns_are_named(stored):
-    """Structs that are none of images."""
+    """Structs that are not images."""
     text, number = parquet.TEXT, parquet.INT64
     rows = [{"bytes": image, "path": "a", "n": 1} for image in stored[TOP]]
     for kind, values, nested, fault in (
@@ -212,7 +212,7 @@ def columns_are_named(stored):
 
 
 def numbers_in_structs_are_read():
-    """They are columns too; the bytes of images are none."""
+    """They are columns too; the bytes of images are not."""
     columns, truth = lerobot.rows_of(LENGTHS)
     kind = parquet.Struct({"x": parquet.FLOAT, "name": parquet.TEXT})
     columns["pose"] = (kind, [{"x": float(x), "name": "a"} for state, _, _ in truth

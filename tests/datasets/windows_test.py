@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""windows_test.py ETLC: data sets whose episodes share videos, with windows as they should be and
-windows that overlap, leave holes, are shifted, out of order or beyond the end. Every frame that is
-taken is the episode's own, whichever episode is asked for; honest sets are taken whole."""
+"""windows_test.py ETLC: data sets whose episodes share videos, with correct windows, and with
+windows that overlap, leave gaps, are shifted, out of order or beyond the end. Every frame belongs
+to its episode, whichever episode is read; correct sets are accepted completely."""
 import os
 import random
 import shutil
@@ -34,7 +34,7 @@ while head := sys.stdin.buffer.read(8):
 
 
 class Window:
-    """Of an episode in a video, in frames."""
+    """The window of an episode in a video, in frames."""
 
     def __init__(self, episode, file, begin, end):
         self.episode, self.file, self.begin, self.end = episode, file, begin, end
@@ -90,8 +90,8 @@ def write_metadata(lengths, windows, noise):
 
 
 def honest(lengths):
-    """Each episode in a video by chance, in the order of their numbers; and what the videos show:
-    frames are numbered through the data set."""
+    """Puts episodes into random videos, in the order of their numbers; returns what the videos
+    show: frames are numbered through the data set."""
     windows, shown = [], {}
     for episode, length in enumerate(lengths):
         file = random.randrange(2)
@@ -123,9 +123,8 @@ def swap(one, other):
     other.begin, other.end = begin, begin + length
 
 
-# What a writer may do wrong with four episodes in a video: changes of the windows or of the frames.
-# None of the four is then known to be where it is said to be; but where one begins between two
-# frames, the others are where they should be.
+# Mistakes of a writer with four episodes in a video: changes of the windows or of the frames. Then
+# none of the four can be located; but if one begins between two frames, the others are correct.
 BETWEEN = "half a frame late"
 WRONG = {
     "one late": lambda w, shown: move(w[2:3], 1),

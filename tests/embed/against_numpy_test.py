@@ -1,5 +1,5 @@
-"""against_numpy_test.py ETLC: what `etlc embed` makes of images and videos, held to ffmpeg's bytes
-and to plain loops over the pixels."""
+"""against_numpy_test.py ETLC: compares embeddings of `etlc embed` with ffmpeg's bytes and plain
+loops over the pixels."""
 import os
 import subprocess
 import sys
@@ -21,7 +21,7 @@ def call(*words, status=0):
 
 
 def decoded(path):
-    """The frames of etlc-embed, without their heads."""
+    """Returns the frames of etlc-embed, without their headers."""
     data, frames = call(EMBEDDER, "video", path).stdout, []
     while data:
         height, width = np.frombuffer(data[:8], "<u4")
@@ -71,7 +71,7 @@ monitor m = F min l2(z, bay) <= 1;
     for row, image in zip(rows, images):
         expected = network(prepared(image, 8, 6))
         assert np.abs(row - expected).max() <= 1e-5 * np.abs(expected).max(), (row, expected)
-    for wrong in (images[0][:, :, ::-1], images[0][::-1]):  # and would see a change of places
+    for wrong in (images[0][:, :, ::-1], images[0][::-1]):  # detects swapped channels
         assert np.abs(rows[0] - network(prepared(wrong, 8, 6))).max() > 1e-2
 
 

@@ -1,6 +1,6 @@
-"""bad_input_test.py ETLC: images and videos that are damaged, cut, or of a form that would be taken
-for another are refused by name, and nothing is written; those of other forms that say the same give
-the same frames; frames late in a video are those that decoding all gives."""
+"""bad_input_test.py ETLC: images and videos that are damaged, cut, or ambiguous are refused by
+name, and nothing is written; other encodings of the same image give the same frames; late frames
+of a video equal those of a full decode."""
 import itertools
 import os
 import pathlib
@@ -35,7 +35,7 @@ def frames_of(data):
 
 
 def sized(*paths):
-    """What etlc-embed reads where images are not files."""
+    """What etlc-embed reads if images are not files."""
     parts = [pathlib.Path(path).read_bytes() for path in paths]
     return b"".join(struct.pack("<I", len(part)) + part for part in parts)
 
@@ -112,7 +112,7 @@ def chunk(name, data):
 
 
 def large_images(width, height):
-    """The heads of images, which promise so many pixels."""
+    """Headers of images that declare this many pixels."""
     head = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
     png = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(b"\0"))
     jpeg = bytearray(pathlib.Path("whole.jpg").read_bytes())
@@ -140,7 +140,7 @@ def images_are_refused():
     pathlib.Path("changed.png").write_bytes(whole)
     Image.fromarray(noise(8, 8, 4), "CMYK").save("print.jpg")
     jpeg = bytearray(pathlib.Path("whole.jpg").read_bytes())
-    jpeg[-40:-38] = b"\xff\xd9"  # an end before the end
+    jpeg[-40:-38] = b"\xff\xd9"  # an end marker before the end
     pathlib.Path("short.jpg").write_bytes(jpeg)
     pathlib.Path("empty.png").write_bytes(b"")
     pathlib.Path("text.png").write_text("no image\n")
@@ -192,7 +192,7 @@ def videos_are_refused():
             pathlib.Path("cut_" + path).write_bytes(whole[:-less])
             _, said = call(EMBEDDER, "video", "cut_" + path, status=65)
             assert any(word in said for word in ("cut", "damaged", "no frame")), (path, less, said)
-    # More frames than there are, in the head of an .avi and in a tag of an .mkv.
+    # The header of an .avi and a tag of an .mkv declare more frames than the file has.
     whole = pathlib.Path("v.avi").read_bytes()
     at = whole.index(b"strh") + 8 + 32
     assert struct.unpack("<I", whole[at : at + 4]) == (24,)
@@ -247,7 +247,7 @@ def late_frames_are_those_of_all():
     assert len(part) == 9 and all((a == b).all() for a, b in zip(part, every[93:]))
     assert len(video("late.mp4", "--first", 120, "--rate", 5)) == 10
     refused(["video", "late.mp4", "--first", 135, "--count", 9], "there is no frame 143", 67)
-    # What lies before the key frame is not decoded, and may be damaged.
+    # Data before the key frame are not decoded, and may be damaged.
     packets = call("ffprobe", "-v", "error", "-select_streams", "v", "-show_entries",
                    "packet=pos,size", "-of", "csv=p=0", "late.mp4")[0].split()
     whole = bytearray(pathlib.Path("late.mp4").read_bytes())
@@ -289,7 +289,7 @@ while head := sys.stdin.buffer.read(8):
                     status=1)[1]
         assert all(word in said for word in words), (data, said)
         assert not os.listdir("out") and not os.path.exists("t.embedded.npz"), data
-    # Commands that end or hang while there is more to read than a pipe holds.
+    # Commands that exit or hang while a pipe holds less than the remaining input.
     make_video("large.mp4", "-c:v", "libx264", frames=20, size="640x480")
     for command, words in (("exit 3", ["exit status 3"]), ("sleep 60", ["said nothing for 1"]),
                            ("head -c 100000 > /dev/null; exit 4", ["exit status 4"]),

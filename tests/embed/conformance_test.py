@@ -1,8 +1,8 @@
-"""conformance_test.py ETLC NODES PART PARTS: `etlc embed` computes what ONNX defines: the node
-tests of the ONNX project (NODES: a folder for each, with a node, its inputs and its outputs), many
-in a model. The first input of a node is known only once an image is there, so that nothing is
-computed ahead; the others are weights. What gives no embedding, or is not run, is listed by
-reason."""
+"""conformance_test.py ETLC NODES PART PARTS: `etlc embed` computes the results that ONNX defines.
+NODES has the node tests of the ONNX project: a folder for each, with a node, its inputs and its
+outputs. Many tests share a model. The first input of a node depends on the image, so that nothing
+can be precomputed; the others are weights. Tests without an embedding, or that cannot run, are
+listed by reason."""
 import collections
 import json
 import os
@@ -18,17 +18,18 @@ from PIL import Image
 
 ETLC, NODES = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 PART, PARTS = int(sys.argv[3]), int(sys.argv[4])
-TOGETHER = 40  # tests in a model
-TOLERANCE = 1e-4  # of the greatest number; the tests' own are often rounded to four digits
+TOGETHER = 40  # tests per model
+TOLERANCE = 1e-4  # relative to the greatest number; the tests' own numbers are often rounded to
+                  # four digits
 TOLERANCE_OF_HALVES = 1e-3
-NAN, LARGE = 7777.0, 8888.0  # what stands for nan and infinity, which no embedding may hold
+NAN, LARGE = 7777.0, 8888.0  # replace nan and infinity, which no embedding may hold
 HALVES = (TensorProto.FLOAT16, TensorProto.BFLOAT16)
 
-# What gives no embedding of one image, or nothing to compare with.
+# Tests without an embedding of one image, or without a result to compare.
 LEFT_OUT = {"takes or gives sequences": 24, "gives text": 9, "gives nothing": 6,
             "gives what chance gives": 12, "trains": 7}
 
-# What ONNX Runtime says it does not run.
+# Tests that ONNX Runtime does not support.
 REFUSED = {
     "Could not find an implementation": [
         "bitshift_left_uint16", "bitshift_right_uint16", "max_int16", "max_uint16", "min_int16",
@@ -37,7 +38,7 @@ REFUSED = {
         "gru_batchwise", "lstm_batchwise", "simple_rnn_batchwise"],
 }
 
-# Where ONNX Runtime reads the definition in another way than the tests.
+# Tests of which ONNX Runtime reads the definition differently.
 READ_OTHERWISE = {
     "length_resized is the whole number of pixels, not a fraction": [
         "resize_downsample_scales_cubic_align_corners",
@@ -52,7 +53,7 @@ class Test:
         self.folder = os.path.join(NODES, folder)
         self.model = onnx.load(os.path.join(self.folder, "model.onnx"))
         graph = self.model.graph
-        # Earlier versions lack what the rest of a model needs.
+        # Earlier versions lack operators of the rest of the model.
         self.opsets = tuple((o.domain, max(o.version, 7)) for o in self.model.opset_import)
         self.is_of_tensors = all(value.type.HasField("tensor_type")
                                  for value in [*graph.input, *graph.output])
@@ -91,7 +92,7 @@ class Test:
         return TOLERANCE_OF_HALVES if is_rough else TOLERANCE
 
     def stands_alone(self):
-        """Whether it has branches or loops, in which names stay as they are."""
+        """Returns whether it has branches or loops, in which names must not change."""
         return any(a.HasField("g") for node in self.model.graph.node for a in node.attribute)
 
 
@@ -121,7 +122,7 @@ def constant(tensor, name):
 
 
 def known_with_the_image(tensor, name):
-    """A node that gives the tensor where the mean of the image is not negative."""
+    """Returns a node that gives the tensor if the mean of the image is not negative."""
     def branch(kind):
         inner = f"{name}_{kind}"
         return helper.make_graph([constant(tensor, inner)], kind, [], [
@@ -132,7 +133,7 @@ def known_with_the_image(tensor, name):
 
 
 def as_row(value, is_finite, nodes):
-    """Of float32, with the numbers for nan and infinity; what they are written by."""
+    """Converts to float32, replacing nan and infinity; returns the expected values."""
     name = value.name
     steps = [("Cast", [name], {"to": TensorProto.FLOAT}), ("Reshape", ["{}", "flat"], {})]
     if not is_finite:
@@ -145,7 +146,7 @@ def as_row(value, is_finite, nodes):
 
 
 def model_of(tests):
-    """Of one image to what all tests give, one after the other."""
+    """Makes a model of one image that concatenates the results of all tests."""
     weights = [numpy_helper.from_array(np.array(value, kind), name) for name, value, kind in (
         ("flat", [-1], np.int64), ("row", [1, -1], np.int64), ("below", -1, np.float32),
         ("large", LARGE, np.float32), ("small", -LARGE, np.float32), ("nan", NAN, np.float32))]
@@ -180,7 +181,7 @@ def model_of(tests):
 
 
 def embed(spec, models, status=0):
-    """What `etlc embed` says, and the embeddings, where it gives any."""
+    """Returns the messages of `etlc embed`, and the embeddings, if any."""
     lines = ["spec t;"]
     for name, model in models.items():
         onnx.save(model, f"{name}.onnx")
@@ -208,7 +209,7 @@ def groups_of(tests):
 
 
 def compare(tests, row):
-    """The names of those whose numbers are others."""
+    """Returns the names of tests with other numbers."""
     at, wrong = 0, []
     for test in tests:
         expected = test.expected()

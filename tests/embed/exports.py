@@ -1,6 +1,6 @@
-"""Small networks of the shapes that exporters write: blocks of MobileNetV2, ConvNeXt, CLIP and
-DINOv2, with weights of chance. Each saves a model of an image of SIDE x SIDE, and gives the
-dimension of its embedding."""
+"""Small networks as exporters write them: blocks of MobileNetV2, ConvNeXt, CLIP and DINOv2, with
+random weights. Each function saves a model of an image of SIDE x SIDE, and returns the dimension of
+its embedding."""
 import math
 
 import numpy as np
@@ -30,7 +30,7 @@ class Export(Graph):
                          self.weight(self.random.uniform(0.2, 1, channels)), epsilon=1e-5)
 
     def layer_norm(self, x, width):
-        """As exporters wrote it before it was an operator."""
+        """Writes it as exporters did before it was an operator."""
         centred = self.node("Sub", x, self.node("ReduceMean", x, axes=[-1], keepdims=1))
         variance = self.node("ReduceMean", self.node("Pow", centred, self.weight(2)), axes=[-1],
                              keepdims=1)

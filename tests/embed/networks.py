@@ -1,5 +1,5 @@
-"""Small networks that tests make, and what they are by definition: loops over pixels, tokens and
-heads in double precision, of which no step is shared with what is tested."""
+"""Small networks for tests, and their definitions: loops over pixels, tokens and heads in double
+precision, which share no code with the tested program."""
 import math
 
 import numpy as np
@@ -10,7 +10,7 @@ MEAN, DEVIATION = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)
 
 
 class Graph:
-    """Nodes one after the other, with float32 weights between them."""
+    """Nodes in sequence, with float32 weights between them."""
 
     def __init__(self):
         self.nodes, self.weights = [], []
@@ -38,7 +38,7 @@ class Graph:
 
 
 def resized(image, rows, columns):
-    """Bilinear, centres of pixels at half numbers."""
+    """Resizes bilinearly, with pixel centres at half numbers."""
     result = np.zeros((rows, columns, 3))
     for r in range(rows):
         for c in range(columns):
@@ -53,13 +53,13 @@ def resized(image, rows, columns):
 
 
 def prepared(image, rows, columns):
-    """What a network is given of an image of rows x columns x 3."""
+    """Returns the input of a network for an image of rows x columns x 3."""
     return (resized(image.astype(float), rows, columns) / 255 - MEAN) / DEVIATION
 
 
 class Convolutional:
-    """A convolution, a rectifier, and a map to four numbers: of different weights everywhere, so
-    that neither colours nor rows nor columns may change places."""
+    """A convolution, a rectifier, and a map to four numbers. All weights differ, so swapped
+    colours, rows or columns are detected."""
 
     rows, columns, dimension = 8, 6, 4
 
@@ -84,7 +84,7 @@ class Convolutional:
 class Transformer:
     """Patches of an image, two blocks of attention and a hidden layer, and the mean of the tokens:
     a vision transformer (Dosovitskiy et al. 2021) as older exporters write it. LayerNormalization
-    and Gelu are nodes of arithmetic."""
+    and Gelu are arithmetic nodes."""
 
     rows = columns = 16
     patch, patches, dimension, heads, blocks = 4, 16, 24, 2, 2
@@ -92,7 +92,8 @@ class Transformer:
 
     def __init__(self, path, random):
         self.random, self.g = random, Graph()
-        self.w = [{} for _ in range(self.blocks + 2)]  # the patches', those of blocks, the last
+        self.w = [{} for _ in range(self.blocks + 2)]  # weights of the patches, of the blocks, of
+                                                       # the last layer
         width = self.dimension
         kernel = self.make(0, "kernel", (width, 3, self.patch, self.patch), 0.1)
         x = self.g.node("Conv", "x", kernel, self.make(0, "bias", (width,), 0.1),
@@ -121,7 +122,7 @@ class Transformer:
         return self.g.node("Reshape", x, self.g.weight(shape, np.int64))
 
     def of_tokens(self, block, name, width, size, middle=0.0):
-        """A weight for each element of a token."""
+        """Returns a weight for each element of a token."""
         values = (middle + self.random.normal(0, size, width)).astype(np.float32)
         self.w[block][name] = values.astype(float)
         return self.g.weight(np.broadcast_to(values, (1, self.tokens, width)))
@@ -210,9 +211,9 @@ class Transformer:
 
 
 class Exported(Transformer):
-    """The same as exporters write it: LayerNormalization is one node, weights have the shape of a
-    token; before the patches stands a learned token, for which Expand makes room twice, and Where
-    keeps attention from some tokens."""
+    """The same as newer exporters write it: LayerNormalization is one node, and weights have the
+    shape of a token. A learned token precedes the patches, for which Expand adds a dimension
+    twice, and Where masks attention from some tokens."""
 
     first, opset = 2, 17
     tokens = first + Transformer.patches

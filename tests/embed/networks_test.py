@@ -1,7 +1,7 @@
 """networks_test.py ETLC: a convolutional network and transformers give the embeddings of plain
-loops, to 1e-5 relative, and quantised products those of whole numbers; each step of the preparation
-counts; what is not run, or gives something else than it declares, is refused, by the name of its
-node where there is one."""
+loops, to 1e-5 relative, and quantised products those of integers; each step of the preparation
+matters; unsupported nodes, and outputs that contradict their declaration, are refused, with the
+name of the node if it has one."""
 import os
 import subprocess
 import sys
@@ -45,13 +45,13 @@ def difference(rows, expected):
 
 
 def command(network):
-    """With what is done to a frame, which a command does by itself."""
+    """Applies the preparation of a frame, which a command does by itself."""
     words = ["/usr/bin/python3", COMMAND, str(network.rows), str(network.columns)]
     return " ".join(words + [",".join(map(str, numbers)) for numbers in (MEAN, DEVIATION)])
 
 
 def wrong_preparations(image, rows, columns):
-    """What the preparation would be with one step left out or done otherwise."""
+    """Variants of the preparation with one step omitted or changed."""
     whole = image.astype(float)
     nearest = whole[np.arange(rows) * len(whole) // rows][:, np.arange(columns) *
                                                           whole.shape[1] // columns]
@@ -82,7 +82,7 @@ def networks_give_what_loops_give():
         network = kind("net.onnx", random)
         expected = [network(prepared(image, network.rows, network.columns)) for image in images]
         spec("t.etl", network.rows, network.columns)
-        spec("own.etl")  # the size is the model's
+        spec("own.etl")  # the model's own size
         ways = [["t.etl", "--encoder-cmd", command(network)], ["own.etl"], ["t.etl"]]
         found = []
         for words in ways:
@@ -99,7 +99,7 @@ def networks_give_what_loops_give():
 
 
 def exports_give_what_their_nodes_give():
-    """In double precision."""
+    """Computes in double precision."""
     spec("t.etl", exports.SIDE, exports.SIDE)
     images = [np.asarray(Image.open(f"bay/{i}.png")) for i in range(2)]
     for make in (exports.mobilenet, exports.convnext, exports.clip, exports.dinov2):
@@ -119,12 +119,12 @@ def refused(*words):
     for word in ("E1012", *words):
         assert word in said, (word, said)
     assert ".h:" not in said and ".cc:" not in said, "a place in a library's sources"
-    assert len(said.splitlines()) == 5, said  # the error, where the encoder is declared, the count
+    assert len(said.splitlines()) == 5, said  # the error, the place of the encoder, the count
     assert not os.path.exists("t.embedded.npz")
 
 
 def quantised(name, graph, inputs, weights, scale):
-    """A node of products of 8 bits, whose sums want more than 16; what it gives."""
+    """Makes a node of 8-bit products whose sums exceed 16 bits; returns its result."""
     q, s, z = inputs
     if name in ("MatMulInteger", "ConvInteger"):
         return graph.node(name, q, weights, z, graph.weight(0, np.int8),
@@ -140,7 +140,7 @@ def quantised(name, graph, inputs, weights, scale):
 
 
 def quantised_products_are_those_of_whole_numbers():
-    """Processors that add them up in 16 bits cut what is greater, unless they are told not to."""
+    """Processors that add in 16 bits saturate, unless ONNX Runtime is told not to."""
     image = random.integers(180, 256, (8, 8, 3), dtype=np.uint8)
     os.mkdir("quantised")
     Image.fromarray(image).save("quantised/0.png")
@@ -174,7 +174,7 @@ monitor m = F x <= 1;
         g.save("net.onnx", [1, 3, 8, 8], z, len(expected))
         call(ETLC, "embed", "quantised.etl")
         row = np.load("quantised.embedded.npz")["rows-1"][0]
-        slack = 0 if name.endswith("Integer") else 1  # a sum at the half of a step
+        slack = 0 if name.endswith("Integer") else 1  # a sum exactly between two steps
         assert np.abs(row - expected).max() <= slack, (name, row[:4], expected[:4])
 
 
@@ -203,7 +203,7 @@ def what_is_not_run_is_named():
     refused("Erf", "erf1", out)
 
     def above(g, x):
-        """So many numbers as x has positive elements, which is known only when it runs."""
+        """Returns as many numbers as x has positive elements, which is known only at run time."""
         return g.node("Gather", g.node("NonZero", g.node("Greater", x, g.weight(0))),
                       g.weight(0, np.int64))
 
@@ -260,13 +260,13 @@ def models_of_another_form_are_refused():
     g.save("net.onnx", [1, 3, 2, 2], g.node("Div", zero, zero), 12)
     said = call(ETLC, "embed", "t.etl", status=1)
     assert "nan at element 0 of the embedding of bay, frame 0" in said and "E1014" in said, said
-    save(["batch", 3, 2, 2])  # of any number of images: one at a time
+    save(["batch", 3, 2, 2])  # a batch of any size: one at a time
     call(ETLC, "embed", "t.etl")
     assert np.load("t.embedded.npz")["rows-1"].shape == (2, 12)
 
 
 def undeclared(path):
-    """Takes away what the model says of the shape that it gives."""
+    """Removes the shape that the model declares for its output."""
     model = onnx.load(path)
     model.graph.output[0].type.tensor_type.ClearField("shape")
     onnx.save(model, path)
@@ -277,7 +277,7 @@ def what_is_given_is_what_is_declared():
 
     def save(declared, ends_flat=True):
         g = Graph()
-        # So many numbers as there are positive ones: no shape follows from the nodes.
+        # As many numbers as there are positive ones: the nodes imply no shape.
         positive = g.node("Squeeze", g.node("NonZero", g.node("Greater", g.node(
             "Reshape", "x", g.weight([-1], np.int64)), g.weight(-1e9))), g.weight([0], np.int64))
         z = g.node("Gather", g.node("Reshape", "x", g.weight([-1], np.int64)), positive, axis=0)
@@ -301,12 +301,12 @@ def what_is_given_is_what_is_declared():
     save([1, 12], ends_flat=False)
     refused("1 x 12")
     g = Graph()
-    g.save("net.onnx", [1, 3, 2, 2], g.node("Flatten", "x"), 13)  # what the nodes contradict
+    g.save("net.onnx", [1, 3, 2, 2], g.node("Flatten", "x"), 13)  # contradicted by the nodes
     refused("13")
 
 
 def weights_in_another_file_are_refused():
-    """Where they lie in the working folder, too: a library would take them from there."""
+    """Even in the working folder, where a library would load them."""
     g = Graph()
     weights = g.weight(random.normal(size=(12, 1000)))
     in_one = g.node("MatMul", g.node("Flatten", "x"), weights)

@@ -1,6 +1,6 @@
 """onnx_encoder.py ROWS COLUMNS MEAN DEVIATION: an encoder command that runs ETLC_MODEL, node by
-node, in float32 numpy. The last two are numbers with commas between them. Tests import what runs
-it, too, for other kinds of numbers."""
+node, in float32 numpy. The last two are numbers separated by commas. Tests also import its
+evaluator, for other number types."""
 import math
 import os
 import struct
@@ -55,7 +55,7 @@ OPERATORS = {
 
 
 def run(graph, image):
-    """In the kind of numbers of the image."""
+    """Computes in the number type of the image."""
     values = {graph.input[0].name: image}
     for weight in graph.initializer:
         array = numpy_helper.to_array(weight)
@@ -68,7 +68,7 @@ def run(graph, image):
 
 
 def weights_of(there, here):
-    """Of bilinear interpolation along an axis: here x there."""
+    """Weights of bilinear interpolation along an axis: here x there."""
     at = np.maximum((np.arange(here) + 0.5) * there / here - 0.5, 0)
     low = at.astype(int)
     result = np.zeros((here, there), np.float32)

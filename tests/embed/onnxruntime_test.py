@@ -1,6 +1,6 @@
-"""onnxruntime_test.py ETLC: ONNX Runtime is taken from where the call, the environment, pip, npm or
-the system have it, in this order; its version is part of fingerprints; where there is none, or
-another library, that is said, and nothing is written."""
+"""onnxruntime_test.py ETLC: ONNX Runtime is taken from the call, the environment, pip, npm or the
+system, in this order; its version is part of fingerprints; a missing library, or a wrong one, is an
+error, and nothing is written."""
 import json
 import os
 import pathlib
@@ -26,7 +26,7 @@ monitor m = F min l2(z, bay) <= 1;
 
 
 def library():
-    """Its file: what is given may be the folder that has it."""
+    """Returns the library file; the argument may be its folder."""
     found = [GIVEN] if os.path.isfile(GIVEN) else sorted(pathlib.Path(GIVEN).rglob(
         "libonnxruntime.so.*"))
     return os.path.realpath(found[-1])
@@ -43,7 +43,7 @@ def call(*words, status=0, **environment):
 
 
 def found(**environment):
-    """The path of the library that etlc-embed takes."""
+    """Returns the path of the library that etlc-embed loads."""
     done = subprocess.run([EMBEDDER, "onnxruntime"], capture_output=True, text=True,
                           env={**os.environ, **environment})
     assert done.returncode == 0, done.stderr
@@ -58,7 +58,7 @@ def encoder():
 
 
 def placed(path):
-    """The library at another place."""
+    """Copies the library to another place."""
     os.makedirs(os.path.dirname(path), exist_ok=True)
     os.symlink(LIBRARY, path)
     return os.path.abspath(path)
@@ -114,7 +114,7 @@ def it_is_found_where_it_is_put():
 
 
 def the_version_is_part_of_the_fingerprint():
-    """A program in the place of etlc-embed, which says that it has loaded other versions."""
+    """A program in place of etlc-embed, which reports other versions."""
     call("--data", "bay.png", "-o", "out", "--onnxruntime", LIBRARY)
     pathlib.Path("t.csv").write_text("")
     row = "\\000\\000\\200\\077" * 4

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""own_encoder_test.py ETLC ENCODERS.MD: the encoder of that page, as it stands there, makes targets
-of images and episodes of recordings, and `etlc run` then says from when on these show what the
-images show."""
+"""own_encoder_test.py ETLC ENCODERS.MD: the encoder of that page makes targets of images and
+episodes of recordings, and `etlc run` reports from which step on these show the same as the
+images."""
 import csv
 import os
 import pathlib
@@ -58,8 +58,8 @@ def main():
         satisfied = [row for row in rows if "satisfied" in row.values()]
         assert len(rows) == FRAMES and len(satisfied) == FRAMES - FIRST_AT_BAY, rows
 
-    # Parameters of a retargetable class are by an encoder: those by another, with the same rows,
-    # are of the same shape, and it refuses them.
+    # Parameters of a retargetable class belong to an encoder: those by another, with the same rows,
+    # have the same shape, and the class refuses them.
     call(ETLC, "look.etl", "--retargetable", "-o", "look.hpp")
     ours = pathlib.Path("look.params.bin").read_bytes()
     pathlib.Path("encoder.py").write_text(CODE + "# changed\n")

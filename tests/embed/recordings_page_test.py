@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""recordings_page_test.py ETLC RECORDINGS.MD: the spec of that page and its three commands, as they
-stand there, go from images and videos to verdicts that say when the robot is where the labels say
-it is. A table beside a recording that does not fit it is refused."""
+"""recordings_page_test.py ETLC RECORDINGS.MD: the spec and the three commands of that page lead
+from images and videos to verdicts that agree with the labels. A table beside a recording that
+does not match it is refused."""
 import os
 import pathlib
 import re
@@ -42,7 +42,7 @@ def make_network():
 
 
 def image(is_bay):
-    """A bay is green, all else is of any other colour; no two images are equal."""
+    """A bay is green, everything else has another colour; no two images are equal."""
     colour = (20, 220, 20) if is_bay else (220, random.integers(0, 120), random.integers(0, 200))
     noise = random.integers(-15, 16, (32, 32, 3))
     return Image.fromarray(np.clip(np.array(colour) + noise, 0, 255).astype(np.uint8))
@@ -87,7 +87,7 @@ def main():
     assert labels[:-1].tolist() == [step >= 4 for step in range(FRAMES - 1)], labels
     assert np.isnan(labels[-1]), "an empty cell is missing"
 
-    # What numpy writes does not say which encoder made it, unless it is done as the page has it.
+    # Files of numpy do not record the encoder, unless saved as shown on the page.
     unmarked = "changed.npz: warning: does not say which encoder made its embeddings"
     with np.load("episodes/ep1.npz") as episode:
         np.savez("changed.npz", **episode)

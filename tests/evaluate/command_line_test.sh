@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# command_line_test.sh ETLC FOLDER DATA: `etlc evaluate` from end to end: its table, CSV and JSON,
-# alike for any number of threads; episodes in an .h5 file; a call that is wrong; folds; two specs.
+# command_line_test.sh ETLC FOLDER DATA: `etlc evaluate` from end to end: table, CSV and JSON are
+# equal for any number of threads; episodes in an .h5 file; wrong calls; folds; two specs.
 set -euo pipefail
 etlc=$1 expected=$2 data=$3
 folder=$(mktemp -d)
@@ -57,20 +57,20 @@ sed 's/<= 0.5;/<= calibrated(adaptive, alpha = 0.5, gamma = 0.1, lo = 0, hi = 4)
     >adaptive.etl
 "$etlc" calibrate adaptive.etl --data episodes/[012].csv >calibrated.txt
 "$etlc" evaluate adaptive.etl --data episodes/[345].csv >adaptive.txt
-grep -q '^near: with the threshold that it starts with; labels would move it$' adaptive.txt ||
+grep -q '^near: evaluated with its initial threshold, which labels would adapt$' adaptive.txt ||
     fail "$(cat adaptive.txt)"
 
 status=0
 "$etlc" evaluate dock.etl 2>err.txt || status=$?
 [ $status = 2 ] && grep -q -- --data err.txt || fail "no --data: $status, $(cat err.txt)"
 
-# What is not defined is null, and there all the same: here a monitor that misses every turn.
+# Undefined figures are null but present: here a monitor misses every turn.
 sed 's/<= 0.5;/<= 0;/' dock.etl >blind.etl
 "$etlc" evaluate blind.etl --data episodes --json blind.json >blind.txt
 grep -q '"mean_seconds": null' blind.json || fail "mean_seconds: $(grep -A8 detection blind.json)"
 
-# Folds hold each episode once. Neither the order of the files nor their names nor the number of
-# threads change them, and a spec beside another is judged as it is alone.
+# Each episode is in one fold. Order and names of files and the number of threads do not matter, and
+# a second spec does not change the result of the first.
 sed 's/<= 0.5;/<= calibrated(conformal, alpha = 0.4);/' dock.etl >folded.etl
 sed 's/target goal = .*/target goal = [[3, 2]];/' folded.etl >other.etl
 "$etlc" crossvalidate folded.etl --data episodes --folds 3 --json folds.json --by-episode \
@@ -96,7 +96,7 @@ table = list(csv.DictReader(open("rows.csv")))
 assert [row["episode"] for row in table] == [row["episode"] for row in rows]
 assert [float(row["near_f1"]) for row in table] == [row["predicates"]["near"]["f1"] for row in rows]
 END
-# The counts are those of a calibration and an evaluation for each fold, by hand.
+# The counts equal those of a separate calibration and evaluation for each fold.
 python3 - "$etlc" <<'END'
 import json, subprocess, sys
 def etlc(*words):
@@ -154,7 +154,7 @@ grep -q '^fold  episodes held out  near of the others  arrive of the others$' wh
     fail "$(cat whole.txt)"
 "$etlc" crossvalidate whole.etl --data renamed --folds 3 | head -6 | diff <(head -6 whole.txt) -
 
-# What is fitted is fitted for every fold, on episodes of the others that calibration does not see.
+# Every fold has its own fit, on episodes of the others that its calibration does not see.
 sed 's/^target goal = .*/projection along = fitted(discriminant, r = 1, of = z, where = near);\
 target goal = fitted(mean, of = along(z), where = near);/
     s/l2(z, goal)/l2(along(z), goal)/; s/alpha = 0.4/alpha = 0.5/' folded.etl >fitted.etl
@@ -162,7 +162,7 @@ target goal = fitted(mean, of = along(z), where = near);/
 grep -q '^near .* 1.000 \[' fitted.txt || fail "$(cat fitted.txt)"
 [ ! -e fitted.fitted.npz ] || fail "a fold has written a file"
 
-# Without each fold: thresholds as many commands of their own would give them.
+# Without each fold: the thresholds equal those of separate commands.
 "$etlc" calibrate folded.etl --data episodes --folds 6 -o folded.json >folds.txt
 for e in 0 1 2 3 4 5; do
     mkdir without$e

@@ -1,6 +1,6 @@
-// Specs evaluated on episodes given as text.
-// Takes: a spec and .csv episodes. Gives: the evaluation. Keeps true: it goes through the same
-// functions as `etlc evaluate`; the files lie in a folder of the test's own, gone afterwards.
+// Evaluates specs on episodes given as text.
+// Takes: a spec and .csv episodes. Gives: the evaluation. Keeps true: it runs the same functions as
+// `etlc evaluate`; the files are in the test's own folder, removed afterwards.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace etlc::tests {
 
-/// The model of a spec without mistakes.
+/// Returns the model of a valid spec.
 check::Model model_of(const std::string& spec);
 
-/// Of these episodes, with so many threads. The messages where it fails.
+/// Evaluates with this many threads; returns the messages on failure.
 evaluate::Judgement judged(const std::string& spec, const std::vector<std::string>& episodes,
                            unsigned jobs = 1);
 evaluate::Evaluation evaluated(const std::string& spec, const std::vector<std::string>& episodes,

@@ -1,5 +1,5 @@
-// Evaluations of random episodes, against counts made from the reference semantics: of the spec,
-// and of a spec in which every predicate is written as its truth.
+// Compares evaluations of random episodes with counts from the reference semantics: of the spec,
+// and of a spec in which every predicate is replaced by its truth.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ const std::vector<std::string> kFormulas = {
 const std::vector<std::string> kSliding = {"G[0, 3] p", "p && !q", "p U[0, 5] q", "c -> F[1, 2] p",
                                            "O[0, 3] q && F[0, 2] p"};
 
-/// p and q are meant to be what `truths` says of x and y, and are said from u and w.
+/// The truths of p and q depend on x and y, the predicates on u and w.
 std::string spec(bool truths) {
     std::string text = "spec t; input u, w, x, y, v : f32; input c : bool;";
     text +=
@@ -54,8 +54,7 @@ struct Episode {
     reference::Trace trace;
 };
 
-/// u and w mostly have the sides of x and y; numbers keep off the thresholds, samples may be
-/// missing.
+/// u and w mostly agree with x and y; numbers avoid the thresholds, and samples may be missing.
 Episode random_episode(std::mt19937& random, bool missing) {
     std::uniform_real_distribution<double> uniform(-1, 1);
     Episode episode;
@@ -95,7 +94,7 @@ Label label(Status status) {
                                         : Label::unknown;
 }
 
-/// All verdicts of a monitor about an episode.
+/// Returns all verdicts of a monitor for an episode.
 std::vector<Label> verdicts(const reference::Run& run, std::size_t monitor, std::uint32_t horizon) {
     std::vector<Label> labels;
     for (const auto& step : run.verdicts)

@@ -1,4 +1,4 @@
-// Rows of episodes, differences between specs, and folds, on cases that can be worked out by hand.
+// Tests rows of episodes, differences between specs, and folds, on cases worked out by hand.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using evaluate::Difference;
 using evaluate::EpisodeRow;
 using evaluate::Judgement;
 
-/// Columns x (p says x <= 0.5) and truth.p, from two words of y and n; "?" is missing.
+/// Columns x (p is x <= 0.5) and truth.p, from two words of y and n; "?" is missing.
 std::string episode(const std::string& said, const std::string& is) {
     std::string text = "x,truth.p\n";
     for (std::size_t i = 0; i < said.size(); ++i)
@@ -46,19 +46,19 @@ TEST(ByEpisode, IsTheWorstFirst) {
     std::vector<std::string> found;
     for (const EpisodeRow& row : rows) found.push_back(text(row));
     EXPECT_EQ(found, (std::vector<std::string>{
-                         "0003 5 wrong: reach error: 1 p",  // a wrong verdict, before all shares
+                         "0003 5 wrong: reach error: 1 p",  // wrong verdicts count before fractions
                          "0001 4 wrong:  error: 1 p",       // a half of the frames
                          "0002 4 wrong:  error: 0 p",       // a quarter, as the next one
                          "0004 4 wrong:  error: 2 p",       // a missing sample agrees with nothing
                          "0000 4 wrong:  error: -",
-                         "0005 4 wrong:  error: -",  // nothing is known
+                         "0005 4 wrong:  error: -",  // unknown
                      }));
     EXPECT_EQ(rows[0].claims.false_negatives, 4U);
     EXPECT_EQ(rows[0].predicates.at(0).first, "p");
 }
 
 TEST(ByEpisode, NamesAMonitorWhereNoPredicateErrs) {
-    // At its threshold a comparison has the robustness 0, which a monitor takes for satisfied.
+    // At its threshold a comparison has robustness 0, which counts as satisfied.
     const auto rows = evaluate::by_episode(
         judged("spec t; input x : f32; monitor m = G x > 0;", {"x\n1\n1\n0\n", "x\n1\n"}));
     ASSERT_TRUE(rows[0].first_error);
@@ -90,13 +90,14 @@ TEST(Differences, AreThoseOfEqualNames) {
     const auto found = evaluate::differences(a, judged(always, episodes));
     std::vector<std::string> texts;
     for (const Difference& d : found) texts.push_back(text(d));
-    // p: 4 of 5 said are true, and 4 of 5 true are said; always true: 5 of 12, F1 10 / 17.
+    // p: 4 of 5 positives are right, and 4 of 5 true frames are found; always true: 5 of 12, F1 10
+    // / 17.
     EXPECT_EQ(texts, (std::vector<std::string>{"p frames 0 -0.212", "reach steps 0 -0.263",
                                                "reach episodes 0 -0.200"}));
-    EXPECT_EQ(found[0].auroc->value, 0.0);  // of the distance, whatever the threshold
+    EXPECT_EQ(found[0].auroc->value, 0.0);  // over all thresholds of the distance
     ASSERT_TRUE(found[0].f1.interval);
     EXPECT_LE(found[0].f1.interval->low, *found[0].f1.value);
-    // Of a spec with itself all resamples have the difference 0.
+    // A spec compared with itself has the difference 0 in all resamples.
     for (const Difference& d : evaluate::differences(a, a)) {
         EXPECT_EQ(d.agreement.value, 0.0);
         EXPECT_EQ(d.agreement.interval->low, 0.0);

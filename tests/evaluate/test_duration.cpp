@@ -1,4 +1,4 @@
-// What the duration alone gets right: small cases by hand, random ones by trying every threshold.
+// Tests the duration baseline: small cases by hand, random ones by trying every threshold.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,14 +14,14 @@ Label label(char c) {
     return c == 'y' ? Label::yes : c == 'n' ? Label::no : Label::unknown;
 }
 
-/// A word of y, n and ?, the label of a step each.
+/// A word of y, n and ?, one label per step.
 LabelRuns steps(const std::string& word) {
     LabelRuns runs;
     for (const char c : word) runs.add(label(c));
     return runs;
 }
 
-/// An episode of so many steps, as a whole.
+/// An episode with this many steps.
 LabelRuns whole(std::uint64_t length, char is) {
     LabelRuns runs(length);
     runs.add(label(is));
@@ -40,7 +40,7 @@ struct Right {
     bool operator==(const Right&) const = default;
 };
 
-/// How many of the true labels, and of the false ones, the duration gets right.
+/// Counts the true and the false labels that the duration gets right.
 std::optional<Right> right(const std::vector<LabelRuns>& episodes) {
     const auto counts = judged(episodes);
     if (!counts) return std::nullopt;
@@ -48,7 +48,7 @@ std::optional<Right> right(const std::vector<LabelRuns>& episodes) {
 }
 
 TEST(Duration, SeparatesWhatLastsLonger) {
-    // Without 110 the threshold lies between 100 and 200, without 200 between 110 and 210.
+    // Without 110 the threshold is between 100 and 200, without 200 between 110 and 210.
     EXPECT_EQ(right({whole(100, 'y'), whole(110, 'y'), whole(200, 'n'), whole(210, 'n')}),
               (Right{2, 2}));
     EXPECT_EQ(right({whole(210, 'y'), whole(100, 'n'), whole(200, 'y'), whole(110, 'n')}),
@@ -61,7 +61,7 @@ TEST(Duration, OfAStepIsItsNumber) {
 }
 
 TEST(Duration, HasNotSeenTheEpisodeThatItJudges) {
-    // Either says the opposite of the other.
+    // The two contradict each other.
     EXPECT_EQ(right({steps("yn"), steps("ny")}), (Right{0, 0}));
     // Without the only failure, all succeed.
     EXPECT_EQ(right({whole(5, 'y'), whole(6, 'y'), whole(9, 'n')}), (Right{2, 0}));
@@ -73,7 +73,7 @@ TEST(Duration, HasNotSeenTheEpisodeThatItJudges) {
 TEST(Duration, IsAlwaysTrueOrFalseWhereNoThresholdIsBetter) {
     EXPECT_EQ(right({steps("yyy"), steps("yyyyyy"), steps("y")}), (Right{10, 0}));
     EXPECT_EQ(right({steps("nnn"), steps("nnnnnn"), steps("n")}), (Right{0, 10}));
-    // Two of three are true at every step: always true gets 4 / 5, no threshold more.
+    // Two of three are true at every step: always true gets 4 / 5, and no threshold gets more.
     EXPECT_EQ(right({steps("yy"), steps("yy"), steps("yy"), steps("nn")}), (Right{6, 0}));
 }
 
@@ -96,14 +96,14 @@ std::vector<Labelled> labels_of(const LabelRuns& episode) {
     return labels;
 }
 
-/// Twice a threshold, and whether numbers from it on are true or those below it.
+/// Twice a threshold, and whether numbers from it on, or below it, are true.
 struct Rule {
     std::uint64_t twice = 0;
     bool from = true;
     bool says(std::uint64_t number) const { return (2 * number >= twice) == from; }
 };
 
-/// F1, then how many agree.
+/// F1, then the number that agree.
 std::pair<double, std::uint64_t> merit(const Rule& rule, const std::vector<Labelled>& labels) {
     Counts counts;
     for (const auto& [number, is] : labels)

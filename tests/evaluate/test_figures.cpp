@@ -1,4 +1,4 @@
-// Rates, AUROC and intervals against their definitions, computed the slow way.
+// Compares rates, AUROC and intervals with their definitions, computed the slow way.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,8 +7,7 @@
 #include <random>
 
 #include "episodes/random.hpp"
-#include "evaluate/bootstrap.hpp"
-#include "evaluate/counts.hpp"
+#include "evaluate/figures.hpp"
 
 namespace etlc::evaluate {
 namespace {
@@ -63,7 +62,7 @@ TEST(Rates, AreTheSharesThatTheirNamesSay) {
         expect_near(found.precision, precision);
         expect_near(found.recall, recall);
         expect_near(found.agreement, share(pairs, any, agree));
-        // F1 is the harmonic mean of the two, 0 where both are.
+        // F1 is the harmonic mean of the two, or 0 if both are 0.
         if (precision && recall)
             expect_near(found.f1, *precision + *recall == 0
                                       ? 0
@@ -93,7 +92,7 @@ TEST(Rates, OfClaimsThatDoNotLook) {
     }
 }
 
-using Drawn = std::vector<std::uint32_t>;  ///< how often, per episode
+using Drawn = std::vector<std::uint32_t>;  ///< counts per episode
 
 std::vector<Drawn> resamples_of(std::size_t episodes) {
     std::vector<Drawn> all;
@@ -116,11 +115,11 @@ TEST(Bootstrap, DrawsEpisodesWithReplacement) {
     }
     for (const double times : drawn) EXPECT_NEAR(times, kResamples, 6 * std::sqrt(kResamples));
     EXPECT_EQ(resamples, resamples_of(50));
-    // The first draws, so that a table made elsewhere is the same.
+    // The first draws, so that tables made elsewhere are equal.
     EXPECT_EQ(resamples_of(3)[0], (Drawn{0, 1, 2}));
 }
 
-/// The draws are one sequence, however many are made at a time.
+/// The draws form one sequence, however many are made at a time.
 TEST(Bootstrap, MakesManyEpisodesBatchByBatch) {
     constexpr std::size_t kMany = 10'000;
     std::size_t batches = 0;
@@ -161,8 +160,8 @@ TEST(Rates, OfResamplesAreThoseOfTheSums) {
 }
 
 TEST(Bootstrap, IntervalsCoverAMean) {
-    // Of 200 samples of 40 numbers, about 95 % have an interval with the true mean in it; at least
-    // 90 % is far below.
+    // Of 200 samples of 40 numbers, about 95 % have an interval that contains the true mean; 90 %
+    // is a safe lower limit.
     std::mt19937 random(4);
     std::uniform_real_distribution<double> uniform(0, 1);
     const Bootstrap bootstrap(40);
@@ -191,7 +190,7 @@ TEST(Bootstrap, QuantilesAreThoseOfTheValuesThatAreThere) {
     for (int i = 1000; i >= 0; --i) values.emplace_back(i);
     EXPECT_EQ(percentile_interval(values)->low, 25);
     EXPECT_EQ(percentile_interval(values)->high, 975);
-    values.resize(1900);  // most of them there
+    values.resize(1900);  // most of them
     EXPECT_EQ(percentile_interval(values)->low, 25);
     values.resize(2100);
     EXPECT_FALSE(percentile_interval(values));

@@ -1,5 +1,4 @@
-// Single episodes whose figures can be worked out by hand: detection, ordering, missing samples,
-// what is left out.
+// Tests single episodes worked out by hand: detection, ordering, missing samples, omissions.
 #include <gtest/gtest.h>
 
 #include "evaluated.hpp"
@@ -11,7 +10,7 @@ using evaluate::Counts;
 using evaluate::Evaluation;
 using evaluate::MonitorScore;
 
-/// Columns x (p says x <= 0.5) and truth.p, from two words of y and n; "?" is missing.
+/// Columns x (p is x <= 0.5) and truth.p, from two words of y and n; "?" is missing.
 std::string judged_episode(const std::string& said, const std::string& is) {
     std::string text = "x,truth.p\n";
     for (std::size_t i = 0; i < said.size(); ++i) {
@@ -33,7 +32,7 @@ TEST(Detection, IsTheTimeFromTurnToTurn) {
     EXPECT_EQ(detection("yynnny", "yyynnn").median, -1.0);
     EXPECT_EQ(detection("yynnny", "yyynnn").early, 1U);
     EXPECT_EQ(detection("nynnny", "nnyyyy").median,
-              3.0);  // an early claim that was taken back is not held on to
+              3.0);  // an early claim that was withdrawn does not count
     EXPECT_EQ(detection("?nn?yy", "??nnyy").median, 0.0);
 }
 
@@ -53,7 +52,7 @@ TEST(Judge, CountsWhatAMissingSampleLeavesOpen) {
     EXPECT_EQ(found.predicates.at(0).unmeasured, 1U);
     EXPECT_EQ(found.predicates.at(0).arrays, 1U);
     EXPECT_EQ(found.monitors.at(0).episodes.counts.true_negatives,
-              1U);  // not every position satisfies it, in truth too
+              1U);  // not every position satisfies it, nor does the truth
 }
 
 TEST(Judge, TheComparisonDecidesAtTheThreshold) {
@@ -84,7 +83,7 @@ TEST(Ordering, IsMeasuredWhereEveryStageWasVisited) {
         "b);"
         "monitor two = F (F a && F b);";
     const auto text = [](const std::string& a,
-                         const std::string& b) {  // truth is that of x and y, which are right
+                         const std::string& b) {  // the truth of x and y, which is correct
         std::string rows = "x,y,truth.a,truth.b\n";
         for (std::size_t i = 0; i < a.size(); ++i) {
             const auto bit = [](char c) { return c == 'y' ? std::string("1") : std::string("0"); };
@@ -154,8 +153,8 @@ TEST(Evaluate, CountsEpisodesWithATargetAmongTheFrames) {
         2U);
 }
 
-/// At its threshold a comparison has the robustness 0, which a monitor takes for satisfied, and yet
-/// may say no.
+/// At its threshold a comparison has robustness 0, which counts as satisfied, although the
+/// comparison may be false.
 TEST(Evaluate, OfWhatIsItsOwnTruthTheComparisonDecides) {
     const auto steps = [](const std::string& formula) {
         return evaluated("spec t; input x : f32; monitor m = " + formula + ";", {"x\n1\n0\n"})

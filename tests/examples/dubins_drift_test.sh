@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# dubins_drift_test.sh RECORD ETLC SOURCE COMPILER: drift.sh runs, the threshold
-# that stays loses its coverage, the one that follows labels gets it back, and its
-# misses are within the bound that the header gives.
+# dubins_drift_test.sh RECORD ETLC SOURCE COMPILER: drift.sh runs, the fixed threshold loses its
+# coverage, the adaptive one regains it, and its misses are within the bound that the header gives.
 set -euo pipefail
 record=$1 etlc=$2 source=$3 compiler=$4
 folder=$(mktemp -d)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# dubins_paper_test.sh DUBINS_RECORD ETLC SOURCE CXX: the paper's experiment with one seed: drives
-# are recorded, thresholds calibrated and evaluated; the compiled class agrees with `etlc evaluate`
-# on every count; the figures are not below the paper's.
+# dubins_paper_test.sh DUBINS_RECORD ETLC SOURCE CXX: runs the paper's experiment with one seed: it
+# records drives, calibrates thresholds and evaluates them; the compiled class agrees with `etlc
+# evaluate` on every count; the figures are at least the paper's.
 set -euo pipefail
 record=$1 etlc=$2 source=$3 cxx=$4
 folder=$(mktemp -d)
@@ -14,7 +14,7 @@ for side in calibration:120 test:180; do
     [ "$(find "drives/7/${side%:*}" -name '*.csv' | wc -l)" = "${side#*:}" ] ||
         fail "not ${side#*:} drives for ${side%:*}"
 done
-# The table: no figure of ours is below that of the paper in the next row, up to one drive in 180.
+# The table: each of our figures is at least the paper's in the next row, up to one drive in 180.
 awk '/^(Reach A|Avoid C|Reach-avoid|Sequential)/ {
          gsub(/\([0-9.]+\)|%/, ""); n = split($0, ours)
          getline; gsub(/%/, ""); split($0, paper)
@@ -43,7 +43,7 @@ for monitor in reach avoid reach_avoid sequential; do
     done
 done
 
-# Drives that the thresholds were calibrated on are refused, under another name too.
+# Drives used for calibration are refused, under another name too.
 mv drives/7/calibration/000.csv drives/7/test/300.csv
 if "$etlc" evaluate "$source/examples/dubins/paper.etl" --data drives/7/test \
     --thresholds drives/7/thresholds.json >/dev/null 2>err.txt; then

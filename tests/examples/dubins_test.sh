@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# dubins_test.sh PROGRAM ETLC SPEC: the demo runs, twice the same, agrees with the truth in most
-# drives; on the drives that it recorded `etlc run` and `etlc evaluate` say what the compiled
-# monitor said, and `etlc report` makes a page with the camera's pictures.
+# dubins_test.sh PROGRAM ETLC SPEC: the demo runs twice with the same output and agrees with the
+# truth on most drives; for the recorded drives `etlc run` and `etlc evaluate` agree with the
+# compiled monitor, and `etlc report` makes a page with the camera's pictures.
 set -euo pipefail
 program=$1 etlc=$2 spec=$3
 folder=$(mktemp -d)
@@ -23,7 +23,7 @@ for monitor in reach avoid reach_avoid sequential; do
 done
 if grep -q $'\e' one.txt; then echo "colour in a file"; exit 1; fi
 
-# The figures that the compiled class comes to are those of `etlc evaluate`.
+# The figures of the compiled class equal those of `etlc evaluate`.
 "$etlc" evaluate "$spec" --data one --json figures.json >/dev/null
 for predicate in at_a at_b near_c; do
     compiled=$(sed -nE "s/^$predicate +[0-9]+ of 24000 +([0-9.]+) .*/\1/p" one.txt)
@@ -38,7 +38,7 @@ if grep -q warning err.txt; then cat err.txt; exit 1; fi
 [ "$(grep -o 'data:image/png' page.html | wc -l)" = 100 ] ||
     { echo "not a sheet of pictures for each of 100 drives"; exit 1; }
 
-# The last verdict of each monitor on a recorded drive, by the plan and by the compiled code.
+# The last verdict of each monitor on a recorded drive, from the plan and from the compiled code.
 "$etlc" run "$spec" --trace one/009.npz -o verdicts.csv
 run=$(awk -F, '
     NR > 1 { last[$2] = $6 }
@@ -49,7 +49,7 @@ compiled=$(grep -oE '\b(yes|no)\b' <<<"$line" | sed 's/yes/satisfied/; s/no/viol
     paste -sd ' ')
 [ "$run" = "$compiled" ] || { echo "etlc run: $run; compiled: $compiled"; exit 1; }
 
-# Neither a wrong call nor a folder that cannot be made goes unnoticed.
+# A wrong call and a folder that cannot be made are errors.
 status=0
 "$program" one 9 >/dev/null 2>err.txt || status=$?
 [ "$status" = 2 ] && grep -q usage err.txt || { echo "two arguments: status $status"; exit 1; }

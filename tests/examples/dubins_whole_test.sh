@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# dubins_whole_test.sh RECORD ETLC SOURCE COMPILER: whole.sh runs for one seed. Calibrated as
-# wholes, the monitors miss about as often as they may, and err the other way no more often than by
+# dubins_whole_test.sh RECORD ETLC SOURCE COMPILER: runs whole.sh for one seed. Calibrated as a
+# whole, the monitors miss about as often as allowed, and err the other way no more often than with
 # the union bound.
 set -euo pipefail
 record=$1 etlc=$2 source=$3 compiler=$4
@@ -11,8 +11,8 @@ CXX=$compiler "$source/examples/dubins/whole.sh" "$etlc" "$record" "$folder" 1 >
 cat "$folder/printed" "$folder/1/whole.csv"
 awk -F, '
     FNR > 1 { share = $5 / $4; other[$1 " " $2] = $6; ++rows }
-    # One set of 60 drives: coverage is drawn from a Beta, whose 5 %
-    # quantile is about 0.82, and 180 drives measure it.
+    # One set of 60 drives: the coverage has a Beta distribution with 5 % quantile of about 0.82,
+    # and 180 drives measure it.
     FNR > 1 && share > ($1 == "whole" ? 0.3 : 0.2) { wrong = $1 " " $2 " misses too much" }
     END {
         if (rows != 4) wrong = "there are not four rows"

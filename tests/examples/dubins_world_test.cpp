@@ -1,4 +1,4 @@
-// The simulated world of examples/dubins: what the demo's figures rest on.
+// Tests the simulated world of examples/dubins, which the demo's figures depend on.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ const std::vector<Episode>& tours() {
     return all;
 }
 
-/// First step inside the disc, or the number of steps.
+/// Returns the first step inside the disc, or the number of steps.
 std::size_t first_inside(const Episode& tour, const Disc& disc) {
     const auto inside = [&](const Car& car) { return disc.contains(car.position); };
     const auto found = std::find_if(tour.states.begin(), tour.states.end(), inside);
@@ -101,7 +101,7 @@ TEST(DubinsWorld, TheCommittedComponentsAreOrthonormal) {
               1e-5F);
 }
 
-/// Another CPU may round the last digits otherwise, no more.
+/// Another CPU may round the last digits differently, but no more.
 TEST(DubinsWorld, TheCommittedTargetsAreWhatTheCommittedEncoderMakes) {
     const Encoder encoder = Encoder::load(DUBINS_FOLDER "/encoder");
     for (const Region& region : kRegions) {

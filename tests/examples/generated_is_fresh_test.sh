@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# generated_is_fresh_test.sh ETLC SPEC HEADER OPTION...: the committed HEADER is what etlc makes of
-# SPEC, byte for byte. ETLC_UPDATE=1 rewrites it.
+# generated_is_fresh_test.sh ETLC SPEC HEADER OPTION...: the committed HEADER equals the output of
+# etlc for SPEC, byte for byte. ETLC_UPDATE=1 rewrites it.
 set -euo pipefail
 etlc=$1 spec=$2 header=$3
 shift 3
@@ -19,7 +19,7 @@ elif ! diff -u "$header" "$made"; then
     echo "generated/$(basename "$header") is stale: run the tests with ETLC_UPDATE=1 and commit it"
     exit 1
 fi
-# Nothing but the header: neither example needs a file of targets beside it.
+# Only the header: neither example needs a file of targets.
 if [ "$(ls "$folder")" != "$(basename "$header")" ]; then
     echo "more than the header came out:"
     ls "$folder"

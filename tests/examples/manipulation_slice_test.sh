@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# manipulation_slice_test.sh ETLC SOURCE: fit, calibrate and evaluate pick_place.etl on the few
-# episodes of examples/manipulation/slice. What is fitted ranks other episodes far better than plain
-# distances do, and the monitors say of them what was so.
+# manipulation_slice_test.sh ETLC SOURCE: fits, calibrates and evaluates pick_place.etl on the few
+# episodes of examples/manipulation/slice. The fitted distances rank other episodes far better than
+# plain ones, and the monitors agree with the truth.
 set -euo pipefail
 etlc=$1 slice=$2/examples/manipulation/slice
 folder=$(mktemp -d)
@@ -14,7 +14,7 @@ cp "$2/examples/manipulation/pick_place.etl" "$spec"
 "$etlc" evaluate "$spec" --data "$slice/tests" --csv - >"$folder/figures"
 cat "$folder/fit" "$folder/figures"
 
-# at_least FIGURE LEAST: a figure of 'etlc evaluate' is that or more.
+# at_least FIGURE LEAST: a figure of 'etlc evaluate' is at least LEAST.
 at_least() {
     awk -F , -v name="$1," -v least="$2" '
         index($0, name) == 1 { found = 1; if ($5 + 0 < least) { print "too low: " $0; exit 1 } }

@@ -1,4 +1,4 @@
-// What the node of examples/ros2_node does, without ROS.
+// Tests the logic of the node of examples/ros2_node without ROS.
 #include "monitor_node.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ protected:
         for (; ticks > 1; --ticks) see(z);
         return see(z);
     }
-    /// A person is there for longer than half a second.
+    /// A person is present for longer than half a second.
     Report alarm() { return see(kPerson, 6); }
 
     std::vector<std::string> files() const {
@@ -85,7 +85,7 @@ TEST_F(Node, UsesAnEmbeddingOnceAndTheNewestOne) {
     const Report newest = node_->tick();
     EXPECT_EQ(named(newest.verdicts, "arrives").message, "not satisfied yet");
     EXPECT_EQ(named(newest.diagnostics, "embeddings").values[1].value, "1");
-    // Two ticks are held, the next ones have nothing to see.
+    // Two ticks use the held embedding, the next ones have none.
     node_->tick();
     const Report held = node_->tick();
     EXPECT_EQ(named(held.diagnostics, "embeddings").level, Level::stale);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# ros2_node_test.sh NODE PEER ETLC SPEC: the node over DDS, with a peer in the part of ROS 2 nodes,
-# on this machine's loopback alone; its incident is one that etlc reads.
+# ros2_node_test.sh NODE PEER ETLC SPEC: runs the node over DDS, with a peer in place of ROS 2
+# nodes, only on this machine's loopback; etlc reads its incident.
 set -euo pipefail
 node=$1 peer=$2 etlc=$3 spec=$4
 box=$(mktemp -d)

@@ -1,6 +1,6 @@
-// ros2_peer: what ROS 2 nodes would do beside patrol_dds. Checks that an embedding on the wire is
-// the CDR of ROS 2, publishes embeddings until diagnostics have an alarm, and prints what they say
-// of it and of an embedding of another size, and what a late subscriber gets.
+// ros2_peer: replaces the ROS 2 nodes around patrol_dds. Checks that an embedding on the wire is
+// the CDR of ROS 2, publishes embeddings until diagnostics report an alarm, and prints the
+// diagnostics of it and of an embedding of another size, and the messages for a late subscriber.
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
 
@@ -27,7 +27,8 @@ dds_entity_t checked(dds_return_t result, const char* what) {
     std::exit(1);
 }
 
-/// As rclcpp's default is: reliable, the last ten; `latched`: and the last one for late comers.
+/// The defaults of rclcpp: reliable, the last ten; `latched`: also the last one for late
+/// subscribers.
 dds_qos_t* qos(bool latched) {
     dds_qos_t* qos = dds_create_qos();
     dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
@@ -75,9 +76,8 @@ void publish(dds_entity_t writer, std::vector<float> elements) {
     checked(dds_write(writer, &message), "write");
 }
 
-/// {layout: {dim: [{label: "d", size: 4, stride: 4}], data_offset: 0}, data: [0, 0, 1, 0]}, by the
-/// rules of CDR: little-endian, each number at a multiple of its size, a string with its length and
-/// its zero.
+/// {layout: {dim: [{label: "d", size: 4, stride: 4}], data_offset: 0}, data: [0, 0, 1, 0]} in CDR:
+/// little-endian, each number at a multiple of its size, a string with its length and its zero.
 const std::uint8_t kOnWire[] = {0, 1, 0, 0,                            // CDR_LE
                                 1, 0, 0, 0, 2, 0, 0, 0, 'd', 0, 0, 0,  // dim: 1, "d"
                                 4, 0, 0, 0, 4, 0, 0, 0, 0,   0, 0, 0,  // and its numbers
@@ -97,7 +97,7 @@ bool is_cdr_of_ros(dds_entity_t reader) {
     return false;
 }
 
-/// What a status of that name says in the messages that have come; "" where it says nothing.
+/// Returns the text of the status with that name in the received messages; empty if there is none.
 std::string said(dds_entity_t reader, const std::string& name) {
     std::string found;
     for (;;) {
@@ -113,7 +113,7 @@ std::string said(dds_entity_t reader, const std::string& name) {
     }
 }
 
-/// Publishes until a status has this level and these words; false: it never did.
+/// Publishes until a status has this level and text; returns false if it never does.
 bool publish_until(dds_entity_t writer, const std::vector<float>& elements, dds_entity_t reader,
                    const std::string& name, const std::string& words) {
     for (int round = 0; round < kMostRounds; ++round, wait_a_little()) {

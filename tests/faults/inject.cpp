@@ -1,9 +1,9 @@
-// A library to preload: it makes calls that a program leaves to the system fail, on demand. Takes,
-// from the environment, ETLC_INJECT=CALL:FIRST:COUNT:ACTION. CALL is one of kCalls; its calls
-// number FIRST (from 1) to FIRST + COUNT - 1 after the beginning of main() meet with ACTION: the
-// number of an error, `short` (half of what is to be written is), `kill` or `killed` (the process
-// dies before the call, after it). ETLC_INJECT_COUNTS names a file to which, at the end of main(),
-// goes how often each was called.
+// A library to preload that makes system calls of a program fail on demand. It reads
+// ETLC_INJECT=CALL:FIRST:COUNT:ACTION from the environment. CALL is one of kCalls; its calls number
+// FIRST (from 1) to FIRST + COUNT - 1 after the beginning of main() get ACTION: an error number,
+// `short` (only half of the bytes are written), `kill` or `killed` (the process dies before or
+// after the call). ETLC_INJECT_COUNTS names a file that receives, at the end of main(), the number
+// of calls of each kind.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -57,7 +57,7 @@ Injection injection;
 std::atomic<bool> armed{false};
 std::atomic<long> calls[kCalls];
 
-/// What the next call of this kind meets with.
+/// Returns the action for the next call of this kind.
 Action next(Call call) {
     if (!armed) return Action::none;
     const long n = ++calls[call];
@@ -121,8 +121,7 @@ int armed_main(int argc, char** argv, char** environment) {
 
 }  // namespace
 
-// What is exported has the names and the types of the C library's functions; what they do is passed
-// on to.
+// The exported functions have the names and types of the C library's functions and forward to them.
 extern "C" {
 
 void* __libc_malloc(std::size_t);
@@ -180,7 +179,7 @@ std::FILE* fopen(const char* path, const char* mode) {
 int close(int file) {
     const Action action = next(kClose);
     const int result =
-        static_cast<int>(::syscall(SYS_close, file));  // which an error does not keep open
+        static_cast<int>(::syscall(SYS_close, file));  // which is closed even after an error
     if (action != Action::fail) return done(action, result);
     errno = injection.error;
     return -1;
@@ -220,7 +219,7 @@ int fcntl(int file, int command, ...) {
 }
 
 int lock_file(int file,
-              int operation) __asm__("flock");  // a name that <fcntl.h> has for a class, too
+              int operation) __asm__("flock");  // also the name of a class in <fcntl.h>
 int lock_file(int file, int operation) {
     return next(kLock) == Action::fail ? -1
                                        : static_cast<int>(::syscall(SYS_flock, file, operation));

@@ -12,8 +12,8 @@ namespace etlc::faults {
 
 namespace {
 
-/// The checksum that a header asks its file of targets for: `using Targets = etlmon::Targets<SIZE,
-/// 0x...>`.
+/// Returns the checksum of the targets file that a header requires: `using Targets =
+/// etlmon::Targets<SIZE, 0x...>`.
 std::uint64_t asked_for(const std::string& header) {
     const std::size_t targets = header.find("etlmon::Targets<");
     const std::size_t number = header.find("0x", targets);
@@ -30,7 +30,7 @@ bool is_targets(const std::string& name) {
     return name.ends_with(".targets.bin");
 }
 
-/// Whether the header takes the file of targets beside it.
+/// Returns whether the header accepts the targets file beside it.
 bool fits(const Files& files) {
     const auto targets = std::find_if(files.begin(), files.end(),
                                       [](const auto& file) { return is_targets(file.first); });
@@ -40,7 +40,7 @@ bool fits(const Files& files) {
            asked_for(header->second) == checksum(targets->second);
 }
 
-/// What is wrong with the files after a run.
+/// Returns the defects of the files after a run.
 std::string wrong_files(const Command& command, const Files& files, bool killed) {
     for (const std::string& name : command.files) {
         const auto file = files.find(name);
@@ -60,13 +60,13 @@ std::string wrong_files(const Command& command, const Files& files, bool killed)
     return "";
 }
 
-/// Whether a process may have been killed while files had temporary names.
+/// Returns whether a process may have been killed while files had temporary names.
 bool while_names_change(const Surroundings& around) {
     const std::string call = around.injection.substr(0, around.injection.find(':'));
     return around.killed_after || call == "link" || call == "rename" || call == "unlink";
 }
 
-/// Whether what goes to standard error may be among the writes that fail.
+/// Returns whether writes to standard error may be among the failing ones.
 bool cannot_speak(const Command& command, const Surroundings& around) {
     if (!around.injection.starts_with("write:")) return false;
     const bool only_one =
@@ -74,7 +74,7 @@ bool cannot_speak(const Command& command, const Surroundings& around) {
     return !only_one || command.undisturbed.status != 0;
 }
 
-/// What is wrong with a run that ended by itself.
+/// Returns the defects of a run that ended by itself.
 std::string wrong_ending(const Command& command, const Surroundings& around, const Outcome& outcome,
                          const Files& files) {
     const Outcome& undisturbed = command.undisturbed;
@@ -94,7 +94,7 @@ std::string wrong_ending(const Command& command, const Surroundings& around, con
         return "";
     }
     if (!undisturbed.output.starts_with(outcome.output)) return "standard output is something else";
-    // Diagnostics are what comes last: where a part of them is lost, the rest is done.
+    // Diagnostics come last: if part of them is lost, the rest is done.
     const bool all_but_diagnostics =
         undisturbed.status == 0 && files == command.after && outcome.output == undisturbed.output;
     const bool lost_diagnostics = !undisturbed.error.empty() && outcome.error != undisturbed.error;

@@ -1,12 +1,11 @@
-// What etlc must do, whatever happens to it.
-// Keeps true, of every run:
-// - it ends by a signal only where it was sent SIGKILL;
-// - exit status 0 means that all outputs are there, complete and as ever; otherwise it is 1, with a
+// Checks what etlc must do under every fault:
+// - it ends by a signal only if it was sent SIGKILL;
+// - exit status 0 means that all outputs exist, complete and correct; otherwise it is 1, with a
 //   message;
-// - a file is as it was or as it is to be; where the process could end by itself, all of them are
-//   as they were, or all as they are to be and only diagnostics were lost;
-// - no temporary file stays, except where names changed hands when the process was killed;
-// - a header and a file of targets of different calls do not fit.
+// - each file is old or new; if the process could end by itself, all files are old, or all are new
+//   and only diagnostics were lost;
+// - no temporary file remains, except if the process was killed while it exchanged names;
+// - a header and a targets file of different calls do not match.
 #pragma once
 
 #include <string>

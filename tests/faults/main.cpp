@@ -1,7 +1,7 @@
-// faults ETLC DATA [--long]: etlc among faults of the system. DATA is tests/unit/data.
-// Every command runs while calls of the system fail, threads cannot be made, memory, files and
-// streams have limits, and while it is killed; two run at the same time. Exit status 1 where a run
-// does other than it must (see Judge).
+// faults ETLC DATA [--long]: runs etlc under faults of the system. DATA is tests/unit/data. Every
+// command runs while system calls fail, threads cannot be created, memory, files and streams are
+// limited, and while it is killed; two commands run at the same time. The exit status is 1 if a run
+// violates a rule of Judge.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -17,15 +17,15 @@ namespace {
 
 using namespace etlc::faults;
 
-constexpr long kEvery = 1'000'000;  ///< calls: from one on, all
+constexpr long kEvery = 1'000'000;  ///< calls: all from one on
 
-/// How much of each kind there is.
+/// The number of faults of each kind.
 struct Extent {
-    long places;  ///< at which a call is disturbed, of each kind and command
+    long places;  ///< disturbed calls, of each kind and command
     long allocations;
     int memories;  ///< limits of the address space
-    int kills;     ///< at random moments
-    int pairs;     ///< of calls at the same time
+    int kills;     ///< kills at random moments
+    int pairs;     ///< simultaneous calls
 };
 constexpr Extent kShort{5, 24, 6, 10, 20};
 constexpr Extent kLong{20, 150, 20, 100, 150};
@@ -33,10 +33,10 @@ constexpr Extent kLong{20, 150, 20, 100, 150};
 struct Disturbance {
     const char* call;
     std::vector<std::string> actions;  ///< errors by number
-    long count;                        ///< of calls in a row
+    long count;                        ///< numbers of calls in a row
 };
 
-/// What can happen to each kind of call. Errors are those that Linux gives for it.
+/// Faults of each kind of call. Errors are those of Linux.
 const std::vector<Disturbance>& disturbances() {
     const auto error = [](int number) { return std::to_string(number); };
     static const std::vector<Disturbance> all = {
@@ -47,7 +47,7 @@ const std::vector<Disturbance>& disturbances() {
         {"close", {error(EIO), error(EINTR), "kill"}, 1},
         {"link", {error(EPERM), error(ENOSPC), "kill", "killed"}, 1},
         {"rename", {error(EBUSY), "kill", "killed"}, 1},
-        {"rename", {error(EPERM)}, 2},  // an exchange, and what stands in for it
+        {"rename", {error(EPERM)}, 2},  // an exchange, and its replacement
         {"unlink", {"kill", "killed"}, 1},
         {"dup", {error(EMFILE)}, 1},
         {"lock", {error(ENOLCK), error(EINTR)}, 1},
@@ -62,7 +62,7 @@ const std::vector<Disturbance>& disturbances() {
     return all;
 }
 
-/// From 1 to `last`, at most `most` of them, both ends included.
+/// Returns numbers from 1 to `last`, at most `most` of them, both ends included.
 std::vector<long> spread(long last, long most) {
     std::vector<long> places;
     const long n = std::min(last, most);
@@ -102,8 +102,7 @@ private:
     void fail_calls(const Command& command) {
         for (const Disturbance& disturbance : disturbances()) {
             const std::string call = disturbance.call;
-            // CLI11 writes its help through streams, which keep quiet about a single piece of
-            // memory that was missing.
+            // CLI11 writes its help through streams, which ignore a single failed allocation.
             if (call == "malloc" && disturbance.count == 1 && command.words.back() == "--help")
                 continue;
             const long most = call == "malloc" ? extent_.allocations : extent_.places;
@@ -144,7 +143,7 @@ private:
         }
     }
 
-    /// From what it takes to begin to what it takes to end.
+    /// From the least that starts to the least that finishes.
     void limit_memory(const Command& command) {
         const Command& version = scene_.commands().back();
         const rlim_t least = least_memory(version);
@@ -187,7 +186,7 @@ private:
         judge_.judge(scene_, command, around, what, scene_.run(command, around));
     }
 
-    /// Specs differ, the outputs are the same files: in the end they are of one call.
+    /// The specs differ, the output files are the same: in the end they belong to one call.
     void run_at_the_same_time() {
         const Command& command = scene_.commands().front();
         Command earlier = command;

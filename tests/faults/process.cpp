@@ -40,7 +40,7 @@ std::string content(int file) {
 Process::Process(const std::vector<std::string>& words, const std::string& folder,
                  const Surroundings& around)
     : killed_after_(around.killed_after) {
-    // What a process writes has room in a pipe; its output has limits like those of a file.
+    // The output of a process fits into a pipe; it has limits like a file.
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) std::abort();
     ::fcntl(ends[0], F_SETFL, O_NONBLOCK);

@@ -1,6 +1,5 @@
-// One run of a program among faults.
-// Takes: the program's words and what shall go wrong around it. Gives: how it ended and what it
-// said.
+// One run of a program under faults.
+// Takes: the program's arguments and the faults. Gives: how it ended, and its output.
 #pragma once
 
 #include <sys/resource.h>
@@ -13,10 +12,10 @@ namespace etlc::faults {
 
 enum class Stream { open, full, closed };
 
-/// What is around a process. As it stands, nothing goes wrong.
+/// The surroundings of a process. The default has no faults.
 struct Surroundings {
-    std::string injection;  ///< as inject.cpp takes it
-    std::string counts;     ///< the file that it writes the number of calls to
+    std::string injection;  ///< in the format of inject.cpp
+    std::string counts;     ///< the file for the counts of calls
     Stream input = Stream::open;
     Stream output = Stream::open;
     Stream error = Stream::open;
@@ -32,7 +31,7 @@ struct Outcome {
     std::string error;
 };
 
-/// A process that has been started.
+/// A running process.
 class Process {
 public:
     Process(const std::vector<std::string>& words, const std::string& folder,
@@ -49,7 +48,7 @@ private:
     std::optional<double> killed_after_;
 };
 
-/// Where the library is that Surroundings::injection needs.
+/// Returns the path of the library for Surroundings::injection.
 inline constexpr const char* kInjectionLibrary = ETLC_INJECTION_LIBRARY;
 
 }  // namespace etlc::faults

@@ -1,6 +1,6 @@
-// The calls of etlc that the campaign disturbs, each in a folder with all that it reads.
-// Keeps true: before a run its output files are there with what an earlier spec gave, so that a
-// lost or mixed output shows.
+// The commands that the campaign disturbs, each in a folder with all its inputs.
+// Keeps true: before a run the output files hold the results of an earlier spec, so that a lost or
+// mixed output shows.
 #pragma once
 
 #include <filesystem>
@@ -17,11 +17,12 @@ using Files = std::map<std::string, std::string>;  ///< content by name
 struct Command {
     std::string name;
     std::vector<std::string> words;  ///< after etlc
-    std::vector<std::string> files;  ///< that it writes
+    std::vector<std::string> files;  ///< the outputs
     Files before{};
     Files after{};
     Outcome undisturbed{};
-    std::map<std::string, long> calls{};  ///< of undisturbed run, by the names of inject.cpp
+    std::map<std::string, long> calls{};  ///< counts of an undisturbed run, by the names of
+                                          ///< inject.cpp
 };
 
 class Scene {
@@ -33,16 +34,16 @@ public:
     ~Scene();
 
     const std::vector<Command>& commands() const { return commands_; }
-    /// Puts back what was there before the call.
+    /// Restores the files from before the call.
     void restore(const Command& command) const;
     Process start(const Command& command, const Surroundings& around) const;
     Outcome run(const Command& command, const Surroundings& around) const;
-    /// Of the files that it writes, those that are there.
+    /// Returns the existing output files.
     Files written(const Command& command) const;
-    /// Files that nobody asked for.
+    /// Returns unexpected files.
     std::vector<std::string> left_over(const Command& command) const;
     std::filesystem::path path(const std::string& name) const { return folder_ / name; }
-    /// The spec of the first command as it was before: its name.
+    /// The name of the earlier version of the first command's spec.
     std::string write_earlier_spec();
 
 private:

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# budget_test.sh ETLC SOURCE CXX: what the head of a generated header says of a class, `state B` and
-# `targets B`, is what nm finds in an object of it, on x86-64, on a Cortex-M4F and on RV32IMAFC.
+# budget_test.sh ETLC SOURCE CXX: `state B` and `targets B` in the head of a generated header equal
+# the figures of nm for an object, on x86-64, Cortex-M4F and RV32IMAFC.
 set -euo pipefail
 etlc=$1 source=$2 cxx=$3
 runtime=$source/runtime/include
@@ -108,10 +108,10 @@ monitor reach = F (near && there && ahead);
 END
 cp "$source/tests/spec/ok/adaptive.etl" "$source/tests/spec/ok/adaptive.thresholds.json" .
 
-# The figures of "all together": state, targets, and targets without SIMD, where these are others.
+# The figures of "all together": state, targets, and targets without SIMD if these differ.
 figures() { sed -n 's|^//   all together *||p' "$1"; }
 sizeof() { "$1nm" -S --radix=d "$2" | awk '$4 == "monitor_size" { print $2 + 0 }'; }
-targets() {  # of arrays alone, not of the functions that are named after them
+targets() {  # only arrays, not functions named after them
     "$1nm" -S -C --radix=d "$2" |
         awk '$3 ~ /[rRdDvVu]/ && /targets::|projections::|kColumns/ { sum += $2 }
              END { print sum + 0 }'
@@ -152,12 +152,12 @@ $spec::Verdicts step($spec::Monitor& m, const $spec::Inputs& in) { return m.step
 END
     echo "$name: state $state, targets $vectors, without SIMD $scalar, in a file $file"
     local word=$state wide=$state
-    if [ "$file" != 0 ]; then  # a pointer besides
+    if [ "$file" != 0 ]; then  # plus a pointer
         word=$((state + 4))
         wide=$(((state + 8 + 7) / 8 * 8))
     fi
     if [ "$(uname -m)" = x86_64 ]; then
-        # The kernels once, and not for each instruction set: their targets are the same.
+        # The kernels once, not for each instruction set: their targets are the same.
         holds "" "$name" "$wide" $((vectors - file)) -O1 -DETLMON_NO_DISPATCH
     fi
     holds arm-none-eabi- "$name" "$word" $((scalar - file)) -Os -mcpu=cortex-m4 -mthumb \

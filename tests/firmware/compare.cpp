@@ -1,7 +1,7 @@
-// compare FIRMWARE.txt HOST.txt: two outputs of examples/firmware_loop, verdict by verdict.
-// The versions of the kernel add in other orders, so a robustness that rests on the one long
-// distance may differ by twice its rounding bound, one that rests on a projection by as little, and
-// a status where the robustness is that small. Everything else is equal to the bit.
+// compare FIRMWARE.txt HOST.txt: compares two outputs of examples/firmware_loop, verdict by
+// verdict. The kernels add in different orders, so a robustness from the one long distance may
+// differ by twice its rounding bound, one from a projection by a few last places, and a status if
+// the robustness is that small. Everything else is equal to the bit.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -21,9 +21,9 @@ float number(std::uint32_t bits) {
     return x;
 }
 
-/// How far two robustness values of this monitor class may be apart.
+/// Returns the greatest difference of two robustness values of this monitor class.
 double bound(const std::string& name, float robustness) {
-    constexpr double kThreshold = 22.5;  // of grasp's predicate
+    constexpr double kThreshold = 22.5;  // of the predicate of grasp
     constexpr double kProjected = 1e-5;  // sums of 12 products below 1, then short distances
     if (name == "sort" && std::isfinite(robustness)) return kProjected;
     if (name != "grasp" || !std::isfinite(robustness)) return 0;

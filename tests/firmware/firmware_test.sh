@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # firmware_test.sh ETLC SOURCE CXX: the monitors of examples/firmware_loop on a Cortex-M4F and an
-# RV32IMAFC in QEMU answer as on the host: to the bit if the host adds in the same order, else
-# within the stated bounds. Their objects have no library symbol that is not allowed, no exception
-# tables, no data that needs initialising, and code within its limit. Interrupts at any instruction
-# of a step change nothing.
+# RV32IMAFC in QEMU agree with the host: to the bit if the host adds in the same order, else within
+# the stated bounds. Their objects have only the allowed library symbols, no exception tables, no
+# initialised data, and code within its limit. Interrupts at any instruction of a step change
+# nothing.
 set -euo pipefail
 etlc=$1 source=$2 cxx=$3
 loop=$source/examples/firmware_loop
@@ -26,7 +26,7 @@ verdicts() { grep -v instructions "$1"; }
 cmp <(verdicts "$box/cortex_m4_loop.txt") <(verdicts "$box/rv32_loop.txt") ||
     fail "the boards differ"
 if [ "$(uname -m)" = x86_64 ] &&
-    grep -qw fma /proc/cpuinfo; then  # scalars, one sum a row, fused: what the boards do
+    grep -qw fma /proc/cpuinfo; then  # scalars, one sum per row, fused, like the boards
     CXX=$cxx HOST_FLAGS="-DETLMON_PORTABLE -mfma" \
         sh "$loop/build.sh" "$etlc" "$runtime" "$box" host
     sh "$loop/run.sh" "$box" host >/dev/null
@@ -34,7 +34,7 @@ if [ "$(uname -m)" = x86_64 ] &&
         fail "the boards and a host without vectors differ"
 fi
 
-# The same monitors as files that hold the portable runtime: the same verdicts, to the bit.
+# The same monitors with the portable runtime in the file give the same verdicts, to the bit.
 ETLC_OPTIONS=--standalone sh "$loop/build.sh" "$etlc" "$box/none" "$box/alone" cortex_m4 rv32
 for board in cortex_m4 rv32; do
     timeout 120 sh "$loop/run.sh" "$box/alone" "$board" >/dev/null
@@ -43,8 +43,8 @@ for board in cortex_m4 rv32; do
     grep instructions "$box/alone/${board}_loop.txt" | sed 's/^/standalone: /' || true
 done
 
-# A timer's interrupt judges what the loop measures, and fills what the loop reads. Every verdict
-# is that of a run without interrupts.
+# A timer interrupt judges the measurements of the loop, and fills its inputs. Every verdict equals
+# that of a run without interrupts.
 for board in cortex_m4 rv32; do
     timeout 120 sh "$loop/run.sh" "$box" "$board" interrupts
     awk '$2 == "000007d0" && $3 > "00000064" && $4 == "00000000" { good++ }
@@ -52,7 +52,7 @@ for board in cortex_m4 rv32; do
         fail "$board: interrupts change verdicts, or hardly any came during a step"
 done
 
-# Why verdicts are what they are: the same samples, their distances to the bit.
+# The deciding samples are the same, their distances to the bit.
 for board in cortex_m4 rv32; do
     timeout 120 sh "$loop/run.sh" "$box" "$board" why >/dev/null
 done
@@ -65,8 +65,8 @@ for name in aligned level called; do
     grep -q "^$name " "$box/rv32_why.txt" || fail "no verdict is decided by $name"
 done
 
-# Other parameters, on trial and then in place of the first: the same lines everywhere, every
-# damaged page refused.
+# Other parameters, first on trial and then active: the same lines everywhere, and every damaged
+# page is refused.
 for board in cortex_m4 rv32; do
     timeout 120 sh "$loop/run.sh" "$box" "$board" retarget >/dev/null
 done
@@ -81,7 +81,7 @@ awk '$1 == "parameters" { $2 == "00000000" ? taken++ : refused++ }
      END { exit taken != 1 || refused < 10 || differing != 2 }' "$box/rv32_retarget.txt" ||
     fail "damage was taken, or the trial found nothing"
 
-# What a flight recorder writes: the same bytes everywhere, which etlc incident reads.
+# The flight recorder writes the same bytes everywhere, and etlc incident reads them.
 for board in cortex_m4 rv32; do
     timeout 120 sh "$loop/run.sh" "$box" "$board" recorder >/dev/null
 done
@@ -100,7 +100,7 @@ for incident in 0 1 2 3; do
 done
 
 # Each monitor alone, as a program would compile it.
-objects() {  # PREFIX FLAG...: what the object of a monitor refers to and holds
+objects() {  # PREFIX FLAG...: lists symbols and sections of a monitor's object
     local prefix=$1
     shift
     for spec in grasp dock hover belt gauge sort dock_retargetable; do
@@ -134,7 +134,7 @@ objects riscv64-unknown-elf- --specs=picolibc.specs -march=rv32imafc -mabi=ilp32
 objects arm-none-eabi- -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard
 grep instructions "$box/rv32_loop.txt"
 
-# What other parameters add to a class: checked, and taken.
+# The cost of changing parameters: checking and switching.
 cat >"$box/take.cpp" <<'END'
 #include "dock_retargetable.hpp"
 using dock_retargetable::Monitor;
@@ -154,8 +154,9 @@ foreign=$(arm-none-eabi-nm -u "$box/take.o" | awk '{ print $2 }' | grep -v -x -E
 [ -z "$foreign" ] && [ "$taking" -le 1600 ] ||
     fail "retarget() has more code than its limit, or refers to" $foreign
 
-# One predicate of 4 x 384, a scalar one, F (a && F b), bounds and telemetry: what a step executes;
-# beside it what only a missing embedding and distances that overflow, vanish or are exactly 0 need.
+# One predicate of 4 x 384, a scalar one, F (a && F b), bounds and telemetry: the instructions of a
+# step, and beside it the code only for a missing embedding and for distances that overflow,
+# underflow or are exactly 0.
 read -r step reset rare <<<"$(arm-none-eabi-nm -S -C --radix=d "$box/grasp.o" | awk '
     $3 !~ /[tTwW]/ { next }
     $4 ~ /^reset/ { r += $2; next }

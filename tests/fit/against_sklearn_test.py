@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""against_sklearn_test.py ETLC: every method of `etlc fit` on one set of episodes, compared with
-scikit-learn, or with its definition in numpy; the same bytes for any number of threads, whatever
-the files are called and in whatever order they are given."""
+"""against_sklearn_test.py ETLC: compares every method of `etlc fit` on one set of episodes with
+scikit-learn, or with its definition in numpy; the bytes are the same for any number of threads, and
+any names and order of the files."""
 import json
 import pathlib
 import re
@@ -40,7 +40,7 @@ METRIC = "fitted(discriminant, of = z, where = holds)"
 
 
 def make_episodes(folder, random):
-    """Drifting frames, shifted where it holds; a few of them missing."""
+    """Drifting frames, shifted where the predicate holds; a few of them missing."""
     mix = random.normal(size=(3, 12)) * 2
     shift = random.normal(size=12) * 1.5
     episodes = []
@@ -97,7 +97,7 @@ def check_targets(fitted, entries, frames, holds, episodes):
     assert squared <= 1.02 * best, f"kmeans: {squared / best:.4f} times the objective of sklearn"
 
     assert len(set(entries["episodes"])) == len(episodes)
-    known = {}  # by hash, which episode it is
+    known = {}  # the hash identifies the episode
     for row, medoid in zip(fitted["anchors"], entries["entries"]["anchors"]["medoids"]):
         step = medoid["step"]
         (found,) = [

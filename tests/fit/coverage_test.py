@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""coverage_test.py ETLC: 200 times over, fit on some episodes and calibrate on others. A new
-episode is then covered with probability k / (n + 1) for the rank k among n scores, which is at
-least 1 - alpha; it is not where the threshold is taken, in spite of `etlc calibrate`, from the
-episodes that were fitted on."""
+"""coverage_test.py ETLC: fits on some episodes and calibrates on others, 200 times. A new episode
+is then covered with probability k / (n + 1) for the rank k among n scores, which is at least 1 -
+alpha. It is not if the threshold comes, in spite of `etlc calibrate`, from the episodes used for
+fitting."""
 import json
 import math
 import pathlib
@@ -14,7 +14,7 @@ import numpy as np
 
 ALPHA = 0.2
 DRAWS = 200
-FITTED = 6  # episodes a draw
+FITTED = 6  # episodes per draw
 CALIBRATED = 12  # rank 11 of 13: well above 1 - alpha, so that chance hides nothing
 FRESH = 20
 SPEC = """
@@ -30,7 +30,7 @@ monitor m = F holds;
 
 
 def episode(random):
-    """Few frames in many dimensions: whoever fits on them finds more than there is."""
+    """Few frames in many dimensions, so a fit overestimates the separation."""
     x = random.normal(size=6)
     x[:2] = -1, 1
     z = random.normal(size=(6, 24)) + 0.5 * random.normal(size=24)
@@ -38,7 +38,7 @@ def episode(random):
 
 
 def score(z, x, fitted):
-    """The largest distance of a frame at which it holds."""
+    """Returns the largest distance of a frame at which the predicate holds."""
     along = (z - fitted["L-offset"]).astype(float) @ fitted["L"][0].astype(float)
     return np.abs(along - fitted["mean"][0, 0])[x <= 0].max()
 
@@ -48,7 +48,7 @@ def rank(episodes):
 
 
 def draw(etlc, folder, random):
-    """The parts of new episodes that are covered by the two thresholds."""
+    """Returns the fractions of new episodes that the two thresholds cover."""
     parts = {"demos": FITTED, "others": CALIBRATED}
     episodes = {part: [episode(random) for _ in range(n)] for part, n in parts.items()}
     for part, all_ in episodes.items():

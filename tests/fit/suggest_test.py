@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""suggest_test.py ETLC: what `etlc fit --suggest` prints is a spec. Pasted, every suggestion gives
-the figure that stood beside it; where a contrast is needed, a contrast wins."""
+"""suggest_test.py ETLC: `etlc fit --suggest` prints lines of a spec. Pasted, every suggestion gives
+the figure beside it; if a contrast is needed, a contrast wins."""
 import json
 import pathlib
 import re
@@ -20,8 +20,8 @@ OLD_LINE = SPEC.splitlines()[3]
 
 
 def make_episodes(folder, random):
-    """What tells the classes apart is small beside what differs in every frame, and beside noise:
-    how far a frame is from one class says less than how much further it is from the other."""
+    """The difference of the classes is small beside the noise of every frame: the distance
+    to one class separates worse than the difference of the distances to both."""
     apart = random.normal(size=24) * 0.5
     drift = random.normal(size=(4, 24)) * 2
     for number in range(15):

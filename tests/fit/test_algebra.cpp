@@ -1,19 +1,17 @@
-// What fitting computes with, held to its definitions: written out plainly, in a few lines each.
+// Compares the algebra of fitting with its definitions, written out plainly.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 
-#include "fit/algebra/cholesky.hpp"
 #include "fit/algebra/clusters.hpp"
-#include "fit/algebra/eigenvectors.hpp"
+#include "fit/algebra/dense.hpp"
 #include "fit/algebra/moments.hpp"
-#include "fit/algebra/products.hpp"
 #include "fit/blocks.hpp"
 
 namespace etlc::fit {
 namespace {
 
-/// The same numbers at every call.
+/// Returns the same numbers at every call.
 Matrix random_matrix(Eigen::Index rows, Eigen::Index columns) {
     std::srand(7);
     return Matrix::Random(rows, columns);
@@ -75,12 +73,12 @@ TEST(Eigenvectors, AreOrthogonalWhereEigenvaluesAreEqualToo) {
     expect_eigenpairs(Matrix::Zero(90, 90), 8, "nothing");
 }
 
-/// Of its lower triangle.
+/// Uses the lower triangle.
 Matrix whole(const Matrix& lower) {
     return lower.selfadjointView<Eigen::Lower>();
 }
 
-/// Within the classes of these frames, by definition.
+/// Returns the scatter within the classes of these frames, by definition.
 Matrix within(const Matrix& frames, const std::vector<std::int8_t>& classes) {
     Matrix result = Matrix::Zero(frames.rows(), frames.rows());
     for (const int c : {0, 1}) {
@@ -96,8 +94,8 @@ Matrix within(const Matrix& frames, const std::vector<std::int8_t>& classes) {
     return result;
 }
 
-/// Frames in two parts, each longer than a block, asked about by two needs at once: what is known
-/// of all, and what is unknown of some.
+/// Frames in two parts, each longer than a block, collected for two needs at once: one knows all
+/// labels, the other only some.
 TEST(Moments, OfPartsMergedAreThoseOfAllFrames) {
     const Matrix frames = random_matrix(6, 1500).cast<float>().cast<double>();
     std::vector<std::int8_t> known, partly;

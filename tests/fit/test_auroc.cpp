@@ -1,4 +1,4 @@
-// The area under the ROC curve, held to its definition: pairs of frames, counted one by one.
+// Compares the area under the ROC curve with its definition: pairs of frames, counted one by one.
 #include "episodes/ranking/auroc.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using PerEpisode = std::vector<std::uint32_t>;
 
 constexpr std::uint32_t kEpisodes = 6;
 
-/// Of few scores: ties are common.
+/// Few distinct scores, so ties are common.
 std::vector<Scored> random_frames(std::mt19937& random, std::size_t most) {
     std::vector<Scored> frames(random() % most);
     for (Scored& frame : frames)
@@ -47,7 +47,7 @@ void expect_near(const std::optional<double>& found, const std::optional<double>
     }
 }
 
-/// What the resamples of `weights` give.
+/// Returns the figures of the resamples `weights`.
 std::vector<std::optional<double>> resampled(const std::vector<Scored>& frames,
                                              const PerEpisode& folds,
                                              const std::vector<PerEpisode>& weights) {
@@ -100,7 +100,7 @@ TEST(FramesByScore, KeepsScoresAndTheirOrder) {
     EXPECT_EQ(frames.negatives(), 4U);
 }
 
-/// The same figure as by pairs, and for its interval what they say without each episode.
+/// The figure equals the count of pairs, and the interval those without each episode.
 TEST(Auroc, LeavesOutOneEpisodeAtATime) {
     std::mt19937 random(4);
     int intervals = 0;
@@ -156,7 +156,7 @@ TEST(Auroc, LeavesOutOneEpisodeAtATime) {
 
 TEST(Auroc, SaysOfEachFrameHowManyPairsAreInOrder) {
     using Frames = std::vector<RankedFrame>;
-    // The second group is of another scale.
+    // The second group has another scale.
     std::vector<Frames> groups{Frames{{{3, 0, true}, 0}, {{2, 0, false}, 1}, {{2, 0, true}, 2}},
                                Frames{{{80, 1, false}, 0}, {{70, 1, true}, 1}}};
     const auto found = auroc(groups, 2);

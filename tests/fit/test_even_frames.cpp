@@ -1,4 +1,5 @@
-// Frames taken from an episode: evenly, at most so many, and away from where a truth changes.
+// Tests the choice of frames of an episode: evenly spaced, at most a given number, and away from
+// changes of a truth.
 #include <gtest/gtest.h>
 
 #include "fit/even_frames.hpp"
@@ -6,7 +7,7 @@
 namespace etlc::fit {
 namespace {
 
-/// The steps taken of an episode, a letter a step: + it holds, . it does not, ? the point is
+/// The steps of an episode, one letter each: + the truth holds, . it does not, ? the point is
 /// missing.
 std::vector<std::uint64_t> taken(const std::string& episode, std::size_t most, std::uint64_t away) {
     EvenFrames frames(most, away);

@@ -1,5 +1,5 @@
-// What is kept of the episodes in memory changes nothing but time: with all of it kept, with none,
-// and with room for some, `etlc fit` gives the same bytes.
+// Keeping episodes in memory affects only time: with all, none, or some of them kept, `etlc fit`
+// gives the same bytes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ truth both = x > -1;
 monitor m = F (p && q && both);
 )";
 
-/// Drifting points, some of their samples missing.
+/// Drifting points with some missing samples.
 class Episodes {
 public:
     Episodes() : folder_(fs::temp_directory_path() / fmt::format("readings.{}", ::getpid())) {
@@ -67,7 +67,7 @@ private:
     fs::path folder_;
 };
 
-/// The file and the report.
+/// Returns the file and the report.
 std::string fitted(const check::Model& model, const Request& request) {
     diag::Sink sink;
     const auto result = fit(model, request, sink);

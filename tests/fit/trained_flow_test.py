@@ -1,7 +1,7 @@
-"""What `etlc fit` calls logpzo, held to a flow that is trained as FAIL-Detect trains its own
+"""Compares `logpzo` of `etlc fit` with a flow that is trained like that of FAIL-Detect
 (Xu et al., "Can We Detect Failures Without Failure Data?", RSS 2025): x_t = (1 - t) x + t noise,
 loss |v(x_t, t) - (noise - x)|^2, score |x + v(x, 0)|^2. The flow has two linear layers for x and
-a hidden layer with tanh for t; nothing here knows the closed form.
+a hidden layer with tanh for t; it does not use the closed form.
 Usage: trained_flow_test.py ETLC"""
 import pathlib
 import subprocess
@@ -38,7 +38,7 @@ def forward(p, x, t):
 
 
 def gradients(p, x, t, error):
-    """Of the sum of squares of the error, halved."""
+    """Gradient of half the sum of squared errors."""
     _, hidden, inner = forward(p, x, t)
     back_x = error @ p["x2"].T
     back_t = error @ p["t2"].T * (1 - inner**2)
@@ -83,7 +83,7 @@ def fitted(etlc, folder, frames, good):
 def main(etlc):
     random = np.random.default_rng(4)
     frames = draw(random, 20_000)
-    away = frames[:200] + 6  # what is not a success, for the labels to have two classes
+    away = frames[:200] + 6  # a failure, so that the labels have two classes
     p = train(random, frames)
     with tempfile.TemporaryDirectory() as name:
         n = fitted(etlc, pathlib.Path(name), np.concatenate([frames, away]),

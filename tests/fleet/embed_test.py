@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""embed_test.py ETLC: the shards of `etlc embed` make, for any number of them and in any order, the
-files that one process makes, each recording once; with --embedded a spec reads another file."""
+"""embed_test.py ETLC: the shards of `etlc embed` write, for any number of shards in any order, the
+files of one process, each recording once; with --embedded a spec reads another file."""
 import os
 import pathlib
 import random
@@ -36,7 +36,7 @@ def call(*words, status=0):
 
 
 def png(path, colour):
-    """Of two pixels."""
+    """Writes an image of two pixels."""
     def chunk(kind, data):
         return (struct.pack(">I", len(data)) + kind + data +
                 struct.pack(">I", zlib.crc32(kind + data)))

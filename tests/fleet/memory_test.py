@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""memory_test.py ETLC: what calibrate and evaluate take of memory does not depend on how
-long episodes are; what goes to temporary files says so where they cannot be made."""
+"""memory_test.py ETLC: the memory of calibrate and evaluate does not depend on the length of
+episodes; an error reports temporary files that cannot be made."""
 import os
 import pathlib
 import subprocess
@@ -21,7 +21,7 @@ truth near = x < 1;
 truth close = x < 0.5;
 monitor keeps = G (close -> near);
 """
-EPISODES, SHORT, LONG = 60, 500, 20_000  # 1.2 million frames: 10 MB a predicate, sorted
+EPISODES, SHORT, LONG = 60, 500, 20_000  # 1.2 million frames: 10 MB per predicate, sorted
 
 
 def make_episodes(folder, steps, seed):
@@ -34,7 +34,7 @@ def make_episodes(folder, steps, seed):
 
 
 def peak(*words):
-    """The most resident bytes."""
+    """Returns the peak resident bytes."""
     with open("said", "w", encoding="utf-8") as said:
         process = subprocess.Popen([ETLC, *words], stdout=said, stderr=said)
     _, status, usage = os.wait4(process.pid, 0)
@@ -56,7 +56,7 @@ def main():
     pathlib.Path("lasting.etl").write_text(SPEC, encoding="utf-8")
     *short, _ = peaks(SHORT)
     *long, calibrate = peaks(LONG)
-    # Buffers fill; 40 times the frames would be ten times the memory if it were kept.
+    # Buffers fill up; 40 times the frames would take ten times the memory if it were kept.
     for less, more in zip(short, long):
         assert more - less < 24e6, (short, long)
     refused = subprocess.run([ETLC, *calibrate], capture_output=True, text=True,

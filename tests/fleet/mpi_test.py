@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""mpi_test.py ETLC MPIRUN: two ranks of an MPI job give what one process gives; a job that is
-killed leaves the parts that were done, and --resume goes on with them."""
+"""mpi_test.py ETLC MPIRUN: two ranks of an MPI job give the results of one process; a killed job
+leaves its finished parts, and --resume continues with them."""
 import os
 import pathlib
 import signal
@@ -44,7 +44,7 @@ def call(*words, status=0):
 
 
 def same(*words):
-    """What two ranks print and write is what one process does; no part is left."""
+    """Two ranks print and write the same as one process; no part is left."""
     printed = call(ETLC, *words)
     one = pathlib.Path("out.json").read_bytes()
     os.remove("out.json")
@@ -54,7 +54,7 @@ def same(*words):
 
 
 def contents_are_only_a_memory(words):
-    """Of whom episodes are, whatever lies where ranks keep it."""
+    """Episodes belong to the same ranks wherever the parts are kept."""
     shard = [*words, "--shard", "1/3", "--part", "a.part"]
     call(ETLC, *shard)
     part = pathlib.Path("a.part").read_bytes()
@@ -78,7 +78,7 @@ def contents_are_only_a_memory(words):
 
 
 def processes_with(word):
-    """Of this test, with this argument."""
+    """Processes of this test with this argument."""
     found = []
     for path in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
         try:
@@ -102,7 +102,7 @@ def killed_and_resumed(words, one):
         os.kill(process, signal.SIGKILL)
     assert job.wait() != 0 and not os.path.exists("out.json")
     while processes_with("--part"):
-        time.sleep(0.01)  # what a rank had begun ends by itself
+        time.sleep(0.01)  # processes that a rank started end by themselves
     done = {path: path.stat().st_mtime_ns for path in parts.glob("*.part")}
     assert 0 < len(done) < 32, len(done)
     refused = call(*MPIRUN, *words, "--parts", "kept", status=1)

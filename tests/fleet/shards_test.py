@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """shards_test.py ETLC: calibrate and evaluate give, from the parts of any number of shards in any
-order, the bytes that one process gives; a part that is missing, there twice, of another call, cut
-or changed is named, and nothing is written."""
+order, the bytes of one process; a part that is missing, repeated, from another call, cut or changed
+is reported, and nothing is written."""
 import os
 import pathlib
 import random
@@ -47,12 +47,12 @@ def make_episodes(folder, count, seed):
 
 
 def result(prefix):
-    """What a call has left, and what it printed."""
+    """Returns the output files of a call, and its messages."""
     return {path.name: path.read_bytes() for path in pathlib.Path().glob(f"{prefix}.*")}
 
 
 def shards(words, count, seed):
-    """The parts, in some order."""
+    """Returns the parts in random order."""
     order = list(range(1, count + 1))
     random.Random(seed).shuffle(order)
     read = 0
@@ -65,7 +65,7 @@ def shards(words, count, seed):
 
 
 def same_as_one_process(words, episodes, counts):
-    """`words` write files that are called out.something."""
+    """Runs `words`, which write files named out.something."""
     printed = call(*words)
     one = result("out")
     assert one, words

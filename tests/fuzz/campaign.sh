@@ -1,7 +1,7 @@
 #!/bin/sh
-# campaign.sh SECONDS [TARGET...]: fuzzes every target, or those named, for SECONDS each and stops
-# at the first finding. Run it in a build folder of the preset `sanitized`; it keeps what the
-# targets learn in its tests/fuzz/found for the next time.
+# campaign.sh SECONDS [TARGET...]: fuzzes every target, or the named ones, for SECONDS each and
+# stops at the first finding. Run it in a build folder of the preset `sanitized`; it keeps new
+# inputs in its tests/fuzz/found for the next time.
 set -eu
 seconds=${1:?usage: campaign.sh SECONDS [TARGET...]}
 shift

@@ -22,7 +22,7 @@ public:
     }
 
 private:
-    /// 0 where no bytes are left, which ends every formula.
+    /// Returns the next byte, or 0 at the end, which ends every formula.
     unsigned choice(unsigned count) { return at_ < size_ ? bytes_[at_++] % count : 0; }
     bool has_room() const { return text_.size() < kMostSpecBytes; }
 
@@ -103,7 +103,7 @@ private:
         write(out, levels - 1);
     }
 
-    /// Of a prefix monitor, over the present and the past alone.
+    /// Makes a formula of a prefix monitor, over the present and the past.
     void past(std::string& out, int levels, unsigned kind) {
         const bool outside = future_;
         future_ = future_ && sliding_;
@@ -124,8 +124,8 @@ private:
     std::string text_;
     std::size_t lets_ = 0;
     std::size_t monitors_ = 0;
-    bool future_ = true;    ///< future operators may stand here
-    bool sliding_ = false;  ///< and must have an upper bound
+    bool future_ = true;    ///< future operators are allowed here
+    bool sliding_ = false;  ///< and need an upper bound
 };
 
 }  // namespace

@@ -1,7 +1,6 @@
-// Deep random specs that bytes decide on: each byte is one choice of the grammar.
-// Takes: bytes. Gives: a spec that parses, of at most about kMostSpecBytes. Keeps true: the same
-// bytes give the same spec; a changed byte changes the spec from there on, which is what libFuzzer
-// works with.
+// Deep random specs chosen by bytes: each byte is one choice of the grammar.
+// Takes: bytes. Gives: a valid spec of at most about kMostSpecBytes. Keeps true: the same bytes
+// give the same spec; a changed byte changes the spec only from there on, which suits libFuzzer.
 #pragma once
 
 #include <cstddef>

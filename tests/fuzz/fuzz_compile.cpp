@@ -1,6 +1,6 @@
-// Specs of at most 10 KB through all stages and back ends: an answer comes soon, and no text is out
-// of proportion. Bytes that begin with "spec" are the spec; others decide on a deep random one. How
-// long an input may take is up to libFuzzer's -timeout, and to replay.cpp.
+// Compiles specs of at most 10 KB through all stages and back ends: the result comes soon, and no
+// text is out of proportion. Bytes that begin with "spec" are the spec; others choose a deep random
+// one. libFuzzer's -timeout and replay.cpp limit the time of an input.
 #include "deep_spec.hpp"
 #include "diag/render.hpp"
 #include "driver/compile/compile.hpp"
@@ -11,7 +11,8 @@ namespace {
 
 using namespace etlc;
 
-/// Many times what any answer needs: a text that grows with the tree of a formula is far larger.
+/// Many times the size of any useful result; a text that grows with the tree of a formula is far
+/// larger.
 constexpr std::size_t kMostText = 8'000'000;
 constexpr std::size_t kMostMessage = 20'000;
 
@@ -45,8 +46,7 @@ void compile(const source::File& file, check::Values values) {
 int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
     const std::string_view text = fuzz::text(bytes, size).substr(0, fuzz::kMostSpecBytes);
     const bool is_text = text.starts_with("spec");
-    if (is_text && text.find("load") != std::string_view::npos)
-        return 0;  // no files but those of the test
+    if (is_text && text.find("load") != std::string_view::npos) return 0;  // only files of the test
     const source::File file("a.etl", is_text ? std::string(text) : fuzz::deep_spec(bytes, size));
     compile(file, check::Values::robustness);
     compile(file, check::Values::boolean);

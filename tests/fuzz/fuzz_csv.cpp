@@ -1,4 +1,4 @@
-// .csv traces: any bytes are steps of the channels asked for, or a message with a place.
+// Reads .csv traces: any bytes give steps of the requested channels, or an error with a place.
 #include <cmath>
 
 #include "data/traces/trace_formats.hpp"

@@ -1,6 +1,6 @@
-// .h5 through the reading process: whatever the bytes do to libhdf5 there, here it is a sound trace
-// or a message. Seeds named crashes_* are damaged files, found by changing bytes of trace.h5 at
-// random, on which libhdf5 1.10.8 dies.
+// Reads .h5 through the reader process: whatever the bytes do to libhdf5 there, the result is a
+// valid trace or an error. Seeds named crashes_* are damaged files, found by changing bytes of
+// trace.h5 at random, on which libhdf5 1.10.8 crashes.
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -52,7 +52,7 @@ void step_through(const std::string& path, const std::vector<data::Channel>& cha
         for (std::size_t c = 0; c < channels.size(); ++c)
             fuzz::require(sample.values[c].size() == channels[c].width,
                           "a sample is as wide as its channel");
-        if (steps == 1000) return;  // a header may promise any number of zeros
+        if (steps == 1000) return;  // a header may declare any number of zeros
     }
 }
 

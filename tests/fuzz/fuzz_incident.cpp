@@ -1,5 +1,5 @@
-// Files of incidents: any bytes are an incident whose rows have one shape, or a message. The
-// checksum is made right, since hardly any other bytes come further than it.
+// Reads incidents: any bytes give an incident whose rows have one shape, or an error. The target
+// corrects the checksum, because hardly any other input would pass it.
 #include "data/files/hash.hpp"
 #include "data/incident.hpp"
 #include "fuzz_target.hpp"

@@ -1,6 +1,6 @@
-// The language server: any bytes as messages are answered, one answer a request, and a document
-// stays sound under any edits. The first byte says what the others are: a client's bytes, a message
-// a line, or a text and edits of it.
+// Runs the language server: any bytes get one answer per request, and a document stays valid under
+// any edits. The first byte selects the meaning of the others: a client's bytes, one message per
+// line, or a text and its edits.
 #include <nlohmann/json.hpp>
 
 #include "../lsp/sound_format.hpp"
@@ -53,7 +53,7 @@ private:
 
 constexpr const char* kUri = "untitled:a.etl";
 
-/// The bytes as they come, in two pieces.
+/// Sends the bytes unchanged, in two pieces.
 void send_bytes(std::string_view bytes) {
     Client client;
     lsp::Reader reader;
@@ -65,7 +65,7 @@ void send_bytes(std::string_view bytes) {
     }
 }
 
-/// Each line as the content of a message, behind a good beginning.
+/// Sends each line as the content of a message, after a valid beginning.
 void send_lines(std::string_view bytes) {
     Client client;
     client.ask("initialize", {{"capabilities", Json::object()}});
@@ -77,7 +77,7 @@ void send_lines(std::string_view bytes) {
     }
 }
 
-/// What is not UTF-8 cannot be a part of a message.
+/// Bytes that are not UTF-8 cannot be part of a message.
 std::string as_text(std::string_view bytes) {
     return Json::parse(Json(bytes).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
@@ -93,7 +93,7 @@ void edit(std::string_view bytes) {
     client.tell("textDocument/didOpen", {{"textDocument", document}});
     client.catch_up();
     bytes.remove_prefix(std::min(bytes.size(), cut + 1));
-    // Four bytes say where an edit begins and ends, the rest up to a zero byte is put there.
+    // Four bytes give the begin and end of an edit; the rest up to a zero byte is inserted.
     for (int edits = 0; edits < 8 && bytes.size() > 4; ++edits) {
         const auto number = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
         const Json start{{"line", number(0)}, {"character", number(1)}};

@@ -1,4 +1,4 @@
-// .npy from memory: any bytes are an array that holds what its shape says, or a message.
+// Reads .npy from memory: any bytes give an array that matches its shape, or an error.
 #include "data/arrays/array.hpp"
 #include "fuzz_target.hpp"
 

@@ -1,4 +1,4 @@
-// .npz from memory, as an array to load and as a trace to step through.
+// Reads .npz from memory, as an array and as a trace.
 #include "data/arrays/array.hpp"
 #include "data/traces/trace_formats.hpp"
 #include "fuzz_target.hpp"

@@ -1,5 +1,5 @@
-// The parameters of a retargetable class: ready where every byte is the right one; and where the
-// checksum was made to fit, only numbers that can be what they stand for.
+// Reads parameters of a retargetable class: ready only if every byte is right; with a corrected
+// checksum, only if all numbers are valid.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -10,7 +10,7 @@
 
 namespace {
 
-/// A threshold on a distance, another, two directions, a metric and a diagonal.
+/// A threshold on a distance, another threshold, two directions, a metric and a diagonal.
 struct Layout {
     static constexpr std::uint64_t kShape = 0x0123456789abcdefU;
     static constexpr std::uint64_t kEncoder = 0x42U;
@@ -53,7 +53,7 @@ float number(const std::uint8_t* bytes, std::size_t at) {
     return x;
 }
 
-/// In double and by the library, other than the runtime does it.
+/// Computes in double with the standard library, unlike the runtime.
 bool can_be(const std::uint8_t* bytes) {
     for (const std::size_t at :
          {16U, 17U, 32U, 33U, 34U, 35U, 36U, 37U, 48U, 49U, 50U, 51U, 64U, 65U})
@@ -70,8 +70,8 @@ bool can_be(const std::uint8_t* bytes) {
 
 }  // namespace
 
-/// The first byte: where, counted from a multiple of 64, and whether the checksum is made to fit.
-/// The rest: the bytes, exclusive-or'ed with the right ones.
+/// The first byte gives the address, relative to a multiple of 64, and whether the checksum is
+/// corrected. The rest are bytes to combine with the right ones by exclusive or.
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     namespace fuzz = etlc::fuzz;
     if (size == 0) return 0;

@@ -1,4 +1,4 @@
-// Parquet: whatever the bytes are, they are cells or a reason, in bounded memory.
+// Reads Parquet: any bytes give cells or an error, in bounded memory.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@ namespace {
 using namespace etlc;
 using namespace etlc::data::parquet;
 
-constexpr int kMostRows = 50;  // a header may promise any number of nulls
+constexpr int kMostRows = 50;  // a header may declare any number of nulls
 
 std::vector<std::string> names_in(std::string_view file) {
     std::vector<std::string> names = {"q"};
@@ -20,7 +20,7 @@ std::vector<std::string> names_in(std::string_view file) {
     return names;
 }
 
-/// `key`: only rows where this column is 1; empty: all.
+/// `key`: only rows where this column is 1; empty: all rows.
 void read(std::string_view file, const std::vector<std::string>& names, const std::string& key) {
     Rows rows(file, names);
     if (!key.empty() && rows.rows() < 10000) rows.keep(key, 1);

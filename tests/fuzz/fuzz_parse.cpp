@@ -1,5 +1,5 @@
-// Specs: any bytes are a tree or a message with a place, and the text of a tree reads back as that
-// tree.
+// Parses specs: any bytes give a tree or an error with a place, and the printed tree parses to the
+// same tree.
 #include <nlohmann/json.hpp>
 
 #include "../unit/tree_text.hpp"
@@ -38,12 +38,12 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
     fuzz::require(sink.has_errors() || !spec.name.text.empty(), "a spec has a name");
 
     if (spec.name.text.empty())
-        spec.name.text = "a";  // what could be read of a broken file is a spec all the same
+        spec.name.text = "a";  // the readable part of a broken file is still a spec
     const std::string printed = ast::print(spec);
     const source::File again("b.etl", printed);
     diag::Sink nothing;
     const ast::Spec copy = parse::parse(again, nothing);
-    // Blanks that were left out may make a text too large.
+    // Blanks that were omitted may make a text too large.
     const bool too_large = printed.size() > parse::kMaxSpecBytes;
     fuzz::require(too_large || !nothing.has_errors(), "what is printed can be read");
     fuzz::require(too_large || tree_text::of(copy) == tree_text::of(spec),

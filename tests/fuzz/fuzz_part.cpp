@@ -1,6 +1,6 @@
-// Parts of results: any bytes are a message, or a part that is the same after writing and reading
-// it again; what it says of episodes is read or refused. The bytes are read as a file, and once
-// more as the body of one, for few inputs have a checksum that is right.
+// Reads parts of results: any bytes give an error, or a part that is the same after writing and
+// reading it again; its contents about episodes are read or refused. The bytes are read as a file,
+// and again as the body of one, since few inputs have a valid checksum.
 #include <string>
 
 #include "calibrate/scores.hpp"

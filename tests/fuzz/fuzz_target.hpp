@@ -1,6 +1,6 @@
-// What a fuzz target defines, and how it says that something is wrong.
-// Takes: bytes from libFuzzer or from replay.cpp. Gives: nothing; a broken promise stops the
-// program, which is a finding.
+// Declarations for fuzz targets, and their checks.
+// Takes: bytes from libFuzzer or from replay.cpp. Gives: nothing; a failed check stops the program,
+// which is a finding.
 #pragma once
 
 #include <cstddef>
@@ -17,14 +17,14 @@ inline std::string_view text(const std::uint8_t* data, std::size_t size) {
     return {reinterpret_cast<const char*>(data), size};
 }
 
-/// Unlike assert, in every kind of build.
+/// Checks in every kind of build, unlike assert.
 inline void require(bool promise, const char* words) {
     if (promise) return;
     std::fprintf(stderr, "broken promise: %s\n", words);
     std::abort();
 }
 
-/// A message says something, and only what a terminal may be sent.
+/// Checks that a message is not empty, and safe for a terminal.
 inline void require_printable(std::string_view message) {
     require(!message.empty() && message.size() < 4096, "a message has a sensible length");
     for (const char c : message)

@@ -1,5 +1,4 @@
-// The bytes of a file of targets: ready where they are the right ones at a right address, whatever
-// they are else.
+// Reads a file of targets: ready only if the bytes are right and at a right address.
 #include <algorithm>
 #include <cstring>
 
@@ -13,8 +12,8 @@ using Targets = etlmon::Targets<kSize, 0xc12570868ceac336u>;
 
 }  // namespace
 
-/// The first byte: where, counted from a multiple of 64. The rest: the bytes, exclusive-or'ed with
-/// the right ones.
+/// The first byte gives the address, relative to a multiple of 64. The rest are bytes to combine
+/// with the right ones by exclusive or.
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     namespace fuzz = etlc::fuzz;
     if (size == 0) return 0;

@@ -1,21 +1,21 @@
-// Thresholds files, and the descriptions in files of fitted things and of embeddings: any text is a
-// message, or a file that is the same after writing and reading it again, and of which every
-// threshold agrees with itself or is told why not.
+// Reads thresholds files, and the descriptions in files of fits and embeddings: any text gives an
+// error, or a file that is the same after writing and reading it again, with every threshold
+// consistent or reported.
 #include <string>
 #include <vector>
 
 #include "check/guarantees/consistency.hpp"
 #include "data/arrays/npz_writer.hpp"
-#include "embedded/embedded.hpp"
-#include "fitted/fitted.hpp"
+#include "artifacts/embedded.hpp"
+#include "artifacts/fitted.hpp"
 #include "fuzz_target.hpp"
-#include "thresholds/thresholds.hpp"
+#include "artifacts/thresholds.hpp"
 
 namespace {
 
 using namespace etlc;
 
-/// What `parse` made of `bytes` is a message, or reads and writes the same again.
+/// Checks that the result of `parse` for `bytes` is an error, or survives writing and reading.
 template <class Parse>
 void read_archive(const std::vector<data::ArchiveMember>& members, Parse parse) {
     const auto file = parse(data::npz_bytes(members), "x");

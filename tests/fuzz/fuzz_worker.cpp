@@ -1,7 +1,7 @@
-// What etlc reads of etlc-embed and of encoders: whatever they write, and however they end, here it
-// is sound frames and embeddings or a message. The first byte is the exit status of the program
-// that writes the others. The bytes are read as an ONNX model as well, and as what says of an
-// episode which encoder made it.
+// Reads the output of etlc-embed and of encoders: whatever they write, and however they end, the
+// result is valid frames and embeddings or an error. The first byte is the exit status of the
+// program that writes the others. The bytes are also read as an ONNX model, and as an episode's
+// record of its encoder.
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@
 #include "data/frames/protocol.hpp"
 #include "embed/encoder.hpp"
 #include "embed/worker/onnx.hpp"
-#include "embedded/embedded.hpp"
+#include "artifacts/embedded.hpp"
 #include "fuzz_target.hpp"
 
 namespace {
@@ -64,7 +64,7 @@ void read_frames(const std::string& path) {
     }
 }
 
-/// So many frames of a pixel.
+/// Makes this many frames of one pixel.
 class Pixels final : public data::FrameSource {
 public:
     explicit Pixels(std::uint64_t count) : left_(count) {}

@@ -130,7 +130,7 @@ def frame(rows, columns, pixels):
     return struct.pack("<II", rows, columns) + pixels
 
 def field(number, content):
-    """Of a protocol buffer: bytes, or a number."""
+    """Encodes a field of a protocol buffer: bytes, or a number."""
     if isinstance(content, int):
         return bytes([number << 3, content])
     return bytes([number << 3 | 2, len(content)]) + content

@@ -1,7 +1,6 @@
 // Runs a fuzz target on files, for compilers without libFuzzer.
-// Takes: files and folders. Gives: exit status 0 where every file went through the target; a
-// finding stops the program, and so does an input that takes longer than kMostSeconds of the
-// processor.
+// Takes: files and folders. Gives: exit status 0 if every file passed the target. A finding stops
+// the program, and so does an input that takes more than kMostSeconds of processor time.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -22,7 +21,7 @@ constexpr rlim_t kMostSeconds = 60;
 constexpr rlim_t kMostSeconds = 15;
 #endif
 
-/// From here on; the signal SIGXCPU ends the program.
+/// Limits the time from here on; the signal SIGXCPU ends the program.
 void limit_time() {
     rusage used{};
     getrusage(RUSAGE_SELF, &used);

@@ -18,21 +18,19 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::set<std::string>;
 
-/// From the ground up: each building stands on those before it.
+/// The layers, in order: each builds on those before it.
 const std::vector<std::string> kBuildings = {"base", "compiler", "workbench"};
 
-/// The arrows of docs/contributing/compiler.md and workbench.md: what a folder builds on. They are
-/// transitive; everyone also sees source and diag.
+/// The tables of docs/contributing/compiler.md and workbench.md: the stages that a stage builds on.
+/// The relation is transitive; every stage also sees source and diag.
 const std::map<std::string, Names> kArrows = {
     {"source", {}},
     {"diag", {"source"}},
     {"ast", {"source"}},
     {"data", {"diag"}},
-    {"thresholds", {"data"}},
-    {"fitted", {"thresholds"}},
-    {"embedded", {"thresholds"}},
+    {"artifacts", {"data"}},
     {"parse", {"ast", "diag"}},
-    {"check", {"ast", "data", "thresholds", "fitted", "embedded"}},
+    {"check", {"ast", "data", "artifacts"}},
     {"embed", {"check"}},
     {"reference", {"check"}},
     {"ir", {"check"}},
@@ -42,7 +40,7 @@ const std::map<std::string, Names> kArrows = {
     {"explain", {"plan"}},
     {"pipeline", {"opt", "plan"}},
     {"episodes", {"plan"}},
-    {"fit", {"episodes", "pipeline", "fitted"}},
+    {"fit", {"episodes", "pipeline"}},
     {"calibrate", {"episodes", "pipeline"}},
     {"evaluate", {"episodes", "pipeline"}},
     {"report", {"explain", "fit", "evaluate"}},
@@ -53,14 +51,14 @@ const std::map<std::string, Names> kArrows = {
       "lsp"}},
 };
 
-/// The typed model is where the syntax tree ends: these do not see it, although arrows lead there.
+/// Stages after check, which must not include ast although the relation would allow it.
 const Names kBelowTheModel = {"reference", "ir",       "opt", "plan",      "emit",    "explain",
                               "pipeline",  "episodes", "fit", "calibrate", "evaluate"};
 
-/// The judge in tests shares no arithmetic with what it judges.
+/// The reference evaluator shares no arithmetic with the stages that it checks.
 const Names kWithoutRuntime = {"reference"};
 
-/// Libraries that a folder or two keep to themselves.
+/// Libraries that only one or two folders may use.
 const std::map<std::string, Names> kOwners = {{"antlr4", {"parse"}},
                                               {"hdf5", {"data"}},
                                               {"H5", {"data"}},
@@ -70,11 +68,11 @@ const std::map<std::string, Names> kOwners = {{"antlr4", {"parse"}},
                                               {"zlib", {"data", "report"}},
                                               {"CLI", {"driver"}}};
 
-/// All that generated code may need of a C library.
+/// Everything that generated code may need of a C library.
 const Names kFirmwareHeaders = {"stdint.h", "stddef.h", "float.h", "string.h", "math.h"};
 
-/// Headers of the runtime for programs on a host, which no generated code includes, and what of the
-/// C++ library each may use.
+/// Headers of the runtime for programs on a host, which no generated code includes, and the headers
+/// of the C++ library that each may use.
 const std::map<std::string, Names> kHosted = {
     {"dynamic.hpp", {}},
     {"dynamic_enclosed.hpp", {}},
@@ -83,7 +81,8 @@ const std::map<std::string, Names> kHosted = {
     {"mapped_targets.hpp", {"errno.h", "fcntl.h", "sys/mman.h", "sys/stat.h", "unistd.h"}},
     {"table.hpp", {}}};
 
-/// Folder of the runtime -> the folders that it may include; "etlmon" is what stands in none.
+/// Folder of the runtime -> the folders that it may include; "etlmon" has the files outside
+/// folders.
 const std::map<std::string, Names> kHouses = {
     {"etlmon", {"etlmon"}},
     {"temporal", {"etlmon", "temporal"}},
@@ -92,7 +91,7 @@ const std::map<std::string, Names> kHouses = {
     {"vectors", {"etlmon", "distance", "vectors"}},
     {"hosted", {"etlmon", "temporal", "distance", "hosted"}}};
 
-/// Where firmware's half of the runtime includes the other.
+/// The places where firmware's half of the runtime includes the other.
 const Names kGates = {"views.hpp", "best.hpp"};
 
 Names reachable(const std::string& folder) {
@@ -108,7 +107,7 @@ Names allowed(const std::string& folder) {
     return stages;
 }
 
-/// "ast" of "ast/ast.hpp" and of "antlr4-runtime.h"'s kind "antlr4".
+/// Returns "ast" for "ast/ast.hpp" and "antlr4" for "antlr4-runtime.h".
 std::string first_word(const std::string& include) {
     return include.substr(0, include.find_first_of("/.-_"));
 }
@@ -117,7 +116,7 @@ std::string folder_of(const fs::path& file) {
     return *std::next(file.begin());
 }
 
-/// The C++ sources of all buildings.
+/// Returns the C++ sources of all layers.
 std::vector<fs::path> sources() {
     std::vector<fs::path> found;
     for (const std::string& building : kBuildings) {
@@ -126,7 +125,7 @@ std::vector<fs::path> sources() {
     return found;
 }
 
-/// folder -> the place of its building in kBuildings.
+/// folder -> the index of its layer in kBuildings.
 const std::map<std::string, std::size_t>& storeys() {
     static const std::map<std::string, std::size_t> found = [] {
         std::map<std::string, std::size_t> result;
@@ -140,7 +139,7 @@ const std::map<std::string, std::size_t>& storeys() {
     return found;
 }
 
-/// stage -> the stages that its CMakeLists.txt links, with all that those link.
+/// stage -> the stages that its CMakeLists.txt links, directly or indirectly.
 Names linked(const std::string& folder) {
     static const std::regex kDepends(R"(\bDEPENDS\b([^)]*))");
     static const std::regex kWord(R"([A-Za-z0-9_:]+)");
@@ -216,8 +215,8 @@ TEST(Arrows, TargetsLinkOnlyWhatTheyBuildOn) {
     }
 }
 
-/// folder -> the folders that its files include, "check/points" -> "check/model"; a folder and
-/// those in it are different ones.
+/// folder -> the folders that its files include, "check/points" -> "check/model"; a folder and its
+/// subfolders count separately.
 std::map<std::string, Names> folders_included() {
     std::map<std::string, Names> found;
     for (const auto& file : sources()) {
@@ -235,7 +234,7 @@ std::map<std::string, Names> folders_included() {
 TEST(Arrows, FoldersHaveNoCircles) {
     std::map<std::string, Names> above = folders_included();
     ASSERT_GT(above.size(), 40U);
-    // Take away whoever includes nobody that is left, until nothing goes any more.
+    // Remove folders that include no remaining folder, until none can be removed.
     for (bool changed = true; changed;) {
         changed = false;
         for (auto folder = above.begin(); folder != above.end();) {

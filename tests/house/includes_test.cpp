@@ -1,5 +1,5 @@
-// Each file includes what it uses, itself or by a header of ours, of the headers that the builds
-// precompile: a compiler that has read those already does not see that one is missing.
+// Each file includes the precompiled headers that it uses, itself or through one of our headers:
+// the compiler has already read these and does not notice a missing include.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::set<std::string>;
 
-/// Header -> words that are its, as far as they are used here.
+/// Header -> words that belong to it, as far as they are used here.
 const std::map<std::string, std::vector<std::string>> kWords = {
     {"algorithm",
      {"std::all_of(",      "std::any_of(",      "std::binary_search(", "std::clamp(",
@@ -64,7 +64,7 @@ Names precompiled(const fs::path& cmake_file) {
     return found;
 }
 
-/// The file of ours that an include names, or nothing.
+/// Returns our file that an include names, if any.
 fs::path ours(const fs::path& from, const std::string& include) {
     for (const fs::path& folder :
          {from.parent_path(), fs::path("base"), fs::path("compiler"), fs::path("workbench"),
@@ -76,7 +76,7 @@ fs::path ours(const fs::path& from, const std::string& include) {
     return {};
 }
 
-/// The headers of others that a file includes, itself or by headers of ours.
+/// Returns the system headers that a file includes, itself or through our headers.
 void gather(const fs::path& file, std::set<fs::path>& seen, Names& headers) {
     if (!seen.insert(file).second) return;
     for (const std::string& include : includes(file)) {
@@ -87,7 +87,7 @@ void gather(const fs::path& file, std::set<fs::path>& seen, Names& headers) {
     }
 }
 
-/// Without what stands behind // in a line.
+/// Removes everything after // in a line.
 std::string code(const fs::path& file) {
     static const std::regex kComment("//[^\n]*");
     return std::regex_replace(content(file), kComment, "");

@@ -20,8 +20,8 @@ stub dpkg-query 'for p in "${@:4}"; do
     case " $ABSENT " in *" $p "*) ;; *) echo "installed $p" ;; esac
 done'
 
-# try USER_ID ABSENT [GROUP]: runs the script for the group, `build`, and sets $output, $status and
-# $calls.
+# try USER_ID ABSENT [GROUP]: runs the script for the group, by default `build`, and sets $output,
+# $status and $calls.
 try() {
     rm -f "$box/calls"
     status=0
@@ -39,7 +39,8 @@ try 0 "libfmt-dev libgtest-dev"
 [[ $calls != *sudo* && $calls != *libgtest-dev* && $calls != *antlr4* ]] ||
     fail "does more than it should: $calls"
 
-# What npm has is got once; npm itself, where it is missing; and nothing fails without it.
+# A package from npm is fetched once; npm itself is installed if missing; and a failure is not
+# fatal.
 try 0 "" recordings
 [[ $status = 0 && $calls == *install*npm* && $output == *"will not be tested"* ]] ||
     fail "without npm: $output $calls"

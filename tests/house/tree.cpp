@@ -51,7 +51,7 @@ std::string content(const fs::path& file) {
 }
 
 std::vector<std::string> includes(const fs::path& file) {
-    // A name with a blank in it is a message that compilers stop after (build.hpp), not a file.
+    // A name with a blank is a message to stop compilers (build.hpp), not a file.
     static const std::regex kInclude(R"(^\s*#\s*include\s*["<]([^"> ]+)[">])");
     std::vector<std::string> found;
     std::istringstream lines(content(file));

@@ -1,4 +1,4 @@
-// What holds for every file of the repository.
+// Rules for every file of the repository.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace etlc::house {
 namespace {
 
-/// Whether `text` holds the absolute path `path`, not merely a relative one that ends like it.
+/// Returns whether `text` contains the absolute path `path`, not a relative one with the same end.
 bool names_path(const std::string& text, const std::string& path) {
     for (std::size_t at = text.find(path); at != std::string::npos; at = text.find(path, at + 1)) {
         const char before = at == 0 ? ' ' : text[at - 1];
@@ -45,7 +45,7 @@ TEST(Tree, FoldersAreSmall) {
     }
 }
 
-/// What distances.def says of itself. Two words stand for all: others mean more.
+/// Checks the rule of distances.def. Two words represent all: others have further meanings.
 TEST(Tree, DistancesAreNamedInOneFile) {
     static const std::set<std::string> kTheirs = {"runtime/include/etlmon/distance/distances.def",
                                                   "grammar/EtlLexer.g4"};

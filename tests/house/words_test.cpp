@@ -1,4 +1,4 @@
-// What people read: lines that fit on a screen, and links that lead somewhere.
+// Checks what people read: lines fit on a screen, and links lead somewhere.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,10 +27,10 @@ const std::set<std::string> kEdited = {
     ".h",           ".c",          "CMakeLists.txt", "CMakePresets.json",
     "packages.txt", ".clang-tidy", ".clang-format"};
 
-/// Folders of what programs write, or of what is wrong on purpose.
+/// Folders written by programs, or with deliberate mistakes.
 const std::vector<std::string> kNotEdited = {
-    "tests/fuzz/corpus/",  // bytes for parsers
-    "tests/spec/error/",   // specs whose mistakes the expected messages quote, line by line
+    "tests/fuzz/corpus/",  // input for parsers
+    "tests/spec/error/",   // specs with mistakes, which the expected messages quote line by line
 };
 
 bool edited(const fs::path& file) {
@@ -47,26 +47,26 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-/// Characters, not bytes.
+/// Counts characters, not bytes.
 std::size_t columns(const std::string& line) {
     return static_cast<std::size_t>(std::count_if(line.begin(), line.end(), [](char c) {
         return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
     }));
 }
 
-/// One word, perhaps behind the mark of a comment or of a list: a link, say, or a path.
+/// Returns whether a line is one word, perhaps after a comment or list mark: a link or a path.
 bool cannot_be_broken(const std::string& line) {
     static const std::regex kOneWord(R"(^\s*(//+|#+|[-*]|\d+\.)?\s*\S+$)");
     return std::regex_match(line, kOneWord);
 }
 
-/// Walks through a page of Markdown: where a line is in a fence, and in one that shows commands
-/// ("$ ...") with what they print.
+/// Walks through a page of Markdown: whether a line is in a fence, and in one that shows commands
+/// ("$ ...") with their output.
 class Fences {
 public:
     explicit Fences(const std::vector<std::string>& lines) : lines_(lines) {}
 
-    /// To be called for each line, in order.
+    /// Call it for each line, in order.
     void enter(std::size_t line) {
         const std::string& text = lines_[line];
         edge_ = text.find("```") == text.find_first_not_of(' ') && text.find("```") != text.npos;
@@ -79,7 +79,7 @@ public:
         }
     }
     bool code() const { return inside_ || edge_; }
-    /// What a command printed, as it was printed.
+    /// Returns whether a line is output of a command.
     bool output(std::size_t line) const { return session_ && !lines_[line].starts_with("$ "); }
 
 private:
@@ -103,8 +103,8 @@ TEST(Words, LinesHaveAHundredColumns) {
     }
 }
 
-/// Turns of phrase that sound translated. What stands instead: "compared with", "lead back to",
-/// "really", "without".
+/// Phrases that sound translated. Write instead: "compared with", "lead back to", "really",
+/// "without".
 TEST(Words, EnglishIsPlain) {
     static const std::regex kGone(
         R"(\b(anew|held against|finds? back to|in earnest|for want of|a share of nothing)\b)");
@@ -118,7 +118,7 @@ TEST(Words, EnglishIsPlain) {
     }
 }
 
-/// What GitHub makes of a heading: "## In CMake, `x`" becomes "in-cmake-x".
+/// Returns GitHub's anchor for a heading: "## In CMake, `x`" becomes "in-cmake-x".
 std::string anchor(const std::string& heading) {
     std::string made;
     for (const char c : heading) {
@@ -146,7 +146,7 @@ std::set<std::string> anchors(const fs::path& page) {
     return found;
 }
 
-/// The targets of the links of a page, those to other machines aside.
+/// Returns the targets of the links of a page, except those to other sites.
 std::vector<std::string> links(const fs::path& page) {
     static const std::regex kLink(R"(\]\(([^()\s]+)\)|^\[[^\]]+\]: (\S+)$)");
     std::vector<std::string> found;

@@ -1,4 +1,4 @@
-// Counts what libetlc asks of the heap after a spec was opened: nothing. Specs of all kinds are
+// Counts the allocations of libetlc after a spec is opened: there are none. Specs of all kinds are
 // stepped, run, finished, restarted and reset.
 #include <etlc.h>
 #include <stdio.h>
@@ -43,7 +43,7 @@ void* realloc(void* block, size_t size) noexcept {
 
 namespace {
 
-/// What random specs have none of: projections, weights, narrow embeddings, lets, and a nesting
+/// Features that random specs lack: projections, weights, narrow embeddings, lets, and a nesting
 /// that is evaluated again at every step.
 constexpr const char* kAllKinds = R"(spec kinds;
 input z : f32[3] hold 2;
@@ -98,7 +98,7 @@ etlc_sample sample_of(const Input& input, bool is_there) {
 
 unsigned long incidents = 0;
 
-/// The bytes of all incidents.
+/// Reads the bytes of all incidents.
 bool take_incidents(etlc_session session) {
     uint32_t complete = 0, lost = 0;
     if (!check(etlc_incidents(session, &complete, &lost))) return false;
@@ -111,7 +111,7 @@ bool take_incidents(etlc_session session) {
     return check(etlc_close_incidents(session)) && check(etlc_forget_incidents(session));
 }
 
-/// All that a program does with it after opening. False where a call failed.
+/// Makes all calls that a program may make after opening. Returns false if a call failed.
 bool use(etlc_session session, std::mt19937& random) {
     etlc_description spec{};
     spec.struct_size = sizeof spec;
@@ -151,7 +151,7 @@ bool use(etlc_session session, std::mt19937& random) {
                 etlc_measured measured;
                 good = check(etlc_measure(session, p, &measured));
             }
-            // A call that is refused needs no memory either.
+            // A refused call needs no memory either.
             good = good &&
                    etlc_step(session, samples.data(), 99, verdicts.data(), 1) == ETLC_WRONG_NUMBER;
         }

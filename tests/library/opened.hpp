@@ -1,4 +1,4 @@
-// A session for a test, closed when it goes.
+// A session for a test, closed at the end of its scope.
 #pragma once
 
 #include <etlc.h>
@@ -9,7 +9,7 @@
 
 namespace etlc::tests {
 
-/// What the monitors of the tests see: an embedding, a scalar, a bool, and narrow embeddings.
+/// The inputs of the tests' monitors: an embedding, a scalar, a bool, and narrow embeddings.
 inline constexpr const char* kDock = R"(spec dock;
 rate 10 Hz;
 input z      : f32[3] hold 1;
@@ -74,7 +74,7 @@ struct Seen {
     }
 };
 
-/// The call failed in this way, and its message has these words.
+/// Checks that the call failed with this status, and that its message contains these words.
 inline void expect_refused(etlc_status found, etlc_status expected, const std::string& words) {
     EXPECT_EQ(found, expected) << etlc_message();
     EXPECT_NE(std::string(etlc_message()).find(words), std::string::npos)

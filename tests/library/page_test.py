@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""The examples of a page print what stands below them.
+"""The examples of a page print the output shown below them.
 
 page_test.py PAGE c CC FLAG... | page_test.py PAGE python
-With ETLC_UPDATE in the environment the page gets what they print.
+With ETLC_UPDATE in the environment the page is updated with their output.
 """
 
 import contextlib
@@ -15,11 +15,11 @@ import tempfile
 from pathlib import Path
 
 BLOCK = re.compile(r"^```(c|python)\n(.*?)^```\n(?:```text\n(.*?)^```\n)?", re.M | re.S)
-END = "\x1e"  # between what two examples print
+END = "\x1e"  # separates the output of two examples
 
 
 def run_c(blocks, words):
-    """The first block is of the file, the others are of main()."""
+    """The first block is at file scope, the others are in main()."""
     source = blocks[0] + "int main(void) {\n"
     source += "".join(f'{block}\nprintf("%s", "\\x1e");\n' for block in blocks[1:]) + "}\n"
     Path("page.c").write_text(source)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Arrays of the Python package: each way to lay them out is read rightly, or refused."""
+"""Arrays of the Python package: every layout is read correctly, or refused."""
 
 import tempfile
 import unittest
@@ -38,7 +38,7 @@ def episode(steps=30):
 
 
 def misaligned(array):
-    """At an odd address."""
+    """Copies to an odd address."""
     room = np.zeros(array.nbytes + 17, "u1")
     begin = 1 - room.ctypes.data % 2 + 2 * (array.itemsize == 1)
     view = room[begin : begin + array.nbytes].view(array.dtype).reshape(array.shape)
@@ -53,7 +53,7 @@ def read_only(array):
 
 
 def spread(array):
-    """Every other element of something larger, in all dimensions."""
+    """Takes every other element of a larger array, in all dimensions."""
     if array.ndim == 0:
         return array
     wide = np.ones([2 * n + 1 for n in array.shape], array.dtype)
@@ -63,7 +63,7 @@ def spread(array):
 
 
 def in_record(array):
-    """A field behind a byte: rows at odd distances."""
+    """Takes a field after a byte: rows at odd distances."""
     if array.ndim == 0:
         return array
     record = np.zeros(len(array), [("pad", "u1"), ("it", array.dtype, array.shape[1:])])
@@ -79,7 +79,7 @@ def in_file(array):
 
 
 class Owner:
-    """An object that gives its array, as tensors do."""
+    """An object that returns its array, like a tensor."""
 
     def __init__(self, array):
         self.array = array
@@ -168,7 +168,7 @@ class Refusing(unittest.TestCase):
         masked = np.ma.masked_array
         ragged = [[1.0], [1.0, 2.0]]
 
-        class Tensor:  # one that is on a device
+        class Tensor:  # on a device
             def __array__(self, *_, **__):
                 raise RuntimeError("not here")
 

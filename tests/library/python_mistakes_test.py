@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The Python package, used by mistake: nothing is taken for what it is not, and nothing is silent.
+"""The Python package, used by mistake: no argument is misread, and no mistake is silent.
 
 python_mistakes_test.py PAGE: PAGE is docs/python.md.
 """
@@ -52,14 +52,14 @@ def episode(steps=30):
 
 
 def caught(call):
-    """What it gives, and its warnings."""
+    """Returns the result of a call, and its warnings."""
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always")
         return call(), found
 
 
 class Truth(unittest.TestCase):
-    """Of one instance of each public class."""
+    """Returns one instance of each public class."""
 
     def instances(self):
         monitor = etlc.Monitor(text=SPEC, history=1)
@@ -196,7 +196,7 @@ class Refusing(unittest.TestCase):
                 ]  # fmt: skip
                 refused = 0
                 for mistake in mistakes:
-                    try:  # a file that nothing asks for may be named as files can be
+                    try:  # an unused file may have any name
                         mistake()
                     except etlc.Error:
                         refused += 1

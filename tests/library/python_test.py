@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The Python package: what each call gives, and what it refuses.
+"""The Python package: the results of each call, and its refusals.
 
 python_test.py FOLDER: FOLDER is that of the tests of specs.
 """
@@ -45,14 +45,14 @@ NO_OTHERS = dict.fromkeys(("charge", "stop", "half", "byte"))
 
 
 def quiet(call):
-    """What it gives, without its warnings."""
+    """Returns the result of a call, without its warnings."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", etlc.EtlcWarning)
         return call()
 
 
 def samples(**others):
-    """Of one step: at the first bay, with a full battery."""
+    """Returns the samples of one step: at the first bay, with a full battery."""
     given = {
         "z": np.array([1, 0, 0], "f4"), "charge": 1.0, "stop": False,
         "half": np.array([1, 0], "f2"), "byte": np.array([2, -2], "i1"),
@@ -61,7 +61,7 @@ def samples(**others):
 
 
 def png(pixel, size):
-    """A square of one colour."""
+    """Returns a square of one colour."""
     def chunk(kind, data):
         crc = zlib.crc32(kind + data)
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", crc)
@@ -390,7 +390,7 @@ class Explaining(unittest.TestCase):
             etlc.Monitor(text=DOCK, history=1).step(**samples()).calm.why
 
     def test_what_would_turn_it_does(self):
-        """Applied to the samples, where == and != decide; where nothing is named, nothing does."""
+        """Applied to the samples, if == and != decide; if there is no change, nothing changes."""
         random = np.random.default_rng(5)
         grid = [np.float32(n / 2) for n in range(7)]
         beside = [np.nextafter(n, np.float32(end)) for n in grid for end in (-np.inf, np.inf)]
@@ -417,7 +417,7 @@ class Explaining(unittest.TestCase):
             try:
                 monitor = quiet(lambda: etlc.Monitor(text=text, history=20))
             except etlc.SpecError:
-                continue  # it looks back over what looks ahead without bounds
+                continue  # the history covers a formula that looks ahead without bounds
             steps = monitor.horizon + 1
             rows = {
                 "x": random.choice(grid, steps), "y": random.choice(grid, steps),
@@ -634,7 +634,7 @@ class Refusing(unittest.TestCase):
 
 
 class Commands(unittest.TestCase):
-    """On episodes in which `near` holds while x is small."""
+    """Writes episodes in which `near` holds while x is small."""
 
     SPEC = """spec reach;
 input z : f32[2];

@@ -1,9 +1,8 @@
-// same_bits FOLDER: random specs, stepped through libetlc and by generated classes: every verdict
-// has the same bits. Leaves in FOLDER the specs, traces and verdicts, for same_bits_test.py:
-// of spec N its text, N.etl; the elements of an input at all steps, one trace after the other, and
-// a byte a step that says whether they are there, N.INPUT and N.INPUT.present; the verdicts,
-// N.verdicts; the steps of each trace, N.episodes; names and numbers of monitors that restart,
-// N.restarts.
+// same_bits FOLDER: steps random specs through libetlc and by generated classes: every verdict has
+// the same bits. Writes the specs, traces and verdicts to FOLDER, for same_bits_test.py: the text
+// of spec N, N.etl; the elements of an input at all steps, one trace after the other, and a byte
+// per step for its presence, N.INPUT and N.INPUT.present; the verdicts, N.verdicts; the steps of
+// each trace, N.episodes; names and numbers of monitors that restart, N.restarts.
 #include <etlc.h>
 #include <fmt/format.h>
 
@@ -28,7 +27,7 @@ using Formulas = SpecShape::Formulas;
 
 constexpr std::size_t kSteps = 1'000'000;
 constexpr std::size_t kStepsPerTrace = 2000;
-/// The compiler may not fuse a multiplication with an addition, as it may not in etlc.
+/// The compiler may not fuse a multiplication with an addition, like etlc.
 const Build kBuild{"same_bits", "g++", "-O1 -ffp-contract=off"};
 
 const std::vector<SpecShape> kShapes = {
@@ -44,7 +43,7 @@ bool is_ok(etlc_status status) {
     return status == ETLC_OK;
 }
 
-/// One spec in libetlc, and the files of it.
+/// One spec in libetlc, and its files.
 class Opened {
 public:
     Opened(const check::Model& model, const std::filesystem::path& folder, std::size_t number)
@@ -72,7 +71,7 @@ public:
 
     bool is_open() const { return is_open_; }
 
-    /// Whether the trace's verdicts are those that were observed.
+    /// Returns whether the trace's verdicts equal the observed ones.
     bool agrees(const reference::Trace& trace, const Observed& observed) {
         if (!is_ok(etlc_reset(session_))) return false;
         std::vector<etlc_verdict> verdicts(model_.monitors.size());

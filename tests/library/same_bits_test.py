@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The verdicts of etlc.Monitor have the bits of those of generated classes.
+"""The verdicts of etlc.Monitor have the bits of generated classes.
 
 same_bits_test.py FOLDER: FOLDER has the specs, traces and verdicts of same_bits.
 """
@@ -15,7 +15,7 @@ MOST = 64 << 20
 
 
 def restarts_before(step, monitor):
-    """As tests/monitor/driver/restarts_before.hpp."""
+    """Computes the restarts of tests/monitor/driver/restarts_before.hpp."""
     return (7 * step + 3 * monitor) % 23 in (5, 12)
 
 
@@ -24,7 +24,7 @@ def read(spec, ending):
 
 
 def samples_of(monitor, spec):
-    """All steps of each input, with a mask where it is missing."""
+    """Returns all steps of each input, masked where it is missing."""
     samples = {}
     for name, one in monitor.inputs.items():
         array = np.fromfile(spec.with_suffix(f".{name}"), one.dtype).reshape(-1, *one.shape)
@@ -35,7 +35,7 @@ def samples_of(monitor, spec):
 
 
 def stepped(monitor, episode, restarts):
-    """Step by step, where a run cannot say that monitors restart."""
+    """Steps one by one, because a run cannot restart monitors."""
     monitor.reset()
     missing = {name: np.ma.getmaskarray(rows).reshape(len(rows), -1)[:, 0].tolist()
                for name, rows in episode.items()}  # fmt: skip
@@ -51,7 +51,7 @@ def stepped(monitor, episode, restarts):
 
 
 def compare(spec):
-    """How many steps agree."""
+    """Returns how many steps agree."""
     monitor = etlc.Monitor(spec, max_state=MOST, max_code=MOST, max_work=MOST)
     samples = samples_of(monitor, spec)
     expected = spec.with_suffix(".verdicts").read_bytes()

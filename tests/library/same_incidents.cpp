@@ -1,5 +1,5 @@
-// same_incidents FOLDER: random specs with a flight recorder, stepped through libetlc and by
-// generated classes: every incident has the same bytes, and `etlc incident` takes it.
+// same_incidents FOLDER: steps random specs with a flight recorder through libetlc and by generated
+// classes: every incident has the same bytes, and `etlc incident` reads it.
 #include <etlc.h>
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ namespace {
 using Formulas = SpecShape::Formulas;
 
 constexpr const char* kRecorder = "4,3,5";
-/// The compiler may not fuse a multiplication with an addition, as it may not in etlc.
+/// The compiler may not fuse a multiplication with an addition, like etlc.
 const Build kBuild{"same_incidents", "g++", "-O1 -ffp-contract=off"};
 
 const std::vector<SpecShape> kShapes = {
@@ -35,7 +35,7 @@ const std::vector<SpecShape> kShapes = {
 const SpecShape kAdaptive = {
     .formulas = Formulas::mixed, .monitors = 5, .depth = 3, .exact = false};
 
-/// What random specs have none of: contrasts, of rows too, that int8 does not tell apart;
+/// Features that random specs lack: contrasts, also of rows that int8 does not distinguish;
 /// expressions with distances and without a name; narrow embeddings; projections; alarms of
 /// repeating monitors at every step.
 constexpr const char* kAllKinds = R"(spec kinds;
@@ -107,7 +107,7 @@ public:
     bool is_open() const { return is_open_; }
     const std::string& spec() const { return spec_; }
 
-    /// A trace, finished and reset: as driver/incidents.hpp.
+    /// Runs a trace, finishes and resets, like driver/incidents.hpp.
     bool episode(const reference::Trace& trace, const Labels& labels) {
         std::vector<etlc_verdict> verdicts(model_.monitors.size());
         for (std::size_t n = 0; n < trace.size(); ++n)
@@ -119,7 +119,7 @@ public:
         return is_ok(etlc_reset(session_));
     }
 
-    /// Whether there are as many incidents as the class says.
+    /// Returns whether there are as many incidents as in the class.
     bool agrees_on_counts(std::string_view& answer) {
         std::uint32_t complete = 0, lost = 0;
         if (!is_ok(etlc_incidents(session_, &complete, &lost))) return false;
@@ -131,7 +131,7 @@ public:
         return false;
     }
 
-    /// Whether an incident has the class's bytes; they are then in a file.
+    /// Returns whether an incident has the class's bytes, and writes them to a file.
     bool agrees(std::uint32_t n, std::string_view& answer, const std::string& path) {
         const auto size = take<std::uint32_t>(answer);
         const std::string_view expected = answer.substr(0, size);
@@ -198,12 +198,12 @@ Request request_for(const check::Model& model, std::uint32_t spec) {
     request.second_labels = random_labels(model, request.second, 2 * spec + 1);
     for (Labels* labels : {&request.first_labels, &request.second_labels})
         for (auto& step : *labels)
-            for (auto& predicate : step)  // libetlc takes finite distances alone
+            for (auto& predicate : step)  // libetlc accepts only finite distances
                 std::erase_if(predicate, [](const Label& l) { return !std::isfinite(l.distance); });
     return request;
 }
 
-/// The program's incidents are those of libetlc; how many, or -1.
+/// Compares the program's incidents with those of libetlc; returns how many, or -1.
 int compare(GeneratedProgram& program, std::uint32_t targets_as,
             const std::filesystem::path& folder) {
     if (!program.compile(kBuild)) return -1;

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# symbols_test.sh LIBRARY HEADER PAGE: the library has exactly the functions that have been
-# promised, each of the version that it was promised with; the header declares all of them, and the
-# page has an example of each.
+# symbols_test.sh LIBRARY HEADER PAGE: the library has exactly the documented functions, each with
+# its documented version; the header declares all of them, and the page has an example of each.
 set -euo pipefail
 library=$1 header=$2 page=$3
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

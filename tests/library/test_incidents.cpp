@@ -1,5 +1,5 @@
-// What a session keeps of the steps around alarms, and calls about it that are wrong.
-// same_incidents.cpp compares the bytes.
+// Tests the incidents of a session, and wrong calls for them. same_incidents.cpp compares the
+// bytes.
 #include <etlc.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace etlc::tests {
 namespace {
 
-/// Alarms of `returns` begin three steps after `charge` is low.
+/// `returns` raises an alarm three steps after `charge` is low.
 void alarm(Opened& dock) {
     Seen seen;
     seen.charge = 0;

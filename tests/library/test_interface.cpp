@@ -1,4 +1,4 @@
-// What each function of etlc.h gives.
+// Tests the results of each function of etlc.h.
 #include <etlc.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Calls that are wrong: each is refused with a status and a message, and changes nothing.
+// Tests wrong calls: each returns a status and a message, and changes nothing.
 #include <etlc.h>
 #include <gtest/gtest.h>
 
@@ -152,7 +152,7 @@ TEST(Refusals, OtherVersions) {
         expect_refused(etlc_open(&options, &none), ETLC_WRONG_VERSION,
                        "options.api_version is " + std::to_string(version));
     }
-    options.api_version = 1;  // whose options are shorter
+    options.api_version = 1;  // with shorter options
     expect_refused(etlc_open(&options, &none), ETLC_WRONG_VERSION, "struct_size of options");
     const Opened dock(options_of(kDock));
     etlc_description spec{};
@@ -348,7 +348,7 @@ TEST(Refusals, ExplanationsWithoutAHistory) {
     EXPECT_EQ(etlc_explain(with, 0, ETLC_TEXT, &text), ETLC_OK) << etlc_message();
 }
 
-/// Of two threads that share a session, one is refused sooner or later; neither breaks.
+/// If two threads share a session, one is refused sooner or later; neither breaks.
 TEST(Refusals, ASessionInACallOfAnotherThread) {
     const etlc_session session = open_dock();
     constexpr std::uint64_t kSteps = 1000;

@@ -1,6 +1,6 @@
-"""answers_test.py ETLC CASES: what the server answers about specs.
+"""answers_test.py ETLC CASES: tests the answers of the server about specs.
 
-CASES: the folder tests/spec, whose specs are diagnosed as `etlc SPEC --check` does.
+CASES: the folder tests/spec, whose specs get the diagnostics of `etlc SPEC --check`.
 """
 import json
 import os
@@ -32,7 +32,7 @@ sliding monitor steady = G[0, patience] (carrying -> closed || stop);
 
 
 def checked(path):
-    """What `etlc SPEC --check` says, as code, line and message."""
+    """Returns the messages of `etlc SPEC --check`, as code, line and message."""
     called = subprocess.run([ETLC, path.name, "--check", "--diagnostics", "json"], cwd=path.parent,
                             stderr=subprocess.PIPE)
     found = json.loads(called.stderr)["diagnostics"]
@@ -47,7 +47,7 @@ def shown(diagnostics):
 
 
 def same_as_check():
-    """On every spec with a mistake, and on every good one."""
+    """Diagnoses every spec with a mistake, and every good one."""
     client = Client(ETLC)
     compared = 0
     for path in sorted(CASES.glob("error/*.etl")) + sorted(CASES.glob("ok/*.etl")):
@@ -61,7 +61,7 @@ def same_as_check():
         expected = checked(path)
         document = client.open(text, path.as_uri())
         found = shown(client.diagnostics())
-        # What only planning finds comes when the client is quiet.
+        # Findings of the planner arrive when the client is quiet.
         if len(found) < len(expected):
             found = shown(client.diagnostics())
         document.close()
@@ -87,7 +87,7 @@ def hovers():
 
     assert "embedding of dimension 2 in float32" in hover("z    :")
     assert "3 missing" in hover("(z,", 1)
-    assert "[0, 1]" in hover("grip >=", 4)  # behind the last letter
+    assert "[0, 1]" in hover("grip >=", 4)  # after the last letter
     assert "2 rows of dimension 2, written in the spec" in hover("bay)")
     predicate = hover("at_bay;")
     assert "min cosine(z, bay) <= 0.25" in predicate and "no guarantee" in predicate, predicate
@@ -100,7 +100,7 @@ def hovers():
     assert "cosine of the angle" in hover("cosine")
     assert "spec dock;" in hover("dock")
     assert text.ask("hover", "= limit") is None
-    # Names are shown in spite of a mistake elsewhere, also what the mistake does not touch.
+    # Hover works in spite of a mistake elsewhere, for names that the mistake does not affect.
     text.replace(DOCK.replace("let carrying = closed", "let carrying = closd"))
     assert "2 rows" in hover("bay)") and "carrying" in hover("carrying ->")
     text.replace(DOCK.replace("limit;", "limit"))
@@ -117,7 +117,7 @@ def hovers():
 
 
 def thresholds():
-    """What is calibrated or fitted, with its origin and what it guarantees."""
+    """Calibrated and fitted entries, with their origin and guarantee."""
     client = Client(ETLC)
 
     def hovers(name, *facts):
@@ -159,7 +159,7 @@ def places():
     assert len(text.ask("references", "at_bay =", context={"includeDeclaration": False})) == 2
     kinds = [h["kind"] for h in text.ask("documentHighlight", "at_bay;")]
     assert sorted(kinds) == [2, 2, 3]
-    # Also of and in a declaration that cannot be read.
+    # Also for and in a declaration that cannot be read.
     text.replace(DOCK.replace("closed && !at_bay;", "closed && && !at_bay;"))
     assert line("carrying ->") == 10 and line("at_bay;\nmonitor") == 8
     symbols = client.ask("textDocument/documentSymbol", {"textDocument": {"uri": text.uri}})
@@ -189,9 +189,9 @@ def renames():
     assert renamed("limit;", "most") == DOCK.replace("limit", "most")
     assert renamed("patience]", "wait") == DOCK.replace("patience", "wait")
     assert renamed("dock", "harbour") == DOCK.replace("spec dock", "spec harbour")
-    # A name of the spec is none of the others.
+    # Rename refuses an existing name.
     assert renamed("dock", "bay") == DOCK.replace("spec dock", "spec bay")
-    # A contextual word is a name where it can be one.
+    # A contextual word is a name where names are allowed.
     assert renamed("grip :", "hold") == DOCK.replace("grip", "hold")
     for words, name, why in [
             ("at_bay;", "closed", "declared already, on line 10"),
@@ -204,14 +204,14 @@ def renames():
         assert error["code"] == -32803 and why in error["message"], error
     assert "no name" in text.error("prepareRename", "min cosine")["message"]
     assert "no name" in text.error("prepareRename", "predicate")["message"]
-    # Contextual words are names wherever they cannot be words of the language.
+    # Contextual words are names wherever they cannot be keywords.
     text.replace("spec a;\ninput p, q : bool;\nmonitor m = rise p && q;\n"
                  "monitor n = G (p && rise (q));\n")
     client.ask("textDocument/documentSymbol", {"textDocument": {"uri": text.uri}})
     assert renamed("p,", "rise") == ("spec a;\ninput rise, q : bool;\nmonitor m = rise rise && q;\n"
                                      "monitor n = G (rise && rise (q));\n")
     assert renamed("q :", "fall") == text.text.replace("q", "fall")
-    # In a declaration that cannot be read nobody knows what a word is.
+    # In a declaration that cannot be read, the role of a word is unknown.
     text.replace("spec a;\ninput p, q : bool;\nlet x = p p;\nmonitor n = G (p && q);\n")
     assert "cannot be read" in text.error("rename", "p,", newName="r")["message"]
     assert renamed("q :", "r") == text.text.replace("q", "r")
@@ -223,7 +223,7 @@ def completions():
     text = client.open(DOCK)
 
     def labels(line):
-        """At the mark | of a line behind the spec."""
+        """Returns the completions at the mark | of a line after the spec."""
         text.replace(DOCK + line.replace("|", ""))
         position = {"line": DOCK.count("\n"), "character": line.index("|")}
         items = client.ask("textDocument/completion", text.params(position))["items"]
@@ -265,7 +265,7 @@ def completions():
     units = labels("monitor n = G[0, 0.12|")
     assert "0.1 s" in units and "0.15 s" in units and "0.12 min" in units, units
     assert "0.12 s" not in units
-    # Nothing in comments and strings, or behind what cannot be read.
+    # No completions in comments and strings, or after text that cannot be read.
     for line in ["// |", "let l = /* |", 'target t = load("|', "let l = a b c |", "let l = 1 |= 2"]:
         assert "at_bay" not in labels(line), line
     assert client.end() == 0
@@ -293,7 +293,7 @@ def formats():
         "let f = G (p -> long_name);\n"
         "monitor m = /* why */ G ((p /* a */ || long_name) // here\n"
         "                         && p);\n\n// end\n")
-    # Line breaks inside a declaration stay, and are indented to their bracket.
+    # Line breaks inside a declaration stay, indented to their bracket.
     assert formatted("spec a;\ntarget t = [[1,2],\n[3,4]];\ntarget u = [\n[1,2]\n];\n"
                      "input z : f32[2];\nmonitor m = F min l2(z,t)<\n1;") == (
         "spec a;\ntarget t = [[1, 2],\n            [3, 4]];\ntarget u = [\n    [1, 2]\n];\n"
@@ -331,7 +331,7 @@ def actions():
             assert mended(good.replace(right, wrong), title) == good, title
     assert mended(good.replace("hold 3 steps;", "hold 3 steps"), "Insert ';'") == good
     assert mended(good.replace("min l2", "min l22"), "Change 'l22' to 'l2'") == good
-    # A name that C++ cannot bear, everywhere.
+    # A name that C++ does not allow, everywhere.
     assert mended(good.replace("closed", "int"), "Change 'int' to 'int_predicate'") == \
         good.replace("closed", "int_predicate")
     assert client.end() == 0
@@ -345,7 +345,7 @@ def row_of(columns):
 
 
 def files():
-    """Errors in files that are loaded are shown where the spec names them."""
+    """Errors in loaded files appear where the spec names the files."""
     client = Client(ETLC, {"textDocument": {"publishDiagnostics": {"relatedInformation": True}}})
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder, "a spec.etl")
@@ -354,7 +354,7 @@ def files():
                 'monitor m = G (p && min l2(z, t) < 1);\n')
         text = client.open(spec, path.as_uri())
         found = client.diagnostics()
-        # Nothing is there yet: that is information.
+        # A missing file is information.
         places = [(d["severity"], d["range"]["start"]["line"]) for d in found]
         assert places == [(3, 2), (3, 4)], found
         assert text.ask("definition", '"t.npy"', 2) is None
@@ -373,7 +373,7 @@ def files():
         assert place["range"]["start"]["line"] == 1
         there = text.ask("definition", '"t.npy"', 2)
         assert there["uri"] == pathlib.Path(folder, "t.npy").as_uri()
-        # What a file gave is kept while the file is the same.
+        # The contents of a file are cached while the file is the same.
         pathlib.Path(folder, "a spec.thresholds.json").unlink()
         for columns, codes in [(2, ["E0650"]), (3, ["E0650", "E0307"]), (2, ["E0650"])]:
             pathlib.Path(folder, "t.npy").write_bytes(row_of(columns))

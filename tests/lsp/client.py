@@ -1,6 +1,6 @@
 """A client of `etlc lsp` for tests and measurements.
 
-It speaks the protocol by itself, so that it can also send what no client should.
+It implements the protocol itself, so that it can also send invalid messages.
 """
 import json
 import os
@@ -9,14 +9,14 @@ import subprocess
 
 
 class Client:
-    """One server process. `capabilities`: of the client; None: no `initialize` is sent."""
+    """A server process. `capabilities`: of the client; None: no `initialize` is sent."""
 
     def __init__(self, etlc, capabilities={}, folder=None):
         self.process = subprocess.Popen(
             [etlc, "lsp"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=folder)
         self.buffer = b""
         self.last_id = 0
-        self.notes = []  # notifications that nobody has asked for yet
+        self.notes = []  # notifications not yet read
         if capabilities is not None:
             self.initialized = self.ask("initialize", {"capabilities": capabilities})
             self.tell("initialized", {})
@@ -32,7 +32,7 @@ class Client:
         self.send_bytes(b"Content-Length: %d\r\n\r\n" % len(content) + content)
 
     def receive(self, seconds=20):
-        """The next message; None: the server has ended its output."""
+        """Returns the next message, or None at the end of the server's output."""
         while True:
             head, mark, rest = self.buffer.partition(b"\r\n\r\n")
             if mark:
@@ -53,7 +53,7 @@ class Client:
         self.send({"jsonrpc": "2.0", "method": method, "params": params})
 
     def response(self, wanted):
-        """The response with this id; notifications before it are kept."""
+        """Returns the response with this id; keeps notifications before it."""
         while True:
             message = self.receive()
             assert message is not None, "the server has ended"
@@ -78,7 +78,7 @@ class Client:
         return answer["error"]
 
     def note(self, method):
-        """The next notification of that kind."""
+        """Returns the next notification of that kind."""
         while True:
             for i, message in enumerate(self.notes):
                 if message["method"] == method:
@@ -98,7 +98,7 @@ class Client:
         return self.note("textDocument/publishDiagnostics")["diagnostics"]
 
     def end(self):
-        """Ends the session as the protocol says; the exit status."""
+        """Ends the session by the protocol; returns the exit status."""
         self.ask("shutdown", None)
         self.tell("exit", None)
         return self.wait()
@@ -120,7 +120,7 @@ class Text:
         self.version = 1
 
     def at(self, words, offset=0):
-        """The position of the first `words`, which are ASCII, as all before them on the line."""
+        """Returns the position of the first `words`; the line is ASCII up to there."""
         index = self.text.index(words) + offset
         before = self.text[:index].split("\n")
         return {"line": len(before) - 1, "character": len(before[-1])}
@@ -147,7 +147,7 @@ class Text:
                                  self.params(self.at(words, offset), **more))
 
     def format(self):
-        """The formatted text; None: it cannot be formatted."""
+        """Returns the formatted text, or None if it cannot be formatted."""
         edits = self.client.ask("textDocument/formatting", {
             "textDocument": {"uri": self.uri}, "options": {"tabSize": 4, "insertSpaces": True}})
         return None if edits is None else applied(self.text, edits)
@@ -157,7 +157,7 @@ class Text:
 
 
 def offset_of(text, position):
-    """Of a position in UTF-16 units."""
+    """Returns the index of a position in UTF-16 units."""
     kept = text.splitlines(keepends=True)
     if position["line"] >= len(kept):
         return len(text)
@@ -171,7 +171,7 @@ def offset_of(text, position):
 
 
 def applied(text, edits):
-    """The text after edits that do not overlap."""
+    """Returns the text after edits that do not overlap."""
     for edit in sorted(edits, key=lambda e: offset_of(text, e["range"]["start"]), reverse=True):
         begin = offset_of(text, edit["range"]["start"])
         end = offset_of(text, edit["range"]["end"])

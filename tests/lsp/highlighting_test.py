@@ -1,6 +1,6 @@
 """highlighting_test.py SOURCE: the TextMate grammar highlights the lexer's words, and no others.
 
-A word that is added to grammar/EtlLexer.g4 alone fails here: it has no phrase, and no colour.
+A word that is only in grammar/EtlLexer.g4 fails here: it has no phrase, and no colour.
 """
 import json
 import pathlib
@@ -11,7 +11,7 @@ SOURCE = pathlib.Path(sys.argv[1])
 GRAMMAR = json.loads((SOURCE / "editors/vscode/syntaxes/etl.tmLanguage.json").read_text())
 MARKS = "keyword", "storage", "support", "constant.language"
 
-# Where a contextual word is a word of the language: `lexer word`, then the phrase.
+# Phrases in which a contextual word is a keyword: `lexer word`, then the phrase.
 PHRASES = {
     "in": "input x : f32 in [0, 1];", "hold": "input z : f32[2] hold 3;",
     "missing": "input b : bool missing false;", "scale": "input z : i8[4] scale 0.5;",
@@ -44,7 +44,7 @@ PHRASES = {
 
 
 def lexer_words():
-    """Reserved words with symbols, and contextual words, as the lexer spells them."""
+    """Returns reserved words with symbols, and contextual words, as the lexer spells them."""
     text = (SOURCE / "grammar/EtlLexer.g4").read_text()
     words = {True: [], False: []}
     reserved = True
@@ -63,7 +63,7 @@ def patterns():
 
 
 def coloured(text):
-    """What TextMate makes of it: words with the names of their scopes."""
+    """Highlights a text as TextMate does: returns words with the names of their scopes."""
     found, at = [], 0
     while True:
         first = None
@@ -108,7 +108,7 @@ def no_other_word_is():
         if not any(name.startswith(MARKS) for name in names):
             continue
         plain = re.sub(r"\[(?:\\.|[^\]])*\]|\\.", " ", pattern.get("match", ""))
-        # What is only looked at, innermost brackets first.
+        # Lookaheads, innermost brackets first.
         while (looked := re.sub(r"\(\?(?:=|!|<=|<!)[^()]*\)", " ", plain)) != plain or \
                 (looked := re.sub(r"\(\?:([^()]*)\)", r" \1 ", plain)) != plain:
             plain = looked
@@ -119,7 +119,7 @@ def no_other_word_is():
 
 
 def names_are_not():
-    """A contextual word where it is a name."""
+    """Contextual words used as names."""
     _, contextual = lexer_words()
     for word in contextual:
         for text in [f"input {word}, b : ", f"predicate {word} = x < 1;", f"let a = p && {word};",
@@ -132,7 +132,7 @@ def names_are_not():
 
 
 def the_folder_is_whole():
-    """What package.json names is there, and is what the editor reads."""
+    """The files named in package.json exist, with the contents that the editor reads."""
     folder = SOURCE / "editors/vscode"
     package = json.loads((folder / "package.json").read_text())
     language, = package["contributes"]["languages"]

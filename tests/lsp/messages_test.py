@@ -1,7 +1,7 @@
-"""messages_test.py ETLC: what a client may send, and what it should not.
+"""messages_test.py ETLC: valid and invalid messages of a client.
 
-Every request gets its answer, bad messages get the error that the protocol has for them, and the
-server ends with the status of the protocol: 0 after `shutdown`, else 1.
+Every request gets its answer, bad messages get the error of the protocol, and the server ends with
+the status of the protocol: 0 after `shutdown`, else 1.
 """
 import subprocess
 import sys
@@ -53,7 +53,7 @@ def order():
     assert client.error("$/unheardOf", {})["code"] == -32601
     client.tell("$/unheardOf", {})
     client.tell("unheardOf", {})
-    # What was opened too early is not open.
+    # A document opened too early is not open.
     where = {"textDocument": {"uri": "file:///a"}, "position": {"line": 0, "character": 0}}
     assert client.error("textDocument/hover", where)["code"] == -32602
     client.ask("shutdown", None)
@@ -90,21 +90,21 @@ def bad_frames():
     refused(b"x" * 100000 + b"\r\n\r\n", -32700)
     refused(b"Content-Type: x; charset=utf-16\r\nContent-Length: 1\r\n\r\n", -32700)
     refused(b"3", -32600)
-    # What is left of a broken message ends where the next one begins, on the same line.
+    # The rest of a broken message ends where the next one begins, on the same line.
     refused(b'{"jsonrpc": "2.0"}Content-Length: 2\r\n\r\n', -32700)
     refused(b"{}", -32600)
-    # Too long: it is passed over and not kept.
+    # Too long: skipped without storing it.
     refused(b"Content-Length: 20000000\r\n\r\n", -32700)
     client.send_bytes(b" " * 20000000)
-    # A wrong version with a good id.
+    # A wrong version with a valid id.
     client.send({"jsonrpc": "1.0", "id": "x", "method": "shutdown"})
     assert client.receive()["id"] == "x"
-    # Answers to nothing.
+    # Answers without a request.
     client.send({"jsonrpc": "2.0", "id": 7, "result": None})
     client.send({"jsonrpc": "2.0", "id": 7, "error": {"code": 1, "message": "no"}})
     assert client.end() == 0
 
-    # Bit by bit, with other headers, in another case.
+    # Byte by byte, with other headers, in another case.
     client = Client(ETLC)
     content = b'{"jsonrpc": "2.0", "id": "one", "method": "shutdown"}'
     data = (b"content-type: application/vscode-jsonrpc; charset=utf8\r\n"
@@ -146,10 +146,10 @@ def bad_params():
     client.tell("textDocument/didChange", {
         "textDocument": {"uri": "file:///other", "version": 2}, "contentChanges": []})
     assert "not open" in client.note("window/logMessage")["message"]
-    # Positions beyond the text are its end.
+    # Positions beyond the text count as its end.
     far = {"line": 4000000000, "character": 4000000000}
     assert client.ask("textDocument/hover", text.params(far)) is None
-    # Without any params at all.
+    # Without any params.
     client.send({"jsonrpc": "2.0", "id": 99, "method": "textDocument/hover"})
     assert client.response(99)["error"]["code"] == -32602
     client.last_id = 99
@@ -172,18 +172,18 @@ def edits():
     assert [d["code"] for d in found] == ["E0204"] and found[0]["range"]["start"]["line"] == 2
     edit((1, 7), (1, 6), "x")  # backwards
     assert client.diagnostics() == []
-    edit((99, 0), (99, 5), "// end")  # behind the end
+    edit((99, 0), (99, 5), "// end")  # beyond the end
     edit((2, 900), (2, 900), " // behind the line")
     assert client.diagnostics() == []
     hover = client.ask("textDocument/hover", text.params({"line": 2, "character": 15}))
     assert "float32" in hover["contents"]["value"], hover
-    # Several edits of one message follow one another; a whole text may be among them.
+    # Several edits of one message apply in order; one may replace the whole text.
     text.change([{"text": "spec b;\n"},
                  {"range": {"start": {"line": 1, "character": 0},
                             "end": {"line": 1, "character": 0}},
                   "text": "input p : bool; monitor m = G p;"}])
     assert [d["code"] for d in client.diagnostics()] == []
-    # A burst of edits is looked at once, in its last state.
+    # After a burst of edits only the last state is checked.
     for i in range(200):
         edit((0, 5), (0, 6), "abc"[i % 3])
     client.ask("textDocument/documentSymbol", {"textDocument": {"uri": text.uri}})
@@ -194,7 +194,7 @@ def edits():
 
 
 def beyond_the_basic_plane():
-    # The face takes two UTF-16 units and four bytes.
+    # The emoji takes two UTF-16 units and four bytes.
     spec = 'spec a;\ninput x : f32; /* \U0001F600 */ monitor m = G (x > 0 && q);\n'
     column_of_q = spec.split("\n")[1].index("q")
     for encodings, more in [(None, 1), (["utf-8", "utf-16"], 3), (["utf-32"], 1)]:
@@ -204,7 +204,7 @@ def beyond_the_basic_plane():
         found, = client.diagnostics()
         assert found["range"]["start"] == {"line": 1, "character": column}, found
         assert found["range"]["end"] == {"line": 1, "character": column + 1}, found
-        # An edit that begins in the middle of the face begins before it.
+        # An edit that begins in the middle of the emoji begins before it.
         face = spec.split("\n")[1].index("\U0001F600")
         text.change([{"range": {"start": {"line": 1, "character": face + more},
                                 "end": {"line": 1, "character": face + more + 1}},

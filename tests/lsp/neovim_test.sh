@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# neovim_test.sh NVIM ETLC PAGE: a session in Neovim's own client, with the settings that PAGE,
+# neovim_test.sh NVIM ETLC PAGE: runs a session in Neovim's own client, with the settings that PAGE,
 # docs/editors.md, gives for Neovim 0.7.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)

@@ -1,6 +1,6 @@
-// What formatting promises, for tests and for the fuzzer.
-// Takes: a text. Gives: what is wrong with its formatted form; "" where nothing is, or where the
-// text cannot be read and so is not formatted.
+// Checks formatting, for tests and for the fuzzer.
+// Takes: a text. Gives: the defects of its formatted form; "" if there are none, or if the text
+// cannot be read and so is not formatted.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@
 
 namespace etlc::lsp {
 
-/// Each comment behind the number of words before it, round brackets aside.
+/// Returns each comment with the number of words before it, without round brackets.
 inline std::vector<std::string> comments_of(const source::File& file) {
     std::vector<std::string> all;
     std::uint32_t from = file.text().starts_with("\xEF\xBB\xBF") ? 3 : 0;

@@ -1,4 +1,4 @@
-// Formatting, on every good spec with comments and line breaks thrown in between its words.
+// Formats every good spec, with comments and line breaks inserted between its words.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Places of a text in UTF-16 and in UTF-8, and names of documents.
+// Tests positions in a text in UTF-16 and in UTF-8, and names of documents.
 #include <gtest/gtest.h>
 
 #include "lsp/spec/document.hpp"
@@ -8,7 +8,7 @@
 namespace etlc::lsp {
 namespace {
 
-// a, two bytes, three bytes, four bytes; then all three kinds of line ends.
+// a, characters of two, three and four bytes; then all three kinds of line ends.
 const std::string kText = "a\u00e9\u20ac\U0001F600b\r\nc\rd\n";
 
 TEST(Position, CountsUnitsOrBytes) {

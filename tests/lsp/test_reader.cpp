@@ -1,4 +1,4 @@
-// Frames, in pieces of any size.
+// Reads messages in pieces of any size.
 #include <gtest/gtest.h>
 
 #include "lsp/protocol/reader.hpp"
@@ -7,7 +7,7 @@
 namespace etlc::lsp {
 namespace {
 
-/// Contents, and mistakes in angle brackets, of all frames.
+/// Returns the contents of all messages, with errors in angle brackets.
 std::string read(const std::string& bytes, std::size_t piece) {
     Reader reader;
     std::string all;

@@ -1,4 +1,4 @@
-// Every word of the grammar is explained, in a hover and a completion.
+// Every word of the grammar has an explanation for hover and completion.
 #include <gtest/gtest.h>
 
 #include <fstream>

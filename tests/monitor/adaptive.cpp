@@ -11,15 +11,15 @@
 #include "check/guarantees/provenance.hpp"
 #include "loading.hpp"
 #include "random.hpp"
-#include "thresholds/thresholds.hpp"
+#include "artifacts/thresholds.hpp"
 
 namespace etlc::tests {
 namespace {
 
 constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
-/// "predicate p0 = min l1(v, near) <= 1.25;" with a range of at least gamma around 1.25, no end of
-/// it below 0 where 1.25 is not.
+/// Matches "predicate p0 = min l1(v, near) <= 1.25;" and adds a range of at least gamma around
+/// 1.25, with no end below 0 unless 1.25 is.
 std::string made_adaptive(const std::string& line, Random& random) {
     const std::size_t blank = line.find_last_of(' ');
     const double literal = std::stod(line.substr(blank + 1));
@@ -43,7 +43,7 @@ thresholds::Entry entry(const check::Model& model, check::Index predicate, float
     return result;
 }
 
-/// The miss of a positive frame, by the comparison itself.
+/// Returns the miss of a positive frame, by the comparison itself.
 bool misses(const check::Predicate& predicate, double distance, double epsilon) {
     switch (predicate.comparison) {
         case check::Comparison::less_equal: return !(distance <= epsilon);

@@ -1,7 +1,7 @@
-// Adaptive thresholds in tests: random specs that have some, labels for them, and what the labels
-// ought to do. Takes: seeds. Gives: specs with their thresholds files, labels, and the thresholds
-// at every step by the update as docs/language.md writes it, in double. Keeps true: alpha, gamma
-// and all ends are dyadic, so that double is exact; the update shares nothing with the runtime's.
+// Adaptive thresholds in tests: random specs that have some, labels for them, and the expected
+// effect of the labels. Takes: seeds. Gives: specs with their thresholds files, labels, and the
+// thresholds at every step by the update in docs/language.md, in double. Keeps true: alpha, gamma
+// and all ends are dyadic, so double is exact; the update shares no code with the runtime's.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct Label {
     float distance = 0;
     bool truth = false;
 };
-/// labels[step][predicate]: given before the step, in this order.
+/// labels[step][predicate]: passed before the step, in this order.
 using Labels = std::vector<std::vector<std::vector<Label>>>;
 
 struct AdaptiveSpec {
@@ -29,18 +29,17 @@ struct AdaptiveSpec {
     std::optional<check::Model> model;
 };
 
-/// random_spec with some of its literal thresholds made adaptive: they start at what the literal
-/// was.
+/// Makes some literal thresholds of random_spec adaptive, starting at the literal.
 AdaptiveSpec random_adaptive_spec(std::uint64_t seed, const SpecShape& shape);
 
-/// Distances of the trace's earlier steps, numbers on the grid, infinities and NaN; most labels are
-/// positive.
+/// Makes labels with distances of earlier steps, numbers on the grid, infinities and NaN; most
+/// labels are positive.
 Labels random_labels(const check::Model& model, const reference::Trace& trace, std::uint64_t seed);
 
-/// The thresholds with which a monitor starts that nobody has given labels.
+/// Returns the thresholds of a monitor without labels.
 std::vector<double> calibrated_thresholds(const check::Model& model);
 
-/// Moves `now` by the labels of a whole trace; gives what held at each of its steps.
+/// Moves `now` by the labels of a whole trace; returns the thresholds at each of its steps.
 reference::Thresholds tracked(const check::Model& model, const Labels& labels,
                               std::vector<double>& now);
 

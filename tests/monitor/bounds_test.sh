@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# bounds_test.sh ETLC CXX: the bounds of prefix monitors hold on every continuation; who trusts a
-# final verdict relies on that. At each step lower <= robustness <= upper, and no number of a later
-# step leaves [lower, upper]. This holds for every distance, aggregation, type of input and storage
-# of targets, with and without declared ranges, in `etlc run` and in generated classes. The points
-# are where distances end: a target, its negative, an orthogonal one, zero, tiny and huge ones.
+# bounds_test.sh ETLC CXX: the bounds of prefix monitors hold on every continuation, which users of
+# final verdicts rely on. At each step lower <= robustness <= upper, and no number of a later step
+# leaves [lower, upper]. The test covers every distance, aggregation, type of input and storage of
+# targets, with and without declared ranges, in `etlc run` and in generated classes. The points are
+# at the extremes of distances: a target, its negative, an orthogonal one, zero, tiny and huge ones.
 set -euo pipefail
 etlc=$1 cxx=$2
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -14,8 +14,8 @@ cd "$box"
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
 # The rows of a set are multiples of one vector, so that every aggregation reaches the ends of the
-# range; 25 of them, since a mean of so many angles pi is rounded above pi. Numbers are multiples of
-# 1/4: a sample may be a target in every type of input.
+# range; there are 25 of them, since the mean of so many angles pi is rounded above pi. Numbers are
+# multiples of 1/4, so a sample may equal a target in every type of input.
 awk 'BEGIN {
   print "spec bounds;\ninput z : f32[3];\ninput h : f16[3];\ninput i : i8[3] scale 0.25;"
   print "input w : f32[70];"

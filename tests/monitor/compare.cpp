@@ -70,7 +70,7 @@ private:
     }
     bool equal(double a, double b) const { return a == b || std::abs(a - b) <= slack(b); }
     bool at_most(double a, double b) const { return a <= b + slack(b); }
-    /// A sign that rounding may turn.
+    /// A sign that rounding may change.
     bool near_zero(double value) const { return rounding_ > 0 && std::abs(value) <= rounding_; }
 
     std::optional<std::string> rows(const char* what, const Rows& expected,
@@ -100,7 +100,7 @@ private:
         return {};
     }
 
-    /// What differs, or null.
+    /// Returns the difference, or null.
     const char* verdict(const Verdict& e, const Verdict& o, bool sliding) const {
         if ((e.status == Status::undecided) != (o.status == Status::undecided)) return "decided";
         if (e.status == Status::undecided) return o.final ? "final" : nullptr;
@@ -119,7 +119,7 @@ private:
         return nullptr;
     }
 
-    /// The bounds hold for rho at every later step of this trace, while it is about the position.
+    /// The bounds hold for rho at every later step of this trace with the same position.
     std::optional<std::string> later_values() const {
         for (std::size_t m = 0; m < model_.monitors.size(); ++m) {
             if (model_.monitors[m].sliding) continue;

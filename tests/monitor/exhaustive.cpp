@@ -25,7 +25,7 @@ void append(Formulas& all, const Formulas& more) {
     all.insert(all.end(), more.begin(), more.end());
 }
 
-/// Every operator that takes an interval, with each of `intervals`, and negated.
+/// Every operator with an interval, with each of `intervals`, and negated.
 void append_operators(Formulas& all, const Formulas& intervals, const Formulas& unary,
                       const Formulas& binary) {
     for (const std::string& op : unary) append(all, with(intervals, op, " p"));
@@ -34,7 +34,7 @@ void append_operators(Formulas& all, const Formulas& intervals, const Formulas& 
 }
 
 const Formulas kWithoutInterval = {"X p", "!X p", "X X q", "Y p", "!Y p", "Y Y q"};
-/// Where an operand says nothing, what is left is whether the window has a position at all.
+/// With constant operands the result depends only on whether the window has a position.
 const Formulas kOverConstants = {
     "F[2, 3] true",   "G[1, 2] false",   "O[2, 3] true",   "H[1, 2] false",
     "p S[2, 2] true", "p S[1, 3] true",  "true S[1, 2] q", "!(p S[2, 2] true)",

@@ -1,8 +1,7 @@
 // Every operator over every short trace.
 // Gives: a spec with a monitor for each operator and interval, each Boolean connective and the
-// usual nestings over two predicates p and q; and all traces of a length over the values that
-// matter. Keeps true: p and q have values of different size, so that a verdict tells which of them
-// decided it.
+// usual nestings over two predicates p and q; and all traces of a length over the relevant values.
+// Keeps true: p and q have values of different size, so a verdict shows which of them decided it.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +19,8 @@ std::string exhaustive_spec(const std::string& name = "exhaustive",
 /// Sliding monitors, with bounded futures and past operators over them.
 std::string exhaustive_sliding_spec(const std::string& name = "exhaustive_sliding");
 
-/// All traces of `steps` steps over x in {-1, 2} and y in {-2, 1}: 4^steps; with `gaps` either may
-/// be missing: 9^steps.
+/// Returns all traces of `steps` steps over x in {-1, 2} and y in {-2, 1}: 4^steps; with `gaps`
+/// either may be missing: 9^steps.
 class AllTraces {
 public:
     AllTraces(std::size_t steps, bool gaps);

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # flags_test.sh ETLC GXX CLANGXX: headers and the runtime under many flags. Each set of flags
 # compiles. Objects of two sets share no inline function of ours, unless the flags leave all code
-# the same to the byte. A unit answers the same bits alone and linked with another, in either
-# order, even if that one is compiled for a CPU that this machine does not have.
+# the same to the byte. A unit gives the same bits alone and linked with another, in either order,
+# even if that one is compiled for a CPU that this machine does not have.
 set -euo pipefail
 etlc=$1 gxx=$2 clangxx=$3
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -12,8 +12,8 @@ trap 'rm -rf "$box"' EXIT
 cd "$box"
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
-# Every family of kernels: rows in lanes and in columns, int8 rows within bounds, float32 where
-# those leave a comparison open; and state of every kind: a window, a machine, a past operator.
+# Every family of kernels: rows in lanes and in columns, int8 rows within bounds, float32 for
+# undecided comparisons; and every kind of state: a window, a machine, a past operator.
 awk 'BEGIN {
   srand(3)
   print "spec flags;\ninput z : f32[70];\ninput y : f16[5];\ninput x : f32 in [0, 9];"
@@ -131,7 +131,7 @@ while read -r name cxx flags; do
     fail "$name: $cxx $flags does not compile: $(head -n 3 errors)"
 done < <(sets)
 
-# Functions of which the linker keeps one copy for each name.
+# Functions of which the linker keeps one copy per name.
 for object in *.o; do
   nm --defined-only "$object" |
     awk -v object="${object%.o}" '$2 ~ /^[WwVuv]$/ && $3 ~ /etlmon|flags/ { print $3, object }'
@@ -152,8 +152,29 @@ for same in as_*.o; do
     fail "$same and ${same#as_} have the names of one another, and other code"
 done
 
-# Units together. Where this machine cannot run one, it is still linked.
-run_with() {  # UNIT OBJECT...: what the unit answers in a program of these objects
+# The short name of a standalone header differs where vector instructions or -ffast-math do.
+mkdir standalone
+"$etlc" flags.etl --standalone -o standalone/flags.hpp
+while read -r name flags; do
+  # shellcheck disable=SC2086
+  "$gxx" -std=c++17 $flags -DANSWERS="answers_$name" -I standalone -c unit.cpp \
+    -o "standalone/$name.o" || fail "standalone $name does not compile"
+  nm --defined-only "standalone/$name.o" | awk '$2 ~ /^[WwVuv]$/ && $3 ~ /etlmon|flags/ { print $3 }'
+done >standalone.txt <<'END'
+base -O0
+fast -O0 -ffast-math
+avx -O0 -mavx
+avx2 -O0 -mavx2
+fma -O0 -march=x86-64-v3
+avx512 -O0 -march=x86-64-v4
+END
+[ "$(wc -l <standalone.txt)" -gt 300 ] || fail "no inline function in standalone objects"
+shared=$(sort standalone.txt | uniq -d | head -n 1)
+[ -z "$shared" ] || fail "standalone: one name under different flags: $(c++filt "$shared")"
+grep -q N6etlmon4v0_2 standalone.txt || fail "the short name is longer than v0_2"
+
+# Links units together. Units that this machine cannot run are linked only.
+run_with() {  # UNIT OBJECT...: the output of the unit in a program of these objects
   local unit=$1
   shift
   "$gxx" "main_$unit.o" "$@" -o program

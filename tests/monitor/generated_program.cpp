@@ -12,11 +12,11 @@
 namespace etlc::tests {
 namespace {
 
-// As harsh as the promise in docs/generated-code.md.
+// The warnings promised in docs/generated_code.md.
 constexpr const char* kFlags =
     "-std=c++17 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror "
     "-fno-exceptions -fno-rtti";
-// All operators in one class are more than one class should hold.
+// All operators in one class exceed the default limits.
 constexpr const char* kLimits = "--max-state 16777216 --max-code 16777216 --max-work 67108864";
 
 void write_text(const std::filesystem::path& path, const std::string& text) {

@@ -47,7 +47,7 @@ std::string feeding(const check::Model& model) {
     return result + "  }\n";
 }
 
-/// A class whose verdicts wait for nothing has no finish(), and none is called.
+/// A class without delayed verdicts has no finish(), and none is called.
 std::string finishing(const check::Model& model) {
     const bool waits = std::any_of(
         model.monitors.begin(), model.monitors.end(),
@@ -72,7 +72,7 @@ std::string reporting(const check::Model& model) {
     return result + "  }\n";
 }
 
-/// Adaptive thresholds: labels before a step, and back to the start.
+/// Passes labels of adaptive thresholds before a step, and resets them to the start.
 std::string labelling(const check::Model& model) {
     std::string labels = "  static void labels(Monitor& m) {\n    (void)m;\n";
     std::string restart = "  static void restart(Monitor& m) {\n    (void)m;\n";
@@ -84,7 +84,7 @@ std::string labelling(const check::Model& model) {
     return labels + "  }\n" + restart + "  }\n";
 }
 
-/// restart_NAME() where restarts_before.hpp says so.
+/// Calls restart_NAME() as restarts_before.hpp requires.
 std::string restarting(const check::Model& model) {
     std::string result =
         "  static void restart_before(Monitor& m, uint32_t step) {\n    (void)m, (void)step;\n";

@@ -1,5 +1,5 @@
-// The C++ between a generated class and driver/harness.hpp.
-// Takes: the typed spec. Gives: source text that feeds its inputs and reports its verdicts and
+// Makes the C++ between a generated class and driver/harness.hpp.
+// Takes: the typed spec. Gives: source text that sets its inputs and reports its verdicts and
 // telemetry by name.
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace etlc::tests {
 
-/// Defines `void answer_SPEC()` for the class in "SPEC.hpp", which may say why. `session`: who
-/// answers, harness::Session or another of driver/.
+/// Defines `void answer_SPEC()` for the class in "SPEC.hpp", which may have --explain. `session`:
+/// harness::Session or another of driver/.
 std::string adaptor_source(const check::Model& model, bool explains, const std::string& session);
 
 /// Defines main, which serves the specs in this order.

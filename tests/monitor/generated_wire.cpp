@@ -18,7 +18,7 @@ void put(std::string& bytes, T value) {
     bytes.append(raw, sizeof value);
 }
 
-/// IEEE bits of a float16 that holds `value` exactly, an infinity or a NaN.
+/// Returns the bits of a float16 that holds `value` exactly, an infinity or a NaN.
 std::uint16_t float16_bits(double value) {
     const int sign = std::signbit(value) ? 0x8000 : 0;
     if (std::isnan(value)) return static_cast<std::uint16_t>(sign | 0x7e00);
@@ -115,7 +115,7 @@ reference::Verdict Decoder::verdict() {
     const double robustness = static_cast<double>(take<float>());
     const double lower = static_cast<double>(take<float>());
     const double upper = static_cast<double>(take<float>());
-    // satisfied, violated, unknown: exactly one where it is decided, else none
+    // satisfied, violated, unknown: exactly one if it is decided, else none
     switch (bits & 15U) {
         case 8 + 1: result.status = Status::satisfied; break;
         case 8 + 2: result.status = Status::violated; break;

@@ -14,30 +14,30 @@
 
 namespace etlc::tests {
 
-/// Two traces of the same spec; the monitor runs the first, the second beside it, and the second
-/// again after a reset.
+/// Two traces of the same spec: the monitor runs the first, a second instance the second, and the
+/// first instance runs the second again after a reset.
 struct Request {
     std::uint32_t spec = 0;
     reference::Trace first;
     reference::Trace second;
-    Labels first_labels{};  ///< where the spec has adaptive thresholds
+    Labels first_labels{};  ///< if the spec has adaptive thresholds
     Labels second_labels{};
 };
 using Answer = std::array<Observed, 3>;
 
-/// A sample's elements, as the class of its input has them.
+/// Returns a sample's elements in the type of the input.
 std::string encode_sample(const check::Input& input, const std::vector<double>& sample);
 
 std::string encode(const check::Model& model, const Request& request);
 
-/// Takes the answer off the front of what the harness wrote. Throws std::out_of_range where the
-/// bytes end early.
+/// Takes the next answer from the harness's output. Throws std::out_of_range if the bytes end
+/// early.
 class Decoder {
 public:
     explicit Decoder(const std::string& bytes) : bytes_(bytes) {}
 
     Answer answer(const check::Model& model, bool explains, const Request& request);
-    /// The number of allocations, which ends the answers.
+    /// Reads the number of allocations, which ends the answers.
     std::uint64_t allocations();
     bool at_end() const { return position_ == bytes_.size(); }
 

@@ -23,7 +23,7 @@ namespace etlc::tests {
 
 namespace {
 
-/// As telemetry, wherever they have a value at every step.
+/// As telemetry, if they have a value at every step.
 void keep_lets(check::Model& model) {
     const std::vector<check::Reach> reach = check::reaches(model);
     for (check::Let& let : model.lets) let.telemetry = reach[let.formula].future == check::kNone;

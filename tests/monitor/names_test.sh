@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# names_test.sh ETLC CHECK_NAMES CXX...: no name that a spec may declare collides with what the
-# generated code is made of. Every identifier of the headers of one spec that has everything, in
-# both modes, becomes a name of that spec: as an input, a flag, an embedding, a target, a predicate,
-# a let, a monitor, a sliding monitor and a namespace. The headers compile without a warning, and
-# their verdicts are those of `etlc run`. The last compiler makes the program that says so.
+# names_test.sh ETLC CHECK_NAMES CXX...: no name that a spec may declare collides with the generated
+# code. Every identifier in the headers of one spec with all features, in both modes, becomes a name
+# of that spec: as an input, a flag, an embedding, a target, a predicate, a let, a monitor, a
+# sliding monitor and a namespace. The headers compile without a warning, and their verdicts equal
+# those of `etlc run`. The last compiler makes the program that prints them.
 set -euo pipefail
 etlc=$1
 check_names=$2
@@ -65,10 +65,10 @@ declared=$(grep -oE '(input|target|predicate|let|monitor) [a-z_, ]+' base.txt |
   sed 's/^[a-z]* //; s/,//g')
 "$check_names" field <all.txt | grep -vxF "$(tr -s ' ' '\n' <<<"$declared")" >names.txt
 [ "$(wc -l <names.txt)" -gt 120 ]
-printf "%s\n" step finished measured targets verdicts >>names.txt  # what an older header had
+printf "%s\n" step finished measured targets verdicts >>names.txt  # identifiers of an older header
 LC_ALL=C sort -u names.txt -o names.txt
 
-# ---- each in each role, all at once: a spec, a trace and what feeds it
+# ---- each in each role, all at once: a spec, a trace and the feeding code
 
 roles=7
 steps=10
@@ -186,7 +186,7 @@ inline void show(const char* mode, int step, const char* name, const etlmon::Boo
                 word(v.satisfied(), v.violated(), v.decided()), int(v.final()));
 }
 END
-# Every header is compiled; the verdicts are asked for in one mode a turn.
+# Every header is compiled; verdicts are compared in one mode at a time.
 for ((turn = 0; turn < roles; ++turn)); do
     for values in robustness boolean; do
         space=zz_${values}_$turn
@@ -272,7 +272,7 @@ for values in robustness boolean; do
                  print "monitor zy" NR " = F[1, 4] " $1 ";" }' $lets
         } >lets.etl
         header lets.etl lets.hpp --values $values
-        # Comments are broken elsewhere where names are longer, and the specs are two.
+        # Longer names change the line breaks of comments, and there are two specs.
         sed 's| *//.*||; /kSpecHash/d; /^ *$/d' lets.hpp >>lets_$values.txt
     done
     awk '{ lines[NR] = $0 }

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# narrow_targets_test.sh ETLC CXX FLAGS...: with --targets-as the verdicts are those of float32
-# targets in the same build, on inputs that lie as close to the thresholds as float32 can say; lower
-# and upper enclose them; the generated class, of float32 targets too, and `etlc run` agree to the
-# bit. FLAGS: other builds, each an argument, in which the class is compared with the one of float32
+# narrow_targets_test.sh ETLC CXX FLAGS...: with --targets-as the verdicts equal those of float32
+# targets in the same build, on inputs as close to the thresholds as float32 allows; lower and upper
+# enclose them; the generated class, also with float32 targets, and `etlc run` agree to the bit.
+# FLAGS: other builds, one per argument, in which the class is compared with the one of float32
 # targets.
 set -euo pipefail
 etlc=$1 compiler=$2
@@ -13,8 +13,8 @@ box=$(mktemp -d)
 trap 'rm -rf "$box"' EXIT
 cd "$box"
 
-# The distances to float32 targets are not known here: the trace walks through every threshold, in
-# steps that shrink to roundings of it. z is measured on few short rows, y on more and longer ones.
+# The distances to float32 targets are not known here: the trace crosses every threshold in steps
+# that shrink to single roundings. z is measured on few short rows, y on more and longer ones.
 awk 'BEGIN {
   srand(7); D = 37; K = 5; steps = 900; E = 70; L = 9
   for (k = 0; k < K; ++k) for (i = 0; i < D; ++i) g[k, i] = sprintf("%.6f", 2 * rand() - 1)
@@ -100,14 +100,14 @@ sliding monitor seventeen = nearer;
 sliding monitor eighteen = farther;
 END
 
-# encloses WIDE NARROW [ROUNDED]: lines of the first are lines of the second but for the numbers,
-# which enclose them. ROUNDED: both builds may add in any order. Where float32 decided, each then
-# has a rounding of its own, as two builds without narrow rows have: at step 874, case 'six', the
-# exact angle is 0.155157831, and g++ 12 gave 0.155157819 and 0.155157804 for the same source, one
-# unit in the last place apart and well within error_bounds.hpp. Such lines may differ by those
-# bounds, (3/4 D + 16) FLT_EPSILON of the distance, or of 1 for an angle; the status too, where the
+# encloses WIDE NARROW [ROUNDED]: the lines are equal except for numbers, and the numbers of WIDE
+# enclose those of NARROW. ROUNDED: both builds may add in any order. If float32 decided, each then
+# has its own rounding, as two builds without narrow rows have: at step 874, case 'six', the exact
+# angle is 0.155157831, and g++ 12 gave 0.155157819 and 0.155157804 for the same source, one unit in
+# the last place apart and well within error_bounds.hpp. Such lines may differ by those bounds, (3/4
+# D + 16) FLT_EPSILON of the distance, or of 1 for an angle; the status may differ too if the
 # robustness is within them. They have to be rare: clang 14 makes half a percent of them, mostly
-# angles, as |z| is found once for all distances to float32 rows.
+# angles, because |z| is computed once for all distances to float32 rows.
 encloses() {
   paste -d, "$1" "$2" | awk -F, -v rounded="${3:-}" 'BEGIN {
     split("soon .5 kept .5 all 5.25 each 5.25 one .5 two .25 three 2.5 four .15 five .02 six 1 " \
@@ -202,7 +202,7 @@ grep -q 'z_direction = etlmon::direction_of' wide/narrow.hpp
 "$compiler" -std=c++17 -O1 -I "$runtime" -I wide source/main.cpp -o compiled
 ./compiled <narrow.csv >compiled.csv
 cmp f32.csv compiled.csv
-built() {  # FLAGS FOLDER: what the class in the folder answers in that build
+built() {  # FLAGS FOLDER: the output of the class in the folder in that build
   "$compiler" -std=c++17 $1 -I "$runtime" -I "$2" source/main.cpp -o compiled
   ./compiled <narrow.csv
 }

@@ -1,6 +1,6 @@
-// The plan's evaluator as a system under test.
-// Takes: a typed spec. Gives: what the evaluator says on a trace. Keeps true: runs are independent
-// of each other, but for what labels did to thresholds.
+// Runs the plan's evaluator for tests.
+// Takes: a typed spec. Gives: the evaluator's output for a trace. Keeps true: runs are independent
+// of each other, except for thresholds that labels have moved.
 #pragma once
 
 #include <optional>
@@ -15,22 +15,21 @@
 
 namespace etlc::tests {
 
-/// Above what any spec of the tests needs: all operators at once are more than one monitor class
-/// should hold.
+/// More than any spec of the tests needs: all operators together exceed the default limits.
 constexpr plan::Limits kRoomy{16U << 20U, 16U << 20U, 64U << 20U};
 
 class PlanRunner {
 public:
-    /// The model must outlive the runner. `limits` as `etlc` takes them.
+    /// The model must outlive the runner. `limits` as in `etlc`.
     explicit PlanRunner(const check::Model& model, const plan::Limits& limits = {},
                         check::Values values = check::Values::robustness);
 
-    /// Empty where the spec was planned; else the codes of the errors, separated by spaces.
+    /// Empty if the spec was planned; else the codes of the errors, separated by spaces.
     const std::string& refusal() const { return refusal_; }
     /// The atoms that the plan computes.
     Dependencies dependencies() const;
-    /// A run from reset to the last call of finish(), with labels before each step. Adaptive
-    /// thresholds go on from where the last run left them.
+    /// Runs from reset to the last call of finish(), with labels before each step. Adaptive
+    /// thresholds continue from the previous run.
     Observed run(const reference::Trace& trace, const Labels* labels = nullptr);
 
 private:
@@ -40,17 +39,17 @@ private:
     std::string refusal_;
 
     std::vector<reference::Verdict> verdicts(const std::vector<etlmon::Verdict>& from) const;
-    /// In place of what sliding monitors say, what lets of the same formulas do; not of shifted
-    /// monitors, whose lets are not.
+    /// Replaces the output of sliding monitors by that of lets with the same formulas, except for
+    /// shifted monitors.
     void take_from_lets(std::vector<reference::Verdict>& verdicts) const;
     std::vector<Observed::Predicate> telemetry() const;
     std::vector<std::uint64_t> positions() const;
 };
 
-/// A step of a trace as an evaluator takes it.
+/// A step of a trace in the format of the evaluator.
 std::vector<plan::Sample> samples_of(const reference::Step& step);
 
-/// A verdict of the runtime in the reference's terms.
+/// Converts a verdict of the runtime to the reference's type.
 reference::Verdict observed(const etlmon::Verdict& verdict);
 
 }  // namespace etlc::tests

@@ -12,14 +12,14 @@ class Random {
 public:
     explicit Random(std::uint64_t seed) : engine_(seed) {}
 
-    /// Uniform in [low, high].
+    /// Returns a number uniform in [low, high].
     int between(int low, int high) {
         return low + static_cast<int>(engine_() % static_cast<std::uint64_t>(high - low + 1));
     }
     bool chance(double probability) { return uniform() < probability; }
-    /// Uniform in [0, 1).
+    /// Returns a number uniform in [0, 1).
     double uniform() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
-    /// A multiple of `grain` in [low, high].
+    /// Returns a multiple of `grain` in [low, high].
     double grid(double low, double high, double grain) {
         return low + grain * between(0, static_cast<int>((high - low) / grain));
     }

@@ -84,8 +84,8 @@ RandomFormula::Piece RandomFormula::future(int depth, Allowed allowed) {
     }
 }
 
-/// G (f || F[a,b] (g && F[c,d] h)) or its dual, sometimes without f, or with an until inside: few
-/// formulas that grow by chance have this shape.
+/// G (f || F[a,b] (g && F[c,d] h)) or its dual, sometimes without f, or with an until inside:
+/// random growth rarely gives this shape.
 RandomFormula::Piece RandomFormula::response_in_two(int depth, Allowed allowed) {
     const bool always = random_.chance(0.5);
     const auto operand = [&] { return grow(depth - 3, {false, allowed.past}); };

@@ -1,5 +1,4 @@
-// Random formulas as text, with symbols or words, brackets where the grammar needs them and
-// sometimes where not.
+// Random formulas as text, with symbols or words, and with necessary and some unnecessary brackets.
 #pragma once
 
 #include <functional>
@@ -16,9 +15,9 @@ struct FormulaShape {
     int window = 4;
     bool nested = true;             ///< temporal operators below temporal operators
     bool bounded = true;            ///< future operators with an upper bound
-    bool unbounded = true;          ///< future operators without one
-    bool past_over_future = false;  ///< else past operators see only the past and the present
-    double future = 0.5;            ///< share of future operators where any may stand
+    bool unbounded = true;          ///< unbounded future operators
+    bool past_over_future = false;  ///< otherwise past operators see only the past and the present
+    double future = 0.5;            ///< fraction of future operators where both kinds are allowed
 };
 
 class RandomFormula {
@@ -33,7 +32,7 @@ public:
           let_name_(std::move(let_name)) {}
 
     std::string make() { return grow(shape_.depth, {true, true}).text; }
-    /// The lets that the formulas made since the last call refer to.
+    /// The lets that formulas made since the last call refer to.
     std::string take_lets() { return std::exchange(lets_, {}); }
 
 private:
@@ -66,7 +65,7 @@ private:
     Piece unary(const std::string& word, const std::string& interval, const Piece& operand);
     Piece binary(const Piece& left, const std::string& word, const std::string& interval,
                  const Piece& right, Level level);
-    /// In brackets unless it binds tighter than `outer`.
+    /// Adds brackets unless it binds tighter than `outer`.
     std::string inside(const Piece& piece, Level outer);
     std::string bounded_interval();
     std::string future_interval();

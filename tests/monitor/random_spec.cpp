@@ -12,7 +12,7 @@
 namespace etlc::tests {
 namespace {
 
-/// Declarations that formulas are built on.
+/// The declarations that formulas use.
 class Declarations {
 public:
     Declarations(Random& random, const SpecShape& shape)
@@ -39,7 +39,7 @@ public:
 
     const std::vector<std::string>& atoms() const { return atoms_; }
 
-    /// A comparison that stands in a formula.
+    /// Returns a comparison within a formula.
     std::string comparison() {
         if (random_.chance(0.3)) return comparison_of_scalars();
         return fmt::format("{} {} {}", expression(1), compare(), number(-3, 3));
@@ -66,7 +66,7 @@ private:
     }
     std::string compare() { return random_.word({"<=", "<", ">=", ">"}); }
 
-    /// By order or equality, of what is exact: inputs, numbers and a constant, on either side.
+    /// An order or equality of exact values: inputs, numbers and a constant, on either side.
     std::string comparison_of_scalars() {
         const auto side = [this] { return random_.chance(0.3) ? "c" : number(-3, 3); };
         const std::string op = random_.chance(0.5) ? random_.word({"==", "!="}) : compare();
@@ -107,21 +107,21 @@ private:
         return fmt::format("projection {} = {}{};\n", name, matrix(rows, columns, grid), offset);
     }
 
-    /// Of few binary digits: a sum of squares of Q(P(v)) must be exact in float32.
+    /// Few binary digits: a sum of squares of Q(P(v)) must be exact in float32.
     std::string projections() {
         projected_ = random_.between(1, 3);
         return projection("P", projected_, dimension_, 0.25) + projection("Q", 2, projected_, 1) +
                projection("T", 1, 2, 0.25);
     }
 
-    /// Rows are 1, 2 or 4, so that their mean is exact.
+    /// 1, 2 or 4 rows, so that their mean is exact.
     std::string target(const char* name, int columns, const char* space = "") {
         std::string rows;
         const int count = 1 << random_.between(0, 2);
         rows_[name] = count;
         for (int row = 0; row < count; ++row) {
             std::string values;
-            // A row must not be zero under cosine and angular: the first element is not.
+            // A row must not be zero under cosine and angular, so the first element is not.
             for (int n = 0; n < columns; ++n)
                 values += (n > 0 ? ", " : "") + (n > 0 ? number(-3, 3) : number(1, 3));
             rows += fmt::format("{}[{}]", row > 0 ? ", " : "", values);
@@ -248,7 +248,7 @@ std::string random_spec(std::uint64_t seed, const SpecShape& shape) {
                                              : random.word({"restartable ", "repeating "});
         std::string text = formula.make();
         result += formula.take_lets();
-        if (slides) {  // by a name of its own: what a let says is compared with what it says
+        if (slides) {  // under a separate name, since the output of a let is compared with this one
             result += fmt::format("let said{} = {};\n", n, text);
             text = fmt::format("said{}", n);
         }

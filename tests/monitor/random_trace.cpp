@@ -30,7 +30,7 @@ std::vector<double> valid_sample(Random& random, const check::Input& input, bool
     return sample;
 }
 
-/// Something that must count as missing or, a zero vector, as unknown to some predicates.
+/// Makes a sample that counts as missing or, a zero vector, as unknown to some predicates.
 std::vector<double> invalid_sample(Random& random, const check::Input& input) {
     std::vector<double> sample(input.dimension, 0.0);
     if (input.type == InputType::boolean) return {};
@@ -47,7 +47,7 @@ std::vector<double> invalid_sample(Random& random, const check::Input& input) {
     return sample;
 }
 
-/// Multiples of 1/4 that float32 still adds and squares without rounding.
+/// Multiples of 1/4 that float32 adds and squares without rounding.
 std::vector<double> extreme_sample(Random& random, const check::Input& input) {
     constexpr double kFar = 64;
     std::vector<double> sample = valid_sample(random, input, true);
@@ -70,7 +70,7 @@ std::vector<std::string> columns(const check::Input& input) {
     return result;
 }
 
-/// Files hold the integers of an i8 embedding, the reference takes its real values.
+/// Files hold the integers of an i8 embedding, the reference takes the real values.
 double unit(const check::Input& input) {
     return input.type == InputType::i8 ? static_cast<double>(input.scale) : 1.0;
 }

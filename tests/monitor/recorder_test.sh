@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# recorder_test.sh ETLC VALUES CXX FLAG...: a class with a flight recorder, stepped over a trace;
-# `etlc incident` prints of what it wrote the distances and the verdicts that `etlc run` has of the
-# same steps. Its trace and its spec give the same distances again. Damaged files are refused.
+# recorder_test.sh ETLC VALUES CXX FLAG...: steps a class with a flight recorder over a trace; `etlc
+# incident` prints the distances and verdicts that `etlc run` has for the same steps. The incident's
+# trace and spec give the same distances again. Damaged files are refused.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 runtime=$here/../../runtime/include
@@ -104,7 +104,7 @@ END
 read -r incidents lost < <(./drive <drive.csv)
 [ "$incidents" = 6 ] && [ "$lost" -gt 0 ] || fail "$incidents incidents, $lost lost"
 
-# What `etlc run` says of each step, in the form of an incident without its nearest rows.
+# The output of `etlc run` for each step, in the form of an incident without its nearest rows.
 "$etlc" run drive.etl --values "$values" --trace drive.csv --distances >run.csv
 awk -F, '
   BEGIN { final["violated"] = "alarm"; final["satisfied"] = "fulfilled" }
@@ -120,7 +120,7 @@ for n in 0 1 2 3 4 5; do
   cut -d, -f1-3,5,7,8,11-15 incident.csv | tail -n +2 >found
   first=$(head -1 found | cut -d, -f1)
   last=$(tail -1 found | cut -d, -f1)
-  # A class of truth values measures what it asks for, etlc run everything.
+  # A class of truth values measures only what it needs, etlc run everything.
   sed -n "$((first + 1)),$((last + 1))p" expected | paste -d, - found | awk -F, '
     { for (c = 1; c <= 11; ++c) if ($(c + 11) != "unasked" && $c != $(c + 11)) bad = 1 }
     END { exit bad }' || fail "incident $n is not what etlc run says"
@@ -129,7 +129,7 @@ for n in 0 1 2 3 4 5; do
   grep -qx "$first\|$((first + 5))" <<<"$alarm" || fail "incident $n has its alarm elsewhere"
   read_it | grep -q "^incident $n of drive, episode 0: alarm of " || fail "no table"
 
-  # The same distances, of a spec that has them for inputs.
+  # The same distances, from a spec with distances as inputs.
   read_it --format trace >again.csv
   read_it --format spec >again.etl
   "$etlc" run again.etl --trace again.csv --distances 2>warnings |
@@ -138,7 +138,7 @@ for n in 0 1 2 3 4 5; do
     fail "the trace of incident $n has other distances"
 done
 
-# Cut, longer, changed, of another spec.
+# Cut, extended, changed, from another spec.
 refused() {
   ! "$etlc" incident damaged --spec "${2:-drive.etl}" --values "$values" >out 2>message ||
     fail "$1 is taken"
@@ -157,7 +157,7 @@ cp incident0 damaged
 sed 's/0.35/0.36/' drive.etl >other.etl
 refused E0833 other.etl
 
-# An adaptive threshold is recorded as it was at each step.
+# An adaptive threshold is recorded with its value at each step.
 "$etlc" "$here/../spec/ok/adaptive.etl" --values "$values" --recorder 4,0,1 -o adaptive.hpp
 cat >adaptive.cpp <<'END'
 #include <cstdio>
@@ -187,7 +187,7 @@ END
 printf '%s\n' step,distance_low,threshold_low,alarm 0,0.899999976,1, 1,0.949999988,0.9375,both |
   diff - found || fail "an adaptive threshold is not what it was"
 
-# Of a contrast the nearest row of each set is known, as that of a distance by itself is.
+# For a contrast the nearest row of each set is known, as for a single distance.
 cat >contrast.etl <<'END'
 spec contrast;
 input z : f32[2];

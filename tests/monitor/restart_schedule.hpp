@@ -1,4 +1,4 @@
-// What the reference says of runs in which monitors restart.
+// Runs the reference with restarts of monitors.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace etlc::tests {
 
-/// What the program and final verdicts restart in the observed run. A monitor's bounds may be
-/// tighter than the definition's, and its verdict final earlier: then the reference has to follow
+/// The restarts of the observed run, by the program and by final verdicts. A monitor's bounds may
+/// be tighter than the definition's, and its verdict final earlier: then the reference must follow
 /// it.
 inline reference::Requests restarts_of(const check::Model& model, const Observed& observed) {
     const std::size_t steps = observed.verdicts.size();
@@ -27,7 +27,7 @@ inline reference::Requests restarts_of(const check::Model& model, const Observed
     return requests;
 }
 
-/// What the reference says of such a run.
+/// Returns the reference's output for such a run.
 inline reference::Run expected_run(const check::Model& model, const reference::Trace& trace,
                                    const Observed& observed,
                                    check::Values values = check::Values::robustness) {

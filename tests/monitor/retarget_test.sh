@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# retarget_test.sh ETLC CXX FLAG...: a class of --retargetable measures with the parameters that it
-# has what a plain class of the same numbers measures, to the bit, and takes others between steps:
-# a kept past is judged as a plain class judges the same robustness read from scalars, a forgotten
-# one as a new monitor. Damaged and foreign parameters are refused and change nothing. A shadow
-# counts what two monitors side by side differ in.
+# retarget_test.sh ETLC CXX FLAG...: a class made with --retargetable measures like a plain class
+# with the same numbers, to the bit, and takes other parameters between steps: a kept past is judged
+# like a plain class that reads the same robustness from scalars, a forgotten one like a new
+# monitor. Damaged and foreign parameters are refused and change nothing. A shadow counts the
+# differences of two monitors side by side.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 runtime=$here/../../runtime/include
@@ -74,8 +74,8 @@ spec 2 8.5 0.25 2.5 3 >2/docking.etl
 "$etlc" 1/docking.etl --namespace first -o first.hpp
 "$etlc" 2/docking.etl --namespace second -o second.hpp
 
-# Parameters: those beside the header are those of --emit params, on every call. Of other numbers
-# the class is the same but for its comments.
+# Parameters beside the header equal those of --emit params, on every call. With other numbers the
+# class is the same except for its comments.
 "$etlc" 1/docking.etl --emit params -o first.bin
 cmp first.bin docking.params.bin || fail "two kinds of parameters"
 head=$(sed -n '/^#pragma/q; s,^//,,p' docking.hpp | tr -d '\n' | tr -s ' ')
@@ -89,11 +89,11 @@ cmp <(code docking.hpp) <(code other.hpp) || fail "a number stands in the class"
 "$etlc" 1/docking.etl --set near=8.25 --emit params >third.bin
 "$etlc" 1/docking.etl --retargetable --namespace a::b --standalone -o pasted.hpp
 cmp pasted.params.bin docking.params.bin || fail "parameters depend on the namespace"
-# Of another shape: a longer window.
+# Another shape: a longer window.
 sed 's/F\[0,6\]/F[0,7]/' 1/docking.etl >1/longer.etl
 "$etlc" 1/longer.etl --emit params -o longer.bin
 
-# The same formulas over scalars that are given each predicate's robustness.
+# The same formulas over scalars that hold each predicate's robustness.
 {
   echo "spec twin;"
   echo "input open : bool;"
@@ -126,7 +126,7 @@ PROGRAM
 "$cxx" -std=c++17 -Wall -Wextra -Wconversion -Wshadow -Wpedantic -Werror pasted.cpp -o pasted
 ./pasted
 
-# What the class calls things of its own is free for a spec.
+# The class's own names are free for a spec.
 cat >thresholds.etl <<'SPEC'
 spec thresholds;
 input numbers : f32[2];
@@ -151,7 +151,7 @@ PROGRAM
 "$cxx" "${flags[@]}" words.cpp -o words
 ./words
 
-# etlc run --retargetable says what such a class says.
+# etlc run --retargetable gives the verdicts of such a class.
 cat >brief.etl <<'SPEC'
 spec brief;
 input x : f32 in [0, 4];

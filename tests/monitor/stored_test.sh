@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# stored_test.sh ETLC VALUES CXX FLAG...: a monitor whose target sets lie in a file gives the
-# verdicts and telemetry of the same monitor with its sets spelled out, bit for bit: every distance
-# and aggregation, contrasts of searched sets, sets in every layout, the runtime included and pasted
-# in. VALUES: robustness, or boolean, where a distance is measured on demand.
+# stored_test.sh ETLC VALUES CXX FLAG...: a monitor with its target sets in a file gives the
+# verdicts and telemetry of the same monitor with its sets in the header, bit for bit: every
+# distance and aggregation, contrasts of searched sets, sets in every layout, the runtime included
+# and pasted in. VALUES: robustness, or boolean, which measures distances on demand.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 runtime=$here/../../runtime/include

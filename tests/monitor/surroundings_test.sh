@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# surroundings_test.sh ETLC SOURCE CXX...: the headers of one spec that has everything, in every
-# form, compile where <windows.h>, <Arduino.h>, Qt and X11 have been included, whose macros its
-# names are, and leave these macros as they were. A monitor at namespace scope is initialised before
-# any code runs, on the host and on the boards, and is what a constructor makes at run time; after
-# reset() a monitor answers as a new one.
+# surroundings_test.sh ETLC SOURCE CXX...: the headers of one spec with all features, in every form,
+# compile after <windows.h>, <Arduino.h>, Qt and X11, whose macros are its names, and leave these
+# macros unchanged. A monitor at namespace scope is initialised before any code runs, on the host
+# and on the boards, and equals one constructed at run time; after reset() a monitor equals a new
+# one.
 set -euo pipefail
 etlc=$1 source=$2
 shift 2
@@ -23,11 +23,13 @@ input hyper : f32[2] hold 1;
 target interface = [[1, 0.5], [0.5, 1]];
 target True = [[-1, 0.25]];
 projection Opposite = [[1, 1], [1, -1]];
+projection Q = [[1, 1], [1, -1]];
 predicate pascal = near <= 1;
 predicate cdecl = min l2(hyper, interface) <= 0.75;
 predicate None = min cosine(hyper, interface) - cosine(hyper, True) <= 0.25;
 predicate Below = l1(Opposite(hyper), True) <= 2 missing true;
-let emit = cdecl || None;
+predicate turned = l1(Q(hyper), True) <= 2;
+let emit = cdecl || None || turned;
 monitor forever = G B1 && F pascal;
 monitor grp1 = G (pascal -> F[2, 5] slots);
 monitor B101 = F (emit && F (Below && F slots));
@@ -127,14 +129,26 @@ END
     done
 done
 
+# ---- a program that has every single capital letter as a macro
+
+letters=()
+for letter in {A..Z}; do letters+=("-D$letter=1"); done
+for form in "${forms[@]}" stored; do
+    echo "#include \"$form.hpp\"" >use.cpp
+    for compiler in "$@"; do
+        "$compiler" "${letters[@]}" -std=c++17 -Wall -Wextra -Werror -I "$runtime" -fsyntax-only \
+            use.cpp || fail "$compiler: $form.hpp where capital letters are macros"
+    done
+done
+
 {
     echo '#include "platform.h"'
     (cd "$runtime" && find etlmon -name '*.hpp' -not -path '*/hosted/*') |
         LC_ALL=C sort | sed 's/.*/#include "&"/'
 } >runtime.cpp
 for compiler in "$@"; do
-    "$compiler" -std=c++17 -Wall -Wextra -Werror -I "$runtime" -fsyntax-only runtime.cpp ||
-        fail "$compiler: the runtime among the macros of a platform"
+    "$compiler" "${letters[@]}" -UF -UI -std=c++17 -Wall -Wextra -Werror -I "$runtime" \
+        -fsyntax-only runtime.cpp || fail "$compiler: the runtime among the macros of a platform"
 done
 
 # ---- at namespace scope

@@ -1,5 +1,6 @@
-// Adaptive thresholds that labels move between the steps: the evaluator and the generated classes
-// held to the reference, and the bounds over continuations to what other labels bring.
+// Tests adaptive thresholds that labels move between the steps: compares the evaluator and the
+// generated classes with the reference, and the bounds over continuations with the effects of other
+// labels.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +24,7 @@ using check::Values;
 using reference::evaluate;
 using reference::Trace;
 
-/// Of the trace of that number: every other one has gaps.
+/// Makes the trace of that number: every other one has gaps.
 TraceShape trace_shape(std::size_t n) {
     return {.steps = 6 + 4 * (n % 5),
             .missing = n % 2 == 0 ? 0 : 0.15,
@@ -47,7 +48,7 @@ TEST_P(AdaptivePlan, AgreesWithTheReference) {
         PlanRunner runner(*spec.model, kRoomy, GetParam());
         if (!runner.refusal().empty()) continue;
         std::vector<double> thresholds =
-            calibrated_thresholds(*spec.model);  // runs go on where the last one ended
+            calibrated_thresholds(*spec.model);  // runs continue from the previous one
         for (int t = 0; t < 5; ++t) {
             const Trace trace = random_trace(*spec.model, 100 * n + t, trace_shape(t));
             const Labels labels = random_labels(*spec.model, trace, 9 * n + t);
@@ -66,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Values, AdaptivePlan, testing::Values(Values::robustnes
                                                                                 : "Robustness");
                          });
 
-/// Whatever the next steps and labels bring, rho stays within what was said.
+/// Whatever later steps and labels come, rho stays within the reported bounds.
 TEST(AdaptiveReference, BoundsHoldForEveryContinuationAndAllLabels) {
     for (int n = 0; n < 60; ++n) {
         const AdaptiveSpec spec = random_adaptive_spec(71000 + n, kSmallShapes[n % 3]);
@@ -100,8 +101,8 @@ TEST(AdaptiveReference, BoundsHoldForEveryContinuationAndAllLabels) {
 
 // ---- generated classes
 
-/// The first mismatch of one run; `thresholds` are those that it starts with, and become those that
-/// it ends with.
+/// Returns the first mismatch of one run; `thresholds` are those at its start, and are updated to
+/// those at its end.
 std::optional<std::string> mismatch(const check::Model& model, const Dependencies& dependencies,
                                     Values values, const Trace& trace, const Labels& labels,
                                     std::vector<double>& thresholds, Observed observed) {
@@ -163,7 +164,7 @@ TEST_P(AdaptiveGenerated, AgreesWithTheReference) {
         check(request.first, request.first_labels, first, 0);
         check(request.second, request.second_labels, second, 1);
         check(request.second, request.second_labels, first,
-              2);  // after reset(), which keeps what was learnt
+              2);  // after reset(), which keeps the thresholds
         if (HasFailure()) return;
     }
 }

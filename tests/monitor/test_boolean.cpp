@@ -1,5 +1,5 @@
-// `--values boolean`: the plan's evaluator on truth values held to the reference, where comparisons
-// decide exactly.
+// Tests `--values boolean`: compares the plan's evaluator on truth values with the reference, where
+// comparisons decide exactly.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,7 +63,7 @@ int effort() {
 
 class BooleanRandom : public testing::TestWithParam<RandomCase> {};
 
-// Numbers lie on a grid: distances are often equal to their thresholds, where < and <= part.
+// Numbers are on a grid: distances often equal their thresholds, where < and <= differ.
 TEST_P(BooleanRandom, AgreesWithTheReference) {
     const RandomCase& random = GetParam();
     for (int n = 0; n < random.specs * effort(); ++n) {

@@ -1,5 +1,5 @@
-// The named cases, each of which once showed a fault. Expected values come from the reference when
-// the test runs; a new case is two new files. test_generated compiles them too.
+// Runs the named cases, each of which once revealed a bug. Expected values come from the reference;
+// a new case is two new files. test_generated compiles them too.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -31,7 +31,7 @@ TEST_P(Case, PlanAgreesWithTheReference) {
     EXPECT_FALSE(mismatch) << *mismatch;
 }
 
-// docs/semantics.md: what is reported is the bounds of the simplified formula, which are tighter
+// docs/semantics.md: the reported bounds are those of the simplified formula, which are tighter
 // than the definition's.
 TEST(Constants, GoBeforeBoundsAreFound) {
     const std::string stem = case_path("constants");

@@ -1,5 +1,5 @@
-// What a Boolean class measures, seen in its telemetry: NaN is "not asked for" where the sample was
-// there.
+// Tests the measurements of a Boolean class through its telemetry: NaN means "not measured" if the
+// sample was present.
 #include <gtest/gtest.h>
 
 #include "demand.hpp"
@@ -14,7 +14,7 @@ bool measured(float distance) {
     return !etlmon::is_nan(distance);
 }
 
-/// z and y are there on every step; armed as told.
+/// z and y are present at every step; armed as given.
 demand::Inputs see(const float (&z)[2], const float (&y)[2], bool armed = false) {
     demand::Inputs in;
     in.z = z;
@@ -23,7 +23,7 @@ demand::Inputs see(const float (&z)[2], const float (&y)[2], bool armed = false)
     return in;
 }
 
-// F (a && F b): a until a was seen, from that step on only b, nothing once the verdict is final.
+// F (a && F b): a until a holds, from that step on only b, nothing once the verdict is final.
 TEST(Demand, OneAfterTheOther) {
     demand::Monitor monitor;
     monitor.step(see(kFar, kBetween));
@@ -44,8 +44,8 @@ TEST(Demand, OneAfterTheOther) {
     EXPECT_FALSE(measured(monitor.distance_b()));
 }
 
-// G (armed && c -> F[0,2] d): nothing while not armed, c while nothing is due, only d while an
-// answer is due.
+// G (armed && c -> F[0,2] d): nothing while not armed, c while no answer is due, only d while one
+// is.
 TEST(Demand, OnlyWhatIsDue) {
     demand::Monitor monitor;
     monitor.step(see(kFar, kOrigin, false));
@@ -55,7 +55,7 @@ TEST(Demand, OnlyWhatIsDue) {
     EXPECT_TRUE(measured(monitor.distance_c()));
     EXPECT_FALSE(measured(monitor.distance_d()));
     EXPECT_TRUE(monitor.step(see(kFar, kOrigin, true))
-                    .answered.violated());  // asked; no answer on this prefix
+                    .answered.violated());  // measured; no answer on this prefix
     EXPECT_TRUE(measured(monitor.distance_c()));
     EXPECT_TRUE(measured(monitor.distance_d()));
     monitor.step(see(kFar, kOrigin, true));
@@ -69,7 +69,7 @@ TEST(Demand, OnlyWhatIsDue) {
     EXPECT_FALSE(measured(monitor.distance_d()));
 }
 
-// A missing sample counts where it was asked for.
+// A missing sample counts if it was needed.
 TEST(Demand, MissingStepsAreThoseThatMattered) {
     demand::Monitor monitor;
     demand::Inputs in = see(kOrigin, kBetween);

@@ -1,5 +1,5 @@
-// The plan's evaluator, which `etlc run` steps, held to the reference: every operator on all short
-// traces, and random specs on random traces.
+// Compares the plan's evaluator, which `etlc run` steps, with the reference: every operator on all
+// short traces, and random specs on random traces.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,8 +22,8 @@ using namespace etlc;
 using namespace etlc::tests;
 using Formulas = SpecShape::Formulas;
 
-/// Where distances round: float32 sums of a few elements, against double. Stated for |value| <= 1,
-/// relative above.
+/// Bound for distances that round: float32 sums of a few elements, against double; absolute for
+/// |value| <= 1, relative above.
 constexpr double kRounding = 1e-5;
 
 void expect_agreement(const check::Model& model, PlanRunner& runner, const reference::Trace& trace,
@@ -73,9 +73,9 @@ TEST(PlanExhaustive, SlidingMonitorsWithGaps) {
         expect_agreement_on_all(exhaustive_sliding_spec(), steps, true);
 }
 
-/// F[a,b] (g && F[c,d] h), alone and as what G responds with, and the duals, with all of these
-/// intervals, over predicates of ranges that differ. Their state machines would take more
-/// operations than these limits allow.
+/// F[a,b] (g && F[c,d] h), alone and as the response of G, and the duals, with all of these
+/// intervals, over predicates with different ranges. Their state machines would exceed these
+/// limits.
 class PlanInTwoParts : public testing::TestWithParam<const char*> {};
 
 TEST_P(PlanInTwoParts, TakesFewOperations) {
@@ -112,7 +112,7 @@ struct RandomCase {
     const char* name;
     SpecShape shape;
     int specs;
-    double refused = 0;  ///< greatest share of specs that may be refused for their size
+    double refused = 0;  ///< greatest fraction of specs that may be refused for their size
     bool retargetable = false;
 };
 
@@ -120,7 +120,7 @@ void PrintTo(const RandomCase& random, std::ostream* out) {
     *out << random.name;
 }
 
-/// How often the usual number of random specs is tried; ETLC_EFFORT=100 for a night.
+/// Factor on the number of random specs; ETLC_EFFORT=100 for a night.
 int effort() {
     const char* text = std::getenv("ETLC_EFFORT");
     return text == nullptr ? 1 : std::max(1, std::atoi(text));

@@ -1,6 +1,6 @@
-// The generated classes, compiled and stepped, held to the reference: g++ and clang++, under harsh
-// warnings, with sanitizers and with -ffast-math; two instances in turns, reset, many headers in
-// one program, and no memory asked for.
+// Compiles and steps the generated classes and compares them with the reference: g++ and clang++,
+// with strict warnings, with sanitizers and with -ffast-math; two alternating instances, reset,
+// many headers in one program, and no allocations.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -24,8 +24,8 @@ using namespace etlc;
 using namespace etlc::tests;
 using Formulas = SpecShape::Formulas;
 
-/// Where distances round: float32 sums of a few elements, against double. Stated for |value| <= 1,
-/// relative above.
+/// Bound for distances that round: float32 sums of a few elements, against double; absolute for
+/// |value| <= 1, relative above.
 constexpr double kRounding = 1e-5;
 
 struct Subject {
@@ -96,10 +96,10 @@ std::vector<Request> requests_for(const check::Model& model, std::uint32_t spec,
     return result;
 }
 
-/// What stays the same for all requests to one spec.
+/// The constant parts of all requests to one spec.
 struct Expectation {
     const check::Model& model;
-    Dependencies dependencies;  ///< as the plan has them, from which the class was made
+    Dependencies dependencies;  ///< of the plan that the class was made from
     double rounding;
     check::Values values;
 
@@ -142,7 +142,7 @@ TEST_P(Generated, AgreesWithTheReference) {
     for (std::size_t n = 0; n < all.size(); ++n)
         expected.push_back({program.model(n), PlanRunner(program.model(n), kRoomy).dependencies(),
                             all[n].exact ? 0 : kRounding, all[n].values});
-    std::vector<bool> failed(all.size());  // one mismatch is told per spec
+    std::vector<bool> failed(all.size());  // one mismatch is reported per spec
     for (std::size_t n = 0; n < requests.size(); ++n) {
         const std::uint32_t spec = requests[n].spec;
         if (failed[spec]) continue;
@@ -152,7 +152,7 @@ TEST_P(Generated, AgreesWithTheReference) {
     }
     EXPECT_EQ(result.allocations, 0U);
 
-    // The counting works: a program that allocates on purpose is found out, with each way it does.
+    // The counting works: it detects every way in which a program allocates on purpose.
     const auto control = program.run({requests[0]}, "misbehave");
     const std::uint64_t watched = requests[0].first.size() + 2 * requests[0].second.size() + 3;
     EXPECT_GE(control.allocations, watched * (GetParam().counts_malloc ? 3 : 1));

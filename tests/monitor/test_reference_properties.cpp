@@ -1,5 +1,5 @@
-// What the definitions promise, held to the reference on random specs and traces: the bounds are
-// sound, gaps are answered for every way of filling them, and negation mirrors all four numbers.
+// Checks properties of the definitions on the reference, with random specs and traces: the bounds
+// are sound, gaps cover every way of filling them, and negation mirrors all four numbers.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ SpecShape shape_of(int n, Formulas formulas) {
     return shape;
 }
 
-/// The trace's first `steps` steps, then others.
+/// Returns the trace's first `steps` steps, then others.
 Trace continued(const Trace& trace, std::size_t steps, const Trace& other) {
     Trace result(trace.begin(), trace.begin() + static_cast<std::ptrdiff_t>(steps));
     result.insert(result.end(), other.begin(), other.end());
@@ -62,8 +62,8 @@ TEST(ReferenceProperties, BoundsHoldForEveryContinuation) {
     }
 }
 
-/// Fills the gaps with random valid samples; `hold` must be off for the filled trace to say what
-/// the gaps hid.
+/// Fills the gaps with random valid samples; `hold` must be off for the filled trace to contain the
+/// hidden samples.
 Trace filled(const check::Model& model, const Trace& trace, std::uint64_t seed) {
     Trace result = trace;
     const Trace other = random_trace(model, seed, {.steps = trace.size()});
@@ -100,7 +100,7 @@ TEST(ReferenceProperties, UnknownCoversEveryFilling) {
     }
 }
 
-/// A copy of the model in which every monitor is negated.
+/// Returns a copy of the model in which every monitor is negated.
 check::Model negated(check::Model model) {
     for (check::Monitor& monitor : model.monitors) {
         check::Formula negation;

@@ -1,5 +1,5 @@
-// What a program does with monitors that restart: the calls of a generated class, one by one. That
-// every verdict is the definition's is shown by test_generated.
+// Tests the calls of a generated class for monitors that restart, one by one. test_generated
+// compares every verdict with the definition.
 #include <gtest/gtest.h>
 
 #include "restarts.hpp"
@@ -10,7 +10,7 @@ using restarts::Inputs;
 using restarts::Monitor;
 using restarts::Verdicts;
 
-/// A step in which nothing happens but what `change` says.
+/// A step in which only `change` happens.
 template <class Change>
 Verdicts step(Monitor& monitor, Change change) {
     Inputs in;
@@ -31,11 +31,11 @@ TEST(Restarts, ARepeatingMonitorCountsItsCycles) {
     EXPECT_TRUE(step(monitor, [](Inputs& in) { in.pick = true; }).cycle.open());
     EXPECT_TRUE(step(monitor, [](Inputs& in) { in.place = true; }).cycle.fulfilled());
     EXPECT_EQ(monitor.fulfilled_cycle(), 1U);
-    // The next cycle has 6 steps to begin, and nobody picks.
+    // The next cycle has 6 steps to begin, and nothing is picked.
     for (int i = 0; i < 5; ++i) EXPECT_TRUE(step(monitor).cycle.open()) << i;
     EXPECT_TRUE(step(monitor).cycle.alarm());
     EXPECT_EQ(monitor.alarms_cycle(), 1U);
-    // And the one after that has 6 of its own.
+    // And so has the one after that.
     for (int i = 0; i < 5; ++i) EXPECT_TRUE(step(monitor).cycle.open()) << i;
     EXPECT_TRUE(step(monitor).cycle.alarm());
     EXPECT_EQ(monitor.alarms_cycle(), 2U);
@@ -48,7 +48,7 @@ TEST(Restarts, ARepeatingMonitorCountsItsCycles) {
 TEST(Restarts, AProgramMayRestartARepeatingMonitorToo) {
     Monitor monitor;
     for (int i = 0; i < 5; ++i) step(monitor);
-    monitor.restart_cycle();  // before its time is over
+    monitor.restart_cycle();  // before the deadline
     for (int i = 0; i < 5; ++i) EXPECT_TRUE(step(monitor).cycle.open()) << i;
     EXPECT_TRUE(step(monitor).cycle.alarm());
     EXPECT_EQ(monitor.alarms_cycle(), 1U);
@@ -126,7 +126,7 @@ TEST(Missing, CountsAsTheSpecSays) {
     EXPECT_TRUE(verdicts.now.violated());
     EXPECT_EQ(monitor.missing_steps(), 1U);
     EXPECT_FALSE(step(monitor).now.violated());
-    // A sample may be missing at any step to come, so nothing is settled early.
+    // A sample may be missing at any later step, so nothing is decided early.
     EXPECT_TRUE(Monitor().step(Inputs()).safe.alarm());
 }
 

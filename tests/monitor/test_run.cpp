@@ -1,5 +1,5 @@
-// `etlc run` on traces too long to hold: memory does not grow with them, and every step is
-// answered.
+// Tests `etlc run` on very long traces: memory does not grow with them, and every step gets a
+// verdict.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -53,7 +53,7 @@ protected:
         }
     }
 
-    /// What `etlc run` prints of a short trace.
+    /// Returns the output of `etlc run` for a short trace.
     std::string watched(const std::string& options, const std::string& spec = kWatchSpec,
                         const std::string& samples = kWatchTrace) const {
         std::ofstream(folder_ / "watch.etl") << spec;
@@ -67,7 +67,7 @@ protected:
         return text;
     }
 
-    /// Peak resident kilobytes of `etlc run`.
+    /// Returns the peak resident kilobytes of `etlc run`.
     long peak_memory(const std::string& output) const {
         const std::string spec = folder_ / "long_trace.etl";
         const std::string trace = folder_ / "trace.csv";
@@ -134,7 +134,7 @@ TEST_F(Run, RowsSayPositionTimeAndDistances) {
 }
 
 /// A let that looks ahead has no column, and an unknown one an empty cell; comparisons of one
-/// expression have one column.
+/// expression share a column.
 TEST_F(Run, RowsSayWhatLetsDo) {
     const std::string spec =
         "spec watch;\n"

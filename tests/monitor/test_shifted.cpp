@@ -1,5 +1,5 @@
-// Monitors that are calibrated as a whole: `etlc run` and the generated classes say what the
-// reference says, less the shift in one float32 subtraction.
+// Tests monitors that are calibrated as a whole: `etlc run` and the generated classes give the
+// verdicts of the reference minus the shift, in one float32 subtraction.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 #include "random.hpp"
 #include "random_spec.hpp"
 #include "random_trace.hpp"
-#include "thresholds/thresholds.hpp"
+#include "artifacts/thresholds.hpp"
 
 namespace {
 
@@ -33,7 +33,7 @@ struct ShiftedSpec {
     std::optional<check::Model> model;
 };
 
-/// random_spec with most of its monitors shifted: by little, by much, by what rounds, and by
+/// Shifts most monitors of random_spec: by little, by much, by an amount that rounds, and by
 /// nothing.
 ShiftedSpec random_shifted_spec(std::uint64_t seed, const SpecShape& shape) {
     Random random(seed ^ 0x51f7ULL);
@@ -74,7 +74,7 @@ ShiftedSpec random_shifted_spec(std::uint64_t seed, const SpecShape& shape) {
     return result;
 }
 
-/// "rho and both bounds are less by it": what is infinite stays.
+/// The shift is subtracted from rho and both bounds; infinities stay.
 double less(double value, float shift) {
     return std::isinf(value) ? value : static_cast<double>(static_cast<float>(value) - shift);
 }

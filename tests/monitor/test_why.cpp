@@ -1,5 +1,5 @@
-// What a class says that was made with --explain: the calls of a generated class, one by one. That
-// every sample is the one that `etlc explain` names is shown by the campaign.
+// Tests the calls of a generated class made with --explain, one by one. The campaign compares every
+// sample with `etlc explain`.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ using why::Inputs;
 using why::Monitor;
 using why::Verdicts;
 
-/// Far from all people, slow, the door open; but for what `change` says.
+/// Far from all people, slow, the door open; except for `change`.
 template <class Change>
 Verdicts step(Monitor& monitor, Change change) {
     float z[2] = {-4.0F, -4.0F};
@@ -48,7 +48,7 @@ TEST(Why, AnAlarmNamesTheNearestTarget) {
         EXPECT_EQ(why.distance, 0.25F);
         EXPECT_EQ(why.threshold, 0.5F);
         EXPECT_EQ(why.row, 1U);
-        step(monitor);  // it stays the one, however long ago
+        step(monitor);  // it stays the sample, however old
     }
 }
 
@@ -61,7 +61,7 @@ TEST(Why, AResponseThatFailsIsFollowedToTheSampleThatDecides) {
     step(monitor, drive(1.125F));
     EXPECT_TRUE(step(monitor, drive(2.0F)).careful.alarm());
     EXPECT_EQ(std::string(monitor.why_careful().predicate), "is_slow");
-    EXPECT_EQ(monitor.why_careful().step, 1U);  // the least that was missing
+    EXPECT_EQ(monitor.why_careful().step, 1U);  // the worst missing one
     EXPECT_EQ(monitor.why_careful().distance, 1.125F);
 }
 
@@ -71,11 +71,11 @@ TEST(Why, AnOpenVerdictHasTheSampleOfItsRobustness) {
     for (const float speed : speeds)
         EXPECT_TRUE(step(monitor, [&](Inputs& in, float*) { in.speed = speed; }).stops.open());
     const etlmon::Sample why = monitor.why_stops();
-    EXPECT_EQ(std::string(why.predicate), "speed <= 0.5");  // a comparison without a name
-    EXPECT_EQ(why.step, 3U);  // of two that fail alike the earlier counts as farther from 0
+    EXPECT_EQ(std::string(why.predicate), "speed <= 0.5");  // an unnamed comparison
+    EXPECT_EQ(why.step, 3U);  // of two equal failures the earlier counts as farther from 0
     EXPECT_EQ(why.distance, 0.625F);
     EXPECT_EQ(why.threshold, 0.5F);
-    EXPECT_EQ(why.row, etlmon::kNoRow);  // nothing is nearest to a speed
+    EXPECT_EQ(why.row, etlmon::kNoRow);  // a speed has no nearest row
 }
 
 TEST(Why, OfEqualAlarmsTheFirstDecides) {
@@ -146,7 +146,7 @@ TEST(Why, OfAnAdaptivePredicateTheRobustnessIsKnown) {
     EXPECT_TRUE(std::isnan(why.distance));
 }
 
-/// Two predicates: one whose three rows are told apart, and one without rows.
+/// Two predicates: one with three rows, and one without rows.
 constexpr etlmon::Place kPlaces[] = {{"near", etlmon::Place::Kind::at_most, 0.5F, 0, 3},
                                      {"fast", etlmon::Place::Kind::at_least, 2.0F, 4, 0}};
 constexpr std::uint32_t kCodes = 6;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# warnings_test.sh ETLC GXX CLANGXX: generated headers and the runtime are silent under every
-# warning that somebody may have switched on, and beside macros named min and max (windows.h).
+# warnings_test.sh ETLC GXX CLANGXX: generated headers and the runtime are silent under every common
+# warning, and with macros named min and max (windows.h).
 set -euo pipefail
 etlc=$1 gxx=$2 clangxx=$3
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -23,7 +23,7 @@ gcc_warnings=(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -
     -Wdouble-promotion -Wuseless-cast -Wold-style-cast -Wcast-align=strict -Wcast-qual
     -Wduplicated-cond -Wduplicated-branches -Wlogical-op -Wnull-dereference -Wundef
     -Wredundant-decls -Wswitch-enum -Wzero-as-null-pointer-constant)
-# All that clang++ knows, less what docs/coding_rules.md lists.
+# All warnings of clang++, except those listed in docs/coding_rules.md.
 clang_warnings=(-Weverything -Wno-c++98-compat -Wno-c++98-compat-pedantic
     -Wno-c++98-compat-local-type-template-args -Wno-pre-c++14-compat -Wno-pre-c++17-compat
     -Wno-padded -Wno-unused-macros)
@@ -53,7 +53,7 @@ tests/monitor/cases/pending.etl f32
 tests/monitor/cases/shared.etl f32
 END
 
-# A matrix smaller than the 16 elements that kernels read at once, where NaN is assumed away.
+# A matrix smaller than the 16 elements that kernels read at once, under the assumption of no NaN.
 spec='a projection of two scalars' values=-ffast-math targets=f32
 cat >"$box/small.etl" <<'ETL'
 spec small;

@@ -1,20 +1,20 @@
 #!/usr/bin/env bash
-# worst_step_test.sh ETLC CXX: the work, the state and the stack of the worst step are what the
-# class states. callgrind counts the instructions of the steps of one class per kind of stream and
-# reading, wide windows among them; none takes more than a fixed number and so many per operation of
-# kOperations. What is measured here is what docs/generated_code.md says of kOperations.
+# worst_step_test.sh ETLC CXX: the work, the state and the stack of the worst step are as stated by
+# the class. callgrind counts the instructions of the steps of one class per kind of stream and
+# reading, wide windows among them; none takes more than a fixed number plus a fixed number per
+# operation of kOperations. docs/generated_code.md states these numbers.
 set -euo pipefail
 etlc=$1
 cxx=$2
 per_operation=${PER_OPERATION:-8}
 fixed=${FIXED:-120} # reading two inputs, two predicates, the verdict
-frame=512           # stack besides kStackBytes: saved registers, intermediate results
+frame=512           # stack in addition to kStackBytes: saved registers, intermediate results
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 box=$(mktemp -d)
 trap 'rm -rf "$box"' EXIT
 cd "$box"
 
-# NAME STEPS FORMULA; a sliding monitor where the name begins with s_.
+# NAME STEPS FORMULA; a sliding monitor if the name begins with s_.
 cat >formulas <<'END'
 latch 3500 p && O[0, 3] q
 fold 3500 F p
@@ -67,7 +67,7 @@ printf '#include "worst_step.hpp"\nint main() {\n%s}\n' "$runs" >>main.cpp
 valgrind --tool=callgrind --combine-dumps=yes --callgrind-out-file=counts ./main \
     >states 2>valgrind.log || { cat valgrind.log; exit 1; }
 
-# The class lies in an inline namespace that is named after the flags.
+# The class is in an inline namespace named after the flags.
 class='([A-Za-z0-9_]+)::[A-Za-z0-9_]+::Monitor'
 sed -nE "s/.*with Monitor = $class.*\t([0-9]+)\t.*/\1 \2/p
     s/.* $class::[a-z_]+\(.*\t([0-9]+)\t.*/\1 \2/p" ./*.su >frames

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# bad_calls_test.sh CMAKE_FOLDER CMAKE CXX: what etlc_add_monitor says to a wrong call, and the
-# runtime to a wrong program.
+# bad_calls_test.sh CMAKE_FOLDER CMAKE CXX: checks the errors of etlc_add_monitor for wrong calls,
+# and of the runtime for wrong programs.
 set -euo pipefail
 folder=$1 cmake=$2 cxx=$3
 box=$(mktemp -d)
@@ -21,8 +21,8 @@ include(\${CALL})
 END
 
 failures=0
-# refused WORDS CALL: configuring with CALL must fail, and
-# say WORDS (line breaks and indentation aside).
+# refused WORDS CALL: configuring with CALL must fail and print WORDS (ignoring line breaks and
+# indentation).
 refused() {
     echo "$2" >"$box/call.cmake"
     if "$cmake" -S "$box" -B "$box/build" -DCMAKE_CXX_COMPILER="$cxx" -DCALL="$box/call.cmake" \
@@ -57,7 +57,7 @@ refused "RETARGETABLE goes without EXPLAIN, RECORDER, INLINE_TARGETS and VALUES 
 refused "there is a monitor a.hpp already" "etlc_add_monitor(robot SPEC specs/a.etl)
 etlc_add_monitor(robot SPEC other/a.etl)"
 
-# Names that Make, Ninja and CMake do not all read alike are refused, of each file.
+# For every file, names that Make, Ninja and CMake read differently are refused.
 for sign in ';' "\\" "'" '"' '&' '#' '$' '%' '*' '<' '|' ':' '=' '[' ']' '?' '^' '`'; do
     touch "$box/specs/a${sign}b.etl"
     case $sign in
@@ -82,8 +82,8 @@ accepted "etlc_add_monitor(robot SPEC specs/a.etl NAMESPACE a::b STANDALONE)"
 touch "$box/specs/a b,(1)+@!~{ä}.etl"
 accepted "etlc_add_monitor(robot SPEC \"specs/a b,(1)+@!~{ä}.etl\")"
 
-# not_compiled WORDS ERRORS FLAG... : the program on standard input must not compile, with these
-# words, and as many errors where ERRORS is a number.
+# not_compiled WORDS ERRORS FLAG... : the program on standard input must not compile; the errors
+# contain these words, and their number is ERRORS if that is a number.
 runtime=$folder/../runtime/include
 not_compiled() {
     local words=$1 errors=$2 compiler

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# consumer_test.sh BUILD_DIR CMAKE CXX GENERATOR: installs etlc below a new prefix. A project
-# outside the source tree then finds it, builds monitors with it and runs them. A changed target
-# rebuilds its header, and no other.
+# consumer_test.sh BUILD_DIR CMAKE CXX GENERATOR: installs etlc under a new prefix. A project
+# outside the source tree finds it, builds monitors with it and runs them. A changed target rebuilds
+# only its own header.
 set -euo pipefail
 build_dir=$1 cmake=$2 cxx=$3 generator=$4
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -12,8 +12,8 @@ fail() { echo "FAILED: $*"; exit 1; }
 expect() { [ "$1" = "$2" ] || fail "expected '$2', found '$1'"; }
 compile() { "$cmake" --build "$box/build" >"$box/log" 2>&1 ||
     { cat "$box/log"; fail "the consumer does not build"; }; }
-# Make may compare time stamps in whole seconds: a changed file must be newer than what was made
-# from it.
+# Make may compare time stamps in whole seconds, so a changed file must be clearly newer than its
+# outputs.
 change() { sleep 1.1; "$@"; }
 
 "$cmake" --install "$build_dir" --prefix "$box/prefix" >"$box/log" 2>&1 ||
@@ -28,7 +28,7 @@ find "$pages" -name '*.md' | while read -r page; do
 done >"$box/dead"
 [ ! -s "$box/dead" ] || fail "installed pages: $(cat "$box/dead")"
 
-# The Python package below a prefix finds the library and the command below it, and no others.
+# The Python package under a prefix finds the library and the command of that prefix, and no others.
 if /usr/bin/python3 -c 'import numpy' 2>"$box/log"; then
     mv "$box/prefix" "$box/moved"
     said=$(env -u LD_LIBRARY_PATH -u ETLC_LIBRARY -u ETLC_COMMAND PYTHONDONTWRITEBYTECODE=1 \

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# deb_test.sh BUILD_DIR CPACK VERSION: makes the Debian packages, and looks into them.
+# deb_test.sh BUILD_DIR CPACK VERSION: makes the Debian packages and checks their contents.
 set -euo pipefail
 build_dir=$1 cpack=$2 version=$3
 box=$(mktemp -d)
@@ -19,7 +19,7 @@ for library in avcodec libpng libjpeg openmpi; do
     [[ $depends != *"$library"* ]] || fail "etlc itself depends on $library: $depends"
 done
 dpkg-deb -x "$deb" "$box/root"
-# Each helper that is built is in a package of its own, with the libraries that it needs.
+# Each helper that is built has its own package, with the libraries that it needs.
 for helper in embed=libavcodec mpi=libopenmpi; do
     name=etlc-${helper%=*} library=${helper#*=}
     [ ! -e "$box/root/usr/libexec/etlc/$name" ] || fail "etlc holds $name"
@@ -43,7 +43,7 @@ for file in include/etlmon/temporal/value.hpp share/cmake/etlc/etlcConfig.cmake 
     [ -f "$box/root/usr/$file" ] || fail "it lacks /usr/$file"
 done
 
-# HDF5 files are read by a program beside etlc's folder, wherever the package is unpacked.
+# A program beside etlc's folder reads HDF5 files, wherever the package is unpacked.
 cat >"$box/t.etl" <<'SPEC'
 spec t;
 input gripper : f32;
@@ -55,7 +55,8 @@ verdicts=$("$box/root/usr/bin/etlc" run "$box/t.etl" --trace "$data/trace.h5") |
 [ "$(tail -1 <<<"$verdicts")" = "6,m,0.25,0.25,inf,satisfied,1,0" ] ||
     fail "the verdicts on an .h5 trace: $verdicts"
 
-# Python finds the package, and the package the library and the command, wherever it is unpacked.
+# Python finds the package, and the package finds the library and the command, wherever it is
+# unpacked.
 said=$(env -u LD_LIBRARY_PATH -u ETLC_LIBRARY -u ETLC_COMMAND PYTHONDONTWRITEBYTECODE=1 \
     PYTHONPATH=$box/root/usr/lib/python3/dist-packages \
     /usr/bin/python3 -c 'import etlc, sys

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# wheel_test.sh BUILD_DIR CMAKE TEST PYTHON: makes the wheel, installs it with pip where nothing of
-# this build is in the path, and runs TEST, that of the package. All that it loads beside Python's
-# own and the C library is in the wheel.
+# wheel_test.sh BUILD_DIR CMAKE TEST PYTHON: makes the wheel, installs it with pip with nothing of
+# this build in the path, and runs TEST, the test of the package. The wheel contains everything it
+# loads except Python and the C library.
 set -euo pipefail
 build_dir=$1 cmake=$2 test=$3 python=$4
 box=$(mktemp -d)
@@ -26,7 +26,7 @@ for program in lib/libetlc.so.1 bin/etlc libexec/etlc/etlc-read-{hdf5,parquet}; 
     [ -z "$others" ] || fail "$program loads from outside of the wheel: $others"
 done
 
-# An .h5 trace is read by another program of the wheel.
+# Another program of the wheel reads an .h5 trace.
 data=$(cd "$(dirname "$test")" && pwd)/../unit/data
 cat >t.etl <<'SPEC'
 spec t;

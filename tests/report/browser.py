@@ -1,7 +1,7 @@
 """A headless Chromium, driven over its DevTools protocol, and a page in it.
 
-Keeps true: nothing sleeps a fixed time; what a test waits for is a condition on the page, and a
-message on the page's console is collected, whatever it is.
+Keeps true: nothing sleeps for a fixed time; a test waits for a condition on the page, and every
+message on the page's console is collected.
 """
 
 import base64
@@ -15,7 +15,7 @@ import urllib.request
 
 import websocket
 
-PATIENCE = 120  # seconds; a busy machine is slow, a fault is for ever
+PATIENCE = 120  # seconds; long, since a busy machine is slow
 
 
 class Browser:
@@ -66,8 +66,8 @@ class Page:
     def __init__(self, address, path, width, height):
         self.socket = websocket.create_connection(address, timeout=PATIENCE)
         self.last = 0
-        self.messages = []  # of the console, and exceptions
-        self.requests = []  # addresses that the page asked for, its own file aside
+        self.messages = []  # messages of the console, and exceptions
+        self.requests = []  # addresses that the page requested, except its own file
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
         self.resize(width, height)
@@ -100,7 +100,7 @@ class Page:
                 self.requests.append(address)
 
     def value(self, expression):
-        """Of a JavaScript expression; a promise is waited for."""
+        """Evaluates a JavaScript expression, and waits for a promise."""
         answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True,
                            awaitPromise=True)
         if "exceptionDetails" in answer:
@@ -119,7 +119,7 @@ class Page:
                   deviceScaleFactor=1, mobile=False)
 
     def place(self, selector):
-        """The middle of an element, once it is in sight: where a mouse would point."""
+        """Scrolls to an element; returns its centre, where a mouse would point."""
         self.value(f"document.querySelector({json.dumps(selector)}).scrollIntoView("
                    "{block: 'center', behavior: 'instant'})")
         return self.value(f"(() => {{ const box = document.querySelector({json.dumps(selector)})"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""page_test.py ETLC: the page of `etlc report` in a browser that nobody sees. It opens from disk
-without a message or a request; what one chooses by mouse and keyboard is what one is shown; its
-figures are those of `etlc evaluate`; names are shown, whatever is in them."""
+"""page_test.py ETLC: the page of `etlc report` in a headless browser. It opens from disk without a
+message or a request; mouse and keyboard select what is shown; its figures are those of
+`etlc evaluate`; any name is shown correctly."""
 import json
 import pathlib
 import subprocess
@@ -41,7 +41,7 @@ def samples(random, steps):
 
 
 def episode(random, error):
-    """`error` steps of 40 at which the label and the distance do not agree."""
+    """Writes 40 steps; at `error` of them the label and the distance disagree."""
     x, z = samples(random, STEPS)
     x[:error] = 0
     camera = np.zeros((STEPS, 6, 8, 3), np.uint8)
@@ -66,7 +66,7 @@ def make_episodes(folder):
 
 
 def make_files(folder):
-    """The camera's pictures as files: of the episodes [1] and 1, which are not to be mixed up."""
+    """Writes the camera's pictures: of the episodes [1] and 1, which must not be confused."""
     random = np.random.default_rng(4)
     (folder / "two").mkdir()
     for name, steps in (("[1]", 4), ("1", 6)):
@@ -79,7 +79,7 @@ def make_files(folder):
 
 
 def same(page, judged):
-    """The page holds what evaluate wrote, number by number."""
+    """The page contains the figures of evaluate, number by number."""
     shown = page.value("document.getElementById('figures').textContent")
     assert json.loads(shown) == judged, "figures differ"
     f1 = judged["predicates"]["near"]["f1"]
@@ -92,7 +92,7 @@ def shown_step(page):
 
 
 def follows(page, step):
-    """Numbers, cursor and camera are those of this step."""
+    """Numbers, cursor and camera belong to this step."""
     assert shown_step(page) == step, (shown_step(page), step)
     head = page.value("document.querySelector('#readout .head th').textContent")
     assert head.startswith(f"step {step} "), head
@@ -155,7 +155,7 @@ def look(browser, path, width, height, judged):
 
 
 def look_at_a_long_one(browser, path):
-    """Of 100,000 steps the page has the least and greatest of every few, and says so."""
+    """Of 100,000 steps the page keeps the least and greatest of every few, and says so."""
     page = browser.page(path)
     page.wait("view.episode !== null")
     left_out = page.value("document.getElementById('left-out').textContent")
@@ -166,7 +166,7 @@ def look_at_a_long_one(browser, path):
 
 
 def make_many(folder):
-    """More episodes than a page of 1 MB has rows for; one of them was taken wrongly throughout."""
+    """More episodes than a page of 1 MB has rows for; one of them is wrong throughout."""
     (folder / "many").mkdir()
     for number in range(MANY):
         x = 0.5 if number == 700 else 3
@@ -175,19 +175,19 @@ def make_many(folder):
 
 
 def look_at_many(browser, path):
-    """The worst is there, and the page says how many are not."""
+    """The worst is shown, and the page says how many are not."""
     page = browser.page(path)
     page.wait("view.episode !== null")
     shown = page.value("episodes.length")
     left_out = page.value("document.getElementById('left-out').textContent")
-    assert 500 < shown < MANY and f"{MANY - shown} episodes that went better" in left_out, left_out
+    assert 500 < shown < MANY and f"{MANY - shown} better episodes" in left_out, left_out
     assert page.value("document.getElementById('episode-name').textContent").endswith("0700.csv")
     assert path.stat().st_size < 1_000_000
     assert page.messages == [], page.messages
 
 
 def pictures_of_a_trace(call, folder):
-    """`etlc run` draws every predicate and monitor, whichever of its bounds are its robustness."""
+    """`etlc run` draws every predicate and monitor, whichever bound is their robustness."""
     trace = ["run", "page.etl", "--trace", "episodes/worst.npz"]
     call(*trace, "--svg", "one.svg", "--html", "one.html")
     drawn = xml.etree.ElementTree.parse(folder / "one.svg").getroot()

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """pictures_test.py ETLC ENCODERS.MD: from images and a video to a page that shows, at every step,
-the frame that the camera saw and the nearest row of each target as it looks. The encoder is that of
-the page about encoders."""
+the frame of the camera and the image of the nearest row of each target. The encoder is that of the
+page about encoders."""
 import os
 import pathlib
 import re
@@ -58,7 +58,7 @@ def make_files():
 
 
 def middle(page, selector):
-    """The colour in the middle of an image or a canvas."""
+    """Returns the colour in the middle of an image or a canvas."""
     page.wait(f"document.querySelector('{selector}').complete !== false")
     return page.value(f"""(() => {{
         const often = {{willReadFrequently: true}};
@@ -69,7 +69,7 @@ def middle(page, selector):
 
 
 def is_like(colour, other):
-    return np.abs(np.subtract(colour, other)).max() <= 6  # of a video's colours
+    return np.abs(np.subtract(colour, other)).max() <= 6  # tolerance for the colours of a video
 
 
 def look(browser):
@@ -88,7 +88,7 @@ def look(browser):
 
 
 def look_without_a_target(report):
-    """Embeddings are enough for verdicts: a video that is gone is missed on the page alone."""
+    """Embeddings are enough for verdicts: only the page misses a deleted video."""
     os.rename("tour.mp4", "gone.mp4")
     said = call(*report, "drives/{episode}.mp4", "-o", "page.html")
     os.rename("gone.mp4", "tour.mp4")

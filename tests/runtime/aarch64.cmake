@@ -1,5 +1,5 @@
-# The tests of the kernels on AArch64 with NEON: cross-compiled, run by qemu-user. Static, so that
-# no foreign libraries have to be found.
+# The tests of the kernels on AArch64 with NEON: cross-compiled, run by qemu-user. They are static,
+# so they need no foreign libraries.
 find_program(ETLC_AARCH64 aarch64-linux-gnu-g++)
 find_program(ETLC_QEMU_AARCH64 qemu-aarch64)
 find_path(ETLC_GTEST_SOURCES src/gtest-all.cc PATHS /usr/src/googletest/googletest)
@@ -29,7 +29,7 @@ foreach(source exact.cpp ${kernel_sources} ${narrow_sources} test_kernel_version
     -I${PROJECT_SOURCE_DIR}/runtime/include -isystem ${eigen_headers} ${kernel_warnings})
 endforeach()
 add_custom_command(OUTPUT test_kernels_aarch64
-  # ld warns that gtest's getaddrinfo would need the C library at run time; no test asks for it.
+  # ld warns that gtest's getaddrinfo would need the C library at run time; no test calls it.
   COMMAND ${ETLC_AARCH64} -static -Wl,--no-warnings ${objects} -o test_kernels_aarch64
   DEPENDS ${objects} VERBATIM)
 add_custom_target(kernels_aarch64 ALL DEPENDS test_kernels_aarch64)

@@ -1,8 +1,8 @@
-// What bounds on distances are held to: distances in double, and how far narrow rows are from the
-// rows. Takes: a case, its narrow rows widened to float32. Gives: the aggregated distance by its
-// definition; the greatest move of a row in the norm that etlmon/distance/enclosed.hpp asks for,
-// rounded up. Keeps true: shares no arithmetic with the kernels; cosine and angular by the chord
-// and Kahan's formula, which lose nothing near 0.
+// Distances in double, and the moves of narrow rows, for tests of bounds on distances. Takes: a
+// case, and its narrow rows widened to float32. Gives: the aggregated distance by its definition;
+// the greatest move of a row in the norm that etlmon/distance/enclosed.hpp requires, rounded up.
+// Keeps true: it shares no arithmetic with the kernels; cosine and angular use the chord and
+// Kahan's formula, which are exact near 0.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace kernel_cases {
 
-/// The distance of two points.
+/// Returns the distance of two points.
 inline double distance_of(const exact::Case& c, const float* g) {
     double l1 = 0, linf = 0, square = 0, z_square = 0, g_square = 0, apart = 0, along = 0;
     for (std::size_t i = 0; i < c.dimension; ++i) {
@@ -50,7 +50,7 @@ inline double aggregated(const exact::Case& c, exact::Aggregate aggregate) {
     return rows[aggregate.id == etlmon::AggregationId::kth ? aggregate.n - 1 : 0];
 }
 
-/// In double, over rows of length 1 where the distance is of directions.
+/// Computes in double, over rows of length 1 for distances of directions.
 inline float greatest_move(const exact::Case& c, const std::vector<float>& narrow) {
     double greatest = 0;
     for (std::size_t k = 0; k < c.rows; ++k) {

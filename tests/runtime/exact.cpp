@@ -24,7 +24,7 @@ Vector vector(const float* x, std::uint32_t n) {
     return Eigen::Map<const Eigen::VectorXf>(x, n).cast<Real>();
 }
 
-/// D x D, or of a diagonal one column.
+/// Returns the weights as D x D, or as one column for a diagonal.
 Matrix weights_of(const Case& c) {
     const auto d = static_cast<Eigen::Index>(c.dimension);
     if (c.metric == MetricId::mahalanobis_diagonal) return vector(c.weights.data(), c.dimension);
@@ -118,7 +118,7 @@ std::string Judge::mismatch(Aggregate aggregate, std::uint32_t delta_bits,
             etlmon::mean_bound(static_cast<std::uint32_t>(exact_.size()), mean, denormals_);
         want = {want.low - more, want.high + more};
     }
-    // Distances beyond FLT_MAX are equal to the kernels, and make a mean infinite.
+    // The kernels treat distances beyond FLT_MAX as equal; they make a mean infinite.
     const Real most = FLT_MAX;
     const Real highest = *std::max_element(high_.begin(), high_.end());
     const bool overflows = (aggregate.id == AggregationId::mean ? highest : want.high) > most;

@@ -1,9 +1,8 @@
-// Distances straight from their definitions, in Real with Eigen: the judge of the kernels.
-// Takes: the float32 numbers a kernel takes, targets as the user gave them. Gives: per row the
-// exact distance and the bound on the kernel's error; the verdict on what a kernel computed. Keeps
-// true: compiled without -ffast-math, whatever the kernels under test are compiled with; shares no
-// arithmetic with them. No function takes a type of the runtime: under other flags that is another
-// type.
+// Distances straight from their definitions, in Real with Eigen: the oracle for the kernels.
+// Takes: the float32 numbers of a kernel, with targets before prepare(). Gives: the exact distance
+// per row and the bound on the kernel's error; a check of a kernel's result. Keeps true: it is
+// compiled without -ffast-math, whatever flags the kernels use, and shares no arithmetic with them.
+// No function takes a type of the runtime, because under other flags that is another type.
 #pragma once
 
 #include <cfloat>
@@ -16,8 +15,7 @@
 
 namespace exact {
 
-/// The widest type that the machine computes with; elsewhere than on x86 long double is emulated,
-/// and slow.
+/// The widest type with hardware support; except on x86, long double is emulated and slow.
 using Real = std::conditional_t<LDBL_MANT_DIG == 64, long double, double>;
 
 struct Case {
@@ -32,15 +30,15 @@ struct Case {
 
 struct Aggregate {
     etlmon::AggregationId id = etlmon::AggregationId::min;
-    std::uint32_t n = 1;  ///< for kth, from 1
+    std::uint32_t n = 1;  ///< n of kth, from 1
 };
 
 /// The exact distances of a case, computed once for all aggregations.
 class Judge {
 public:
     Judge(const Case& c, bool flushes_denormals);
-    /// Empty where `delta` (given as bits, so that no flag can touch it) and `nearest` are within
-    /// the bounds; else what is wrong.
+    /// Returns "" if `delta` (as bits, so that no flag affects it) and `nearest` are within the
+    /// bounds; otherwise the error.
     std::string mismatch(Aggregate aggregate, std::uint32_t delta_bits,
                          std::uint32_t nearest) const;
 
@@ -48,10 +46,10 @@ private:
     etlmon::MetricId metric_;
     etlmon::Denormals denormals_;
     bool unknown_ = false;
-    std::vector<Real> low_, exact_, high_;  ///< per row
+    std::vector<Real> low_, exact_, high_;  ///< one per row
 };
 
-/// A symmetric positive definite D x D matrix, by the seed.
+/// Returns a symmetric positive definite D x D matrix for the seed.
 std::vector<float> positive_definite(std::uint32_t dimension, std::uint32_t seed);
 
 }  // namespace exact

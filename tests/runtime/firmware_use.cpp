@@ -1,5 +1,5 @@
-// Every distance, every aggregation and all else of the distance side that generated code may call:
-// what does its object refer to?
+// Calls every distance, every aggregation and everything else about distances that generated code
+// may call, so that a test can check the symbols of its object.
 #include "etlmon/distance/enclosed.hpp"
 #include "etlmon/distance/kernel.hpp"
 #include "etlmon/distance/widen.hpp"

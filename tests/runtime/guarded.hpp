@@ -1,7 +1,7 @@
-// Memory that ends where nothing may be read: a kernel that reads past its rows stops the program.
-// Takes: the elements to hold. Gives: a copy whose last byte lies before a page without access.
-// Keeps true: this finds vector loads past the end in every build, at full speed; a sanitizer finds
-// them only in what it was compiled into.
+// Memory that ends at an inaccessible page: a kernel that reads past its rows crashes.
+// Takes: elements. Gives: a copy whose last byte is just before a page without access. Keeps true:
+// this finds vector loads past the end in every build, at full speed; a sanitizer finds them only
+// in code compiled with it.
 #pragma once
 
 #include <sys/mman.h>
@@ -20,7 +20,7 @@ public:
     Guarded& operator=(const Guarded&) = delete;
     ~Guarded() { release(); }
 
-    /// A copy of n elements; good until the next call.
+    /// Returns a copy of n elements, valid until the next call.
     template <class T>
     const T* copy(const T* from, std::size_t n) {
         const std::size_t bytes = n * sizeof(T);
@@ -48,7 +48,7 @@ private:
 
     unsigned char* end_ = nullptr;
     std::size_t room_ = 0;    ///< bytes before `end_`
-    std::size_t mapped_ = 0;  ///< with the page behind it
+    std::size_t mapped_ = 0;  ///< with the page after it
 };
 
 }  // namespace kernel_cases

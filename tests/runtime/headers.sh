@@ -1,7 +1,7 @@
 #!/bin/sh
-# Every runtime header alone, and all that firmware may use, under harsh flags: no warning, no
-# foreign include, no foreign symbol, no data that changes.
-# Usage: headers.sh SOURCE_DIR COMPILER... ; leaves nothing behind.
+# Compiles every runtime header alone, and everything that firmware may use, with strict flags: no
+# warning, no foreign include, no foreign symbol, no mutable data.
+# Usage: headers.sh SOURCE_DIR COMPILER... ; it leaves no files.
 set -eu
 source=$1; shift
 include=$source/runtime/include
@@ -12,7 +12,7 @@ trap 'rm -rf "$work"' EXIT
 bad=0
 fail() { echo "$*" >&2; bad=1; }
 
-# What firmware compiles includes nothing of vectors/, and gnu.hpp in one place.
+# Firmware code includes nothing of vectors/, and gnu.hpp in one place.
 gates=$(cd "$include" && grep -l 'include "etlmon/\(vectors/\|gnu\)' etlmon/*.hpp \
   etlmon/temporal/* etlmon/distance/* | tr '\n' ' ')
 [ "$gates" = 'etlmon/bits.hpp etlmon/views.hpp etlmon/distance/best.hpp ' ] ||
@@ -32,14 +32,14 @@ for header in $headers; do
 done
 
 for compiler in "$@"; do
-  # Nothing calls what they define, so there is no code that would have to be made.
+  # Nothing calls their definitions, so no code is generated.
   "$compiler" $harsh -O1 -I "$include" -fsyntax-only "$work"/hosted/*.cpp ||
     fail "$compiler: a header does not stand alone"
   "$compiler" $harsh -O1 -ffreestanding -I "$include" -fsyntax-only "$work"/freestanding/*.cpp ||
     fail "$compiler: a header does not stand alone where there is no library"
 
-  # Without optimisation, for size and for speed, as much as may be assumed; all versions of the
-  # kernels, one, and the one of firmware.
+  # Without optimisation, for size, for speed, and with -ffast-math; all versions of the kernels,
+  # one, and the one for firmware.
   for flags in '-O0' '-Os' '-O2 -DWITH_ANGULAR' '-O2 -ffreestanding' '-O2 -ffast-math' \
     '-Os -DETLMON_PORTABLE'; do
     "$compiler" $harsh $flags -I "$include" -c "$source/tests/runtime/firmware_use.cpp" \
@@ -48,7 +48,7 @@ for compiler in "$@"; do
     case $flags in
       *ANGULAR*) allowed="$allowed|atanf|__cpu_model" ;;
       *-ffreestanding* | *-DETLMON*) ;;
-      *) allowed="$allowed|__cpu_model" ;;  # what the CPU has, asked by the compiler's library
+      *) allowed="$allowed|__cpu_model" ;;  # features of the CPU, from the compiler's library
     esac
     foreign=$(nm -u "$work/use.o" | awk '{ print $2 }' | grep -v -x -E "$allowed") || true
     [ -z "$foreign" ] || fail "$compiler $flags: refers to" $foreign

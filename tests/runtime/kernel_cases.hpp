@@ -1,5 +1,5 @@
-// What every kernel test feeds: sizes, distances, aggregations, and inputs by kind.
-// Takes: a seed. Gives: cases for exact::mismatch, and the run-time kernel's answer to them.
+// Inputs of all kernel tests: sizes, distances, aggregations, and kinds of input.
+// Takes: a seed. Gives: cases for exact::mismatch, and the run-time kernel's result for them.
 #pragma once
 
 #include <cstdint>
@@ -30,14 +30,14 @@ inline std::vector<etlmon::MetricId> metrics() {
     return all;
 }
 
-/// Sets whose matrix products, the judge's above all, take most of the time: they get fewer kinds
-/// of input.
+/// Returns whether matrix products, mainly of the oracle, take most of the time; such sets get
+/// fewer kinds of input.
 inline bool is_heavy(etlmon::MetricId metric, std::uint32_t rows, std::uint32_t dimension) {
     return metric == etlmon::MetricId::mahalanobis && dimension * rows > 1000;
 }
 
-/// The numbers of rows of a dimension. Each row costs D x D multiplications, and as many in the
-/// judge, where that is what the weights are: then few of the longest.
+/// Returns the numbers of rows for a dimension. With full weights each row costs D x D
+/// multiplications, and as many in the oracle, so there are few of the longest.
 inline std::vector<std::uint32_t> rows_of(etlmon::MetricId metric, std::uint32_t dimension) {
     std::vector<std::uint32_t> all;
     for (const std::uint32_t rows : kRows) {
@@ -48,13 +48,13 @@ inline std::vector<std::uint32_t> rows_of(etlmon::MetricId metric, std::uint32_t
     return all;
 }
 
-/// Sets on which most time would go into input that looks at single elements. What size has to do
-/// with is as visible with less of it.
+/// Returns whether tests of single elements would take most of the time. Smaller sets show the
+/// effects of size as well.
 inline bool is_large(std::uint32_t rows, std::uint32_t dimension) {
     return rows * dimension > 4000;
 }
 
-/// Every aggregation; where it costs little, the first and the last too.
+/// Returns every aggregation; if it is cheap, also the first and last n of kth.
 inline std::vector<exact::Aggregate> aggregates(std::uint32_t rows, bool heavy = false) {
     using Id = etlmon::AggregationId;
     std::vector<exact::Aggregate> all{
@@ -73,7 +73,7 @@ inline const char* name(Kind kind) {
     return names[static_cast<int>(kind)];
 }
 
-/// rows x dimension targets and a z of that kind; every number is finite.
+/// Makes rows x dimension targets and a z of that kind; every number is finite.
 inline exact::Case make(etlmon::MetricId metric, std::uint32_t rows, std::uint32_t dimension,
                         Kind kind, std::uint32_t seed) {
     std::mt19937 random(seed * 7919 + rows * 131 + dimension);
@@ -117,7 +117,7 @@ inline std::uint32_t bits(const float& x) {
     return b;
 }
 
-/// The run-time kernel's answer.
+/// Returns the result of the run-time kernel.
 etlmon::Measured run(const exact::Case& c, exact::Aggregate aggregate);
 
 inline std::string describe(const exact::Case& c, exact::Aggregate a, const char* kind) {

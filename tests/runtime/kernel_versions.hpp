@@ -1,6 +1,6 @@
-// The versions of the kernel that were compiled and that the CPU has.
-// Takes: a distance, an aggregation, how rows are stored. Gives: a function of each. Keeps true:
-// `baseline` comes first; a kernel on rows whose number is known at run time is compiled once per
+// The compiled versions of the kernel that the CPU supports.
+// Takes: a distance, an aggregation, the storage of rows. Gives: a function per version. Keeps
+// true: `baseline` comes first; a kernel with a run-time number of rows is compiled once per
 // program, in row_kernels_*.cpp.
 #pragma once
 
@@ -19,7 +19,7 @@ struct Version {
     etlmon::detail::MeasuredBits (*run)(const float*, G, const float*, Size, Aggregation) noexcept;
 };
 
-/// The versions of a kernel that is compiled for the asking.
+/// The versions of a kernel that is compiled on demand.
 template <class Metric, class Aggregation, class Size, bool InColumns, class G = const float*>
 std::vector<Version<Metric, Aggregation, Size, InColumns, G>> versions() {
     using namespace etlmon::detail;
@@ -37,13 +37,12 @@ std::vector<Version<Metric, Aggregation, Size, InColumns, G>> versions() {
     return found;
 }
 
-/// One version on rows whose number is known at run time, whatever the distance and the
-/// aggregation.
+/// One version for a run-time number of rows, any distance and any aggregation.
 template <class G>
 struct RowVersion {
     const char* name;
     bool fused;
-    /// What it makes of the z and the weights of a case, and of these rows.
+    /// Measures the z of a case with its weights and these rows.
     std::function<etlmon::Measured(const exact::Case&, G, exact::Aggregate)> measure;
 };
 

@@ -1,5 +1,5 @@
-# Distances, aggregates, views and expressions: as the project is built, then where flags or another
-# compiler could change them.
+# Distances, aggregates, views and expressions: with the project's flags, then with flags and a
+# compiler that could change them.
 find_package(Eigen3 REQUIRED)
 set(kernel_sources row_kernels_f32.cpp test_distances.cpp test_enclosed.cpp test_expression.cpp
   test_kernel_twins.cpp test_not_finite.cpp test_views.cpp)
@@ -7,7 +7,7 @@ set(narrow_sources row_kernels_f16.cpp row_kernels_i8.cpp test_narrow_halves.cpp
   test_narrow_bytes.cpp)
 set(kernel_warnings -Wall -Wextra -Wconversion -Wno-sign-conversion -Wshadow -Wpedantic -Werror)
 
-# The judge is built once, without the flags under test.
+# The oracle is built once, without the flags under test.
 add_library(exact_distances STATIC exact.cpp)
 target_link_libraries(exact_distances PUBLIC etlmon::etlmon PRIVATE Eigen3::Eigen)
 target_compile_options(exact_distances PRIVATE -O2)
@@ -18,10 +18,10 @@ etlc_test(test_kernels RUNTIME
 target_compile_options(test_kernels PRIVATE ${kernel_warnings} -O2)
 
 if(CMAKE_CXX_FLAGS MATCHES "fsanitize")
-  return()  # the variants would repeat what the release builds run
+  return()  # the variants would repeat tests of the release build
 endif()
 
-# etlc_kernel_variant(NAME SOURCES file... OPTIONS option...): as one test.
+# etlc_kernel_variant(NAME SOURCES file... OPTIONS option...): adds them as one test.
 function(etlc_kernel_variant name)
   cmake_parse_arguments(PARSE_ARGV 1 VARIANT "" "" "SOURCES;OPTIONS")
   add_executable(${name} ${VARIANT_SOURCES})
@@ -31,23 +31,23 @@ function(etlc_kernel_variant name)
   target_link_libraries(${name} PRIVATE exact_distances GTest::gtest_main)
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
 endfunction()
-# What may be assumed of floats, with the vectors of the compiler's own.
+# Assumptions about floats, with the compiler's own vectors.
 etlc_kernel_variant(test_kernels_fast_math
   SOURCES ${kernel_sources} OPTIONS -O2 -ffast-math -DETLMON_NO_DISPATCH)
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   return()
 endif()
-# The one version of a unit that is compiled for this CPU. That versions for it give the bits of
-# one another is known from test_kernels.
+# The single version of a unit compiled for this CPU. test_kernels checks that versions give equal
+# bits.
 etlc_kernel_variant(test_kernels_native
   SOURCES row_kernels_f32.cpp test_distances.cpp test_not_finite.cpp test_views.cpp
   OPTIONS -O2 -march=native)
-# What firmware has: no vectors, no statement of one compiler's, and code made for size.
+# As on firmware: no vectors, no compiler extensions, and code optimised for size.
 etlc_kernel_variant(test_kernels_small
   SOURCES ${kernel_sources} ${narrow_sources} test_kernel_versions.cpp
   OPTIONS -Os -DETLMON_PORTABLE)
-# The baseline alone: in the others, loads past the end of a row meet a page without access
-# (guarded.hpp). Twins measure the same rows.
+# Only the baseline: in the other versions, guarded.hpp detects loads past the end of a row. Twins
+# measure the same rows.
 set(sanitized_sources ${kernel_sources} ${narrow_sources} test_kernel_versions.cpp)
 list(REMOVE_ITEM sanitized_sources test_kernel_twins.cpp)
 etlc_kernel_variant(test_kernels_sanitized
@@ -55,7 +55,7 @@ etlc_kernel_variant(test_kernels_sanitized
 set_tests_properties(test_kernels_sanitized PROPERTIES COST 80)
 set_tests_properties(test_kernels_small PROPERTIES COST 35)
 
-# The other compiler at its boldest; and every header alone under both.
+# The other compiler with its most aggressive flags, and every header alone with both.
 find_program(ETLC_CLANG clang++)
 mark_as_advanced(ETLC_CLANG)
 set(kernel_compilers ${CMAKE_CXX_COMPILER})

@@ -1,7 +1,7 @@
-// Rows of float16 and int8 for the kernel tests. Subnormals, zeros and the greatest numbers of
-// either are among them. Takes: a storage, a distance, sizes, a kind of case. Gives: the narrow
-// rows and the float32 rows that they widen to, and a check that every version of the kernel gives
-// both the same bits, within the bounds of the definition.
+// Rows of float16 and int8 for the kernel tests, including subnormals, zeros and the greatest
+// numbers. Takes: a storage, a distance, sizes, a kind of case. Gives: the narrow rows, the float32
+// rows that they widen to, and a check that every version of the kernel gives both the same bits,
+// within the bounds of the definition.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,12 +18,12 @@ using etlmon::Measured;
 using etlmon::MetricId;
 using etlmon::detail::ScaledRows;
 
-/// A float16 by its definition (IEEE 754, 3.4 and 3.6).
+/// Returns a float16 by its definition (IEEE 754, 3.4 and 3.6).
 inline float half(std::uint16_t bits) {
     const int exponent = (bits >> 10) & 0x1f, fraction = bits & 0x3ff;
     const double magnitude = exponent == 0
                                  ? std::ldexp(fraction, -24)
-                                 : std::ldexp(1024 + fraction, exponent - 25);  // finite ones only
+                                 : std::ldexp(1024 + fraction, exponent - 25);  // only finite ones
     return static_cast<float>((bits & 0x8000) != 0 ? -magnitude : magnitude);
 }
 
@@ -41,7 +41,7 @@ inline std::uint16_t random_half(std::mt19937& random, Kind kind) {
     const auto sign = static_cast<std::uint16_t>((random() & 1) << 15);
     const std::uint32_t fraction = random() & 0x3ff;
     const std::uint32_t exponent = kind == Kind::denormal
-                                       ? random() % 2  // subnormal, or the least normal ones
+                                       ? random() % 2  // subnormal, or the least normal numbers
                                    : kind == Kind::huge  ? 29 + random() % 2
                                    : kind == Kind::mixed ? random() % 31
                                                          : 12 + random() % 4;
@@ -96,7 +96,8 @@ inline std::vector<Kind> kinds_of(MetricId metric, std::uint32_t rows, std::uint
             Kind::mixed,    Kind::huge,        Kind::denormal};
 }
 
-/// n elements of every length come out as they do one by one, and nothing is written behind them.
+/// Checks that n elements of every length widen as they do one by one, and that nothing is written
+/// after them.
 template <class G>
 void expect_widened(G from, std::uint32_t greatest) {
     for (const auto widen : widenings<G>()) {
@@ -117,8 +118,8 @@ inline ScaledRows rows_in(const Narrow& narrow, ScaledRows) {
     return {narrow.bytes.data(), narrow.scale};
 }
 
-/// Rows as G reads them, measured by every version. Where rows have to be of length 1 the judge
-/// knows nothing of others, and what float32 rows give is compared.
+/// Measures rows as G reads them with every version. If rows must have length 1, the oracle does
+/// not apply, and the result of float32 rows is compared.
 template <class G>
 void expect_aggregate(const Narrow& narrow, const exact::Judge& judge, exact::Aggregate aggregate,
                       const char* kind) {
@@ -139,7 +140,7 @@ void expect_aggregate(const Narrow& narrow, const exact::Judge& judge, exact::Ag
     }
 }
 
-/// Every size and kind, for rows as G reads them.
+/// Tests every size and kind, for rows as G reads them.
 template <class G>
 void expect_metric(Storage storage, MetricId metric) {
     for (const std::uint32_t dimension : kDimensions) {

@@ -1,5 +1,5 @@
 // Defines row_versions, declared in kernel_versions.hpp, for the three sources that compile the
-// kernels: one a storage, as all kernels together take too long.
+// kernels: one per storage, because all together compile too slowly.
 #pragma once
 
 #include "etlmon/hosted/dynamic.hpp"
@@ -8,7 +8,7 @@
 
 namespace kernel_cases {
 
-/// What a kernel reads of a case, each piece before memory that nothing may touch.
+/// The data that a kernel reads, each piece before an inaccessible page.
 class GuardedCase {
 public:
     const float* z(const exact::Case& c) { return z_.copy(c.z.data(), c.z.size()); }
@@ -27,8 +27,7 @@ private:
     Guarded z_, weights_, rows_;
 };
 
-/// The versions that were compiled and that the CPU has. Only what the values of rows are is
-/// compiled in each.
+/// Returns the compiled versions that the CPU supports. Each compiles only the values of rows.
 template <class Metric, class G>
 std::vector<RowVersion<G>> row_versions_of() {
     using namespace etlmon::detail;

@@ -1,4 +1,4 @@
-// The kernels on rows of float16.
+// Compiles the kernels for rows of float16.
 #include "row_kernels.hpp"
 
 namespace kernel_cases {

@@ -1,4 +1,4 @@
-// The kernels on rows of float32, and the one that a program calls.
+// Compiles the kernels for rows of float32, and the one that a program calls.
 #include "row_kernels.hpp"
 
 namespace kernel_cases {

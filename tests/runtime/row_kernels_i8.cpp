@@ -1,4 +1,4 @@
-// The kernels on rows of int8.
+// Compiles the kernels for rows of int8.
 #include "row_kernels.hpp"
 
 namespace kernel_cases {

@@ -1,6 +1,6 @@
-# The temporal operators, and thresholds that move: under sanitizers, then where flags or another
-# compiler could change what floats mean. Windows and formulas work on integers alone: what the
-# sanitizers find no fault in is the same everywhere.
+# The temporal operators, and adaptive thresholds: with sanitizers, then with flags or a compiler
+# that could change the meaning of floats. Windows and formulas use only integers, so testing them
+# with the sanitizers is enough.
 set(float_sources
   test_adaptation.cpp test_recorder.cpp test_temporal_truth.cpp test_temporal_values.cpp)
 set(integer_sources test_temporal_costs.cpp test_temporal_formulas.cpp test_temporal_windows.cpp)
@@ -9,7 +9,7 @@ set(temporal_warnings -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wp
 etlc_test(test_temporal RUNTIME SOURCES ${float_sources} LIBRARIES etlmon::etlmon)
 target_compile_options(test_temporal PRIVATE ${temporal_warnings} -O2)
 
-# etlc_temporal_variant(NAME SOURCES file... OPTIONS option...): as one test.
+# etlc_temporal_variant(NAME SOURCES file... OPTIONS option...): adds them as one test.
 function(etlc_temporal_variant name)
   cmake_parse_arguments(PARSE_ARGV 1 VARIANT "" "" "SOURCES;OPTIONS")
   add_executable(${name} ${VARIANT_SOURCES})
@@ -23,7 +23,7 @@ etlc_temporal_variant(test_temporal_sanitized
   SOURCES ${float_sources} ${integer_sources} OPTIONS ${quick_sanitizers_gcc})
 etlc_temporal_variant(test_temporal_fast_math SOURCES ${float_sources} OPTIONS -O2 -ffast-math)
 
-# The compiler that the project is not built with, at its boldest.
+# The compiler that does not build the project, with its most aggressive flags.
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   set(temporal_other g++)
 else()

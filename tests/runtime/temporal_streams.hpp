@@ -1,7 +1,7 @@
-// What the temporal tests share: value types, random streams, and the operators written as loops
+// Shared by the temporal tests: value types, random streams, and the operators written as loops
 // over a stream. Takes: a stream of right and left operands and a range of positions. Gives: the
 // operator's value, by its definition. Keeps true: nothing here calls the monoids or the windows
-// under test; loops compare through min_of and max_of of V alone.
+// under test; loops compare only through min_of and max_of of V.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace temporal {
 
-/// 32 Boolean streams side by side: a mode that the runtime knows nothing of.
+/// 32 Boolean streams side by side, a value type that the runtime does not have.
 struct Bits {
     uint32_t word;
 };
@@ -46,7 +46,7 @@ using etlmon::Span;
 using etlmon::Truth;
 using etlmon::Value;
 
-/// How a typed test calls its value type.
+/// The name of a value type in typed tests.
 template <class V>
 constexpr const char* kNameOf = "";
 template <>
@@ -76,8 +76,8 @@ inline bool same(Bits a, Bits b) {
     return a.word == b.word;
 }
 
-/// A random value: mostly few levels, so that ties occur; infinities and the smallest denormals
-/// among them.
+/// Returns a random value: mostly one of few levels, so that ties occur, with infinities and the
+/// smallest denormals among them.
 template <class V>
 V random_value(std::mt19937& random);
 
@@ -101,7 +101,7 @@ inline Value random_value<Value>(std::mt19937& random) {
 }
 template <>
 inline Truth random_value<Truth>(std::mt19937& random) {
-    const uint32_t kind = random() % 8;  // seldom true: windows run empty
+    const uint32_t kind = random() % 8;  // rarely true, so that windows are empty
     return kind == 0 ? etlmon::kYes : kind == 1 ? etlmon::kPerhaps : etlmon::kNo;
 }
 template <>
@@ -109,8 +109,8 @@ inline Bits random_value<Bits>(std::mt19937& random) {
     return {static_cast<uint32_t>(random())};
 }
 
-/// One signal pair, g the right and f the left operand of a binary operator; unary operators read
-/// g.
+/// A pair of signals: g is the right and f the left operand of a binary operator; unary operators
+/// read g.
 template <class V>
 struct Streams {
     std::vector<V> g, f;
@@ -135,8 +135,8 @@ struct CaseNames {
     }
 };
 
-// Each operator: how its element is made, its result read, and its definition over positions
-// [first, last].
+// For each operator: how its element is made, how its result is read, and its definition over
+// positions [first, last].
 
 template <class V>
 struct GreatestCase {

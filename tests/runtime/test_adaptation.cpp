@@ -1,5 +1,5 @@
-// Adaptive thresholds: the update against integers, the bound on misses on sequences that are
-// chosen against it, and what comes from outside: distances and kept thresholds of every kind.
+// Tests adaptive thresholds: the update against integers, the bound on misses on adversarial
+// sequences, and arbitrary distances and stored thresholds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,8 +28,8 @@ double wide(float x) {
     return static_cast<double>(x);
 }
 
-/// As etlc makes them, mirrored for >=; alpha and gamma in extended precision, which outlasts every
-/// rounding here.
+/// Makes them as etlc does, mirrored for >=; alpha and gamma are in extended precision, which
+/// exceeds every rounding here.
 struct Rule {
     long double alpha;
     long double gamma;
@@ -73,7 +73,7 @@ etlmon::Truth found(const Rule& rule, const float& distance, const float& epsilo
     return rule.mirrored ? is_at_least(distance, epsilon) : is_at_most(distance, epsilon);
 }
 
-/// The same threshold as a number of grid lengths.
+/// Returns the threshold as a number of grid steps.
 std::int64_t steps(const Rule& rule, float x) {
     return static_cast<std::int64_t>(
         std::llround(static_cast<double>(x) / static_cast<double>(rule.by.grid)));
@@ -100,7 +100,7 @@ TEST(Adaptation, NoUpdateIsRounded) {
 /// Chooses the next positive frame, knowing the threshold.
 using World = std::function<double(const Rule&, float epsilon, std::uint64_t n)>;
 
-/// A share of the way from the end that is strict to the end that is generous.
+/// Returns a point between the strict and the generous end.
 double along(const Rule& r, double share) {
     const double towards = r.mirrored ? 1 - share : share;
     return wide(r.by.lo) + towards * (wide(r.by.hi) - wide(r.by.lo));
@@ -115,27 +115,27 @@ std::vector<World> worlds() {
     auto engine = std::make_shared<std::mt19937_64>(2);
     const auto uniform = [engine] { return static_cast<double>((*engine)() >> 11U) * 0x1p-53; };
     return {
-        // Missed by a little, as long as the range has room, and for ever.
+        // Misses by a little while the range has room, for ever.
         [](const Rule& r, float epsilon, std::uint64_t) { return beyond(r, epsilon); },
-        // Beyond every threshold that there may be.
+        // Misses beyond every possible threshold.
         [](const Rule& r, float, std::uint64_t) { return along(r, 1.5); },
-        // Easy, so that the threshold tightens, then a run of misses; over and over.
+        // Easy frames, so that the threshold tightens, then a run of misses; repeated.
         [](const Rule& r, float epsilon, std::uint64_t n) {
             return n % 2000 < 1500 ? along(r, -1) : beyond(r, epsilon);
         },
-        // Random, with a drift from one end to beyond the other.
+        // Random frames that drift from one end to beyond the other.
         [uniform](const Rule& r, float, std::uint64_t n) {
             return along(r, 0.2 * uniform() + static_cast<double>(n) / 15000);
         },
         [uniform](const Rule& r, float, std::uint64_t) { return along(r, 2 * uniform() - 0.5); },
-        // A miss now and then, at random.
+        // Occasional random misses.
         [uniform](const Rule& r, float epsilon, std::uint64_t) {
             return uniform() < 0.5 ? beyond(r, epsilon) : along(r, -1);
         },
     };
 }
 
-/// docs/calibration.md, "What is guaranteed", of every prefix.
+/// docs/calibration.md, "What is guaranteed", for every prefix.
 TEST(Adaptation, MissesStayBelowTheBound) {
     for (const Rule& r : rules())
         for (const World& world : worlds()) {
@@ -162,7 +162,7 @@ TEST(Adaptation, MissesStayBelowTheBound) {
         }
 }
 
-/// The bound is met: a world that misses until the range is used up has as many misses as it
+/// The bound is tight: a sequence that misses until the range is used up has as many misses as it
 /// allows.
 TEST(Adaptation, TheBoundIsTight) {
     const Rule r = rule(0.25L, 0.5L, 0, 4, false);  // all exact
@@ -191,7 +191,8 @@ TEST(Adaptation, HeldBackAtTheEnds) {
 TEST(Adaptation, DistancesThatAreNoNumbers) {
     for (const bool mirrored : {false, true}) {
         const Rule r = rule(0.25L, 0.5L, -1, 1, mirrored);
-        EXPECT_EQ(adapted(0.25F, found(r, etlmon::kMissing, 0.25F), r.by), 0.25F);  // says nothing
+        EXPECT_EQ(adapted(0.25F, found(r, etlmon::kMissing, 0.25F), r.by), 0.25F);  // changes
+                                                                                    // nothing
         const float hit = 0.25F + r.by.on_hit;
         const float miss = 0.25F + r.by.on_miss;
         EXPECT_EQ(adapted(0.25F, found(r, kTop, 0.25F), r.by), mirrored ? hit : miss);
@@ -212,7 +213,7 @@ TEST(Adaptation, KeptThresholdsComeBack) {
         EXPECT_EQ(restored(std::numeric_limits<float>::max(), r.by.lo, r.by), r.by.hi);
         EXPECT_EQ(restored(std::numeric_limits<float>::lowest(), r.by.lo, r.by), r.by.lo);
         EXPECT_EQ(restored(etlmon::kMissing, epsilon, r.by), epsilon);
-        for (int n = 0; n < 1000; ++n) {  // any word that memory may hold
+        for (int n = 0; n < 1000; ++n) {  // any bits that memory may contain
             const auto bits = static_cast<std::uint32_t>(engine());
             float any = 0;
             etlmon::detail::copy_bytes(&any, &bits, sizeof any);

@@ -1,5 +1,5 @@
-// Every distance and aggregation against exact.hpp, within the stated bounds, at every size and
-// kind of input.
+// Compares every distance and aggregation with exact.hpp, within the stated bounds, at every size
+// and kind of input.
 #include <gtest/gtest.h>
 
 #include "kernel_cases.hpp"

@@ -1,5 +1,5 @@
-// What narrow copies of targets say about the targets: the interval holds the distance in real
-// arithmetic and what every version of the kernel measures on the float32 rows, and a comparison
+// Tests intervals from narrow copies of targets: the interval contains the distance in real
+// arithmetic and the results of every version of the kernel on the float32 rows, and a comparison
 // that it leaves open is doubtful.
 #include "etlmon/distance/enclosed.hpp"
 
@@ -18,15 +18,15 @@ using etlmon::Enclosed;
 using etlmon::Measured;
 using etlmon::MetricId;
 
-/// Prepared rows, what their narrow copies widen to, and how far these moved. The kernels give
-/// narrow rows the bits that they give widened ones (test_narrow_halves.cpp,
-/// test_narrow_bytes.cpp): here the widened ones are measured.
+/// Prepared rows, their narrow copies widened, and how far these moved. The kernels give narrow
+/// rows the bits of widened ones (test_narrow_halves.cpp, test_narrow_bytes.cpp), so the widened
+/// ones are measured here.
 struct Copies {
     std::vector<float> rows, halves, bytes;
     float moved_halves = 0, moved_bytes = 0;
 };
 
-/// Some float16 near x: truncated, so farther off than a rounded one; 0 for subnormal ones.
+/// Returns a float16 near x: truncated, so less exact than a rounded one; 0 for subnormal ones.
 float truncated_half(float x) {
     const std::uint32_t b = bits(x);
     const int exponent = static_cast<int>((b >> 23) & 0xff) - 112;
@@ -91,8 +91,8 @@ void expect_case(const exact::Case& c, const Copies& copies, const char* kind) {
     }
 }
 
-/// z on the line through a row and its narrow copy, where the distance changes by all that the row
-/// moved, near 0.
+/// z on the line through a row and its narrow copy, where the distance changes by the whole move of
+/// the row, near 0.
 template <class Metric>
 void expect_along_the_move(exact::Case c, const Copies& copies) {
     for (const auto* narrow : {&copies.halves, &copies.bytes}) {
@@ -150,8 +150,8 @@ TEST(Enclosed, WhatIsNotFiniteIsDoubtful) {
     const etlmon::Cut far[] = {1.0F, {2.0F, 3.0F}};
     for (const float delta : {HUGE_VALF, etlmon::kMissing, 3e38F})
         EXPECT_TRUE(etlmon::enclose<etlmon::L2Sq>({delta, 0}, 1e30F, 384).doubtful(far)) << delta;
-    EXPECT_TRUE(etlmon::enclose<etlmon::L2>({1.0F, 0}, 2e18F, 384)
-                    .doubtful(far));  // a square of which overflows
+    EXPECT_TRUE(
+        etlmon::enclose<etlmon::L2>({1.0F, 0}, 2e18F, 384).doubtful(far));  // its square overflows
     EXPECT_TRUE(etlmon::enclose<etlmon::Angular>({0.5F, 0}, 0.3F, 384)
                     .doubtful(far));  // the bound is for small moves
     EXPECT_FALSE(etlmon::enclose<etlmon::L2>({0.5F, 0}, 0.1F, 384).doubtful(far));

@@ -1,4 +1,4 @@
-// Arithmetic of EXPR: IEEE 754 results by bits, whatever this file is compiled with; NaN is never
+// Tests the arithmetic of EXPR: IEEE 754 results by bits, for any flags of this file; NaN is never
 // lost.
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ float hidden(std::uint32_t b) {
 std::uint32_t bits(const float& x) {
     std::uint32_t b = 0;
     std::memcpy(&b, &x, sizeof b);
-    return (b & 0x7fffffff) > kInf ? kNan : b;  // one NaN is as good as another
+    return (b & 0x7fffffff) > kInf ? kNan : b;  // all NaNs are equal
 }
 
 using Binary = float (*)(float, float);
@@ -114,7 +114,7 @@ TEST(Expression, NeitherFusesNorReassociates) {
     const float tenth = hidden(kTenth);
     const float square = etlmon::multiply(tenth, tenth);
     EXPECT_EQ(bits(etlmon::subtract(etlmon::multiply(tenth, tenth), square)), kZero);
-    // (1 + 2^-30) - 1 is 0 as written, 2^-30 if reassociated.
+    // (1 + 2^-30) - 1 is 0 as written, but 2^-30 if reassociated.
     const float small = hidden(0x30800000);
     EXPECT_EQ(bits(etlmon::subtract(etlmon::add(hidden(kOne), small), hidden(kOne))), kZero);
     // a / 3 is a division, not a product with a rounded reciprocal.

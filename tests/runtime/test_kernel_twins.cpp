@@ -1,6 +1,6 @@
-// The kernel with sizes known to the compiler against the same kernel with sizes known at run time:
-// equal bits. Under -ffast-math the compiler may add in another order in each of them; there both
-// must be within the bounds.
+// Compares the kernel with compile-time sizes and the same kernel with run-time sizes: they give
+// equal bits. Under -ffast-math the compiler may add in another order in each; then both must be
+// within the bounds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -66,7 +66,7 @@ TEST(KernelTwins, EveryDistanceAndAggregation) {
 #undef DISTANCE
 }
 
-// What the rows are measured with does not ask what their values are aggregated to.
+// Measuring rows does not depend on the aggregation.
 TEST(KernelTwins, EveryDistanceInVectors) {
 #define DISTANCE(id, Type, prepared, zero_is_unknown) \
     expect_twins<etlmon::Type, etlmon::Min, 4, 33>(etlmon::MetricId::id, {});
@@ -92,8 +92,8 @@ TEST(KernelTwins, EveryOrderOfAdditions) {
     expect_nearest_twins<1, 384>();
     expect_nearest_twins<17, 384>();
     expect_nearest_twins<8, 1000>();
-    // In blocks of 64, 32 or 16 elements: some without whole blocks, some with vectors after them,
-    // some with a rest.
+    // In blocks of 64, 32 or 16 elements: some sizes without whole blocks, some with vectors after
+    // them, some with a remainder.
     expect_nearest_twins<1, 16>();
     expect_nearest_twins<1, 17>();
     expect_nearest_twins<1, 32>();
@@ -112,7 +112,7 @@ TEST(KernelTwins, EveryOrderOfAdditions) {
     expect_twins<etlmon::Cosine, etlmon::Min, 17, 33>(MetricId::cosine, {});
 }
 
-/// A number in [-1, 1) for each i.
+/// Returns a number in [-1, 1) for each i.
 constexpr float number(std::size_t i) {
     return static_cast<float>((static_cast<std::uint32_t>(i) * 2654435761u + 12345u) >> 8) /
                8388608.0f -
@@ -172,7 +172,7 @@ TEST(KernelTwins, ProjectionsThatAreUnknown) {
     z[0] = 0.25f;
     EXPECT_EQ((etlmon::project<2, 2>(sample, matrix.data(), y)), &y[0]);
     EXPECT_EQ((etlmon::project<2, 2>(missing, matrix.data(), y)), nullptr);
-    const etlmon::Point<2> partly{{0, etlmon::kMissing}};  // what is missing counts under a 0
+    const etlmon::Point<2> partly{{0, etlmon::kMissing}};  // a missing sample with bits of 0
     EXPECT_EQ((etlmon::project<2, 2>(partly, matrix.data(), y)), nullptr);
 }
 

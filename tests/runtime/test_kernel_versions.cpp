@@ -1,6 +1,6 @@
-// Every version of the kernel that this machine can run, against exact.hpp: within the stated
-// bounds at every size, and the versions that fuse multiplication and addition against each other:
-// equal bits.
+// Compares every version of the kernel that this machine can run with exact.hpp, within the stated
+// bounds at every size, and the versions that fuse multiplication and addition with each other:
+// they give equal bits.
 #include <gtest/gtest.h>
 
 #include "kernel_versions.hpp"
@@ -12,7 +12,7 @@ using etlmon::Measured;
 using etlmon::MetricId;
 using etlmon::detail::Fixed;
 
-/// What a version made of a case.
+/// The result of one version for a case.
 struct Answer {
     const char* version;
     bool fused;
@@ -93,7 +93,7 @@ void expect_columns(MetricId metric, exact::Aggregate aggregate) {
                 {version.name, version.fused,
                  unpacked(version.run(c.z.data(), columns.values, c.weights.data(), {}, {}))});
         expect_answers(answers, c, judge, aggregate, name(kind));
-        // The same rows, not in columns: the same bits.
+        // The same rows, not in columns, give the same bits.
         const Measured in_rows = best<Metric, Aggregation, Fixed<K, D>, false>(
             c.z.data(), rows, c.weights.data(), {}, {});
         const Measured in_columns = best<Metric, Aggregation, Fixed<K, D>, true>(

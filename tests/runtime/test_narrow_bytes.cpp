@@ -1,4 +1,4 @@
-// Rows of int8: the same bits as the rows of float32 that they widen to, in every version of the
+// Rows of int8 give the same bits as the float32 rows that they widen to, in every version of the
 // kernel, and so within the same bounds.
 #include "narrow_cases.hpp"
 
@@ -21,7 +21,7 @@ TEST(Bytes, WidenWhateverTheirNumber) {
 inline constexpr std::int8_t kBytes[64 * 5] = {1, -128, 127, 0, 5, -7};
 inline constexpr float kWideBytes[64 * 5] = {0.5F, -64.0F, 63.5F, 0.0F, 2.5F, -3.5F};
 
-/// Columns, in which the compiler keeps constants.
+/// Columns, as the compiler stores constants.
 TEST(Bytes, InColumns) {
     using namespace etlmon;
     const float z[5] = {1.5F, -0.25F, 3.0F, 1e-3F, -1.0F};

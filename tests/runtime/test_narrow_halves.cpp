@@ -1,5 +1,5 @@
-// Rows of float16: the same bits as the rows of float32 that they widen to, in every version of the
-// kernel, and so within the same bounds.
+// Rows of float16 give the same bits as the float32 rows that they widen to, in every version of
+// the kernel, and so within the same bounds.
 #include "narrow_cases.hpp"
 
 namespace {
@@ -46,7 +46,7 @@ inline constexpr std::uint16_t kHalves[64 * 5] = {0x3c00, 0x4001, 0x8001, 0x3555
 inline constexpr float kWideHalves[64 * 5] = {
     1.0F, 2.001953125F, -5.9604645e-8F, 0.333251953125F, -0.9663086F, 65504.0F, 6.1035156e-5F};
 
-/// Columns, in which the compiler keeps constants.
+/// Columns, as the compiler stores constants.
 TEST(Halves, InColumns) {
     using namespace etlmon;
     const float z[5] = {1.5F, -0.25F, 3.0F, 1e-3F, -1.0F};

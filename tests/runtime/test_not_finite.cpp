@@ -1,5 +1,4 @@
-// A point with an element that is not finite has no distance, whichever kernel measures it: NaN,
-// and row 0.
+// A point with an element that is not finite has no distance with any kernel: NaN, and row 0.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -113,8 +112,8 @@ TEST(NotFinite, SamplesAndPoints) {
     EXPECT_TRUE(is_nan(measure<L2, Min, 2, 2, kTargets>({z[0], missing}).delta));
 }
 
-/// What a compiler that assumes NaN away sees of a scalar outside its range: a choice between a
-/// number and a NaN.
+/// A compiler that assumes no NaN sees a scalar outside its range as a choice between a number and
+/// a NaN.
 TEST(NotFinite, ScalarsOutsideTheirRanges) {
     using namespace etlmon;
     volatile float outside = 2, inside = 0.5F;

@@ -1,5 +1,5 @@
-// The flight recorder against a list of everything that happened, from which incidents are taken
-// by their definition.
+// Compares the flight recorder with a list of all events, from which incidents are taken by their
+// definition.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,12 +32,12 @@ struct Bytes {
     }
 };
 
-/// What the rows of an incident say: which steps, and which of them is the alarm.
+/// The steps of an incident's rows, and which of them is the alarm.
 struct Seen {
     uint32_t episode = 0;
     uint32_t alarm = 0;  ///< step
     std::vector<uint32_t> steps;
-    std::vector<uint32_t> marks;  ///< a number that no two steps share
+    std::vector<uint32_t> marks;  ///< a number unique to the step
 
     bool operator==(const Seen& other) const {
         return episode == other.episode && alarm == other.alarm && steps == other.steps &&
@@ -45,14 +45,14 @@ struct Seen {
     }
 };
 
-/// What was written, read as docs/data.md says.
+/// Reads a written incident by docs/data.md.
 Seen read(const Bytes& bytes) {
     EXPECT_TRUE(std::equal(etlmon::kIncidentMagic, etlmon::kIncidentMagic + 8, bytes.all.begin()));
     EXPECT_EQ(bytes.word(8), 1U);
     EXPECT_EQ(bytes.word(12), bytes.all.size());
     for (uint32_t i = 0; i < 4; ++i) EXPECT_EQ(bytes.word(16 + 8 * i), 0x11111111u * (i + 1));
-    EXPECT_EQ(bytes.word(48), 3U);  // words of a row
-    EXPECT_EQ(bytes.word(52), 4U);  // bytes of a row
+    EXPECT_EQ(bytes.word(48), 3U);  // words per row
+    EXPECT_EQ(bytes.word(52), 4U);  // bytes per row
     const uint32_t rows = bytes.word(76), alarm = bytes.word(80);
     Seen seen;
     seen.episode = bytes.word(64);
@@ -73,7 +73,7 @@ Seen read(const Bytes& bytes) {
     return seen;
 }
 
-/// The recorder's incidents, from all that happened.
+/// Returns the recorder's incidents, from all events.
 template <uint32_t Before, uint32_t After, uint32_t Incidents>
 class Twin {
 public:
@@ -135,8 +135,8 @@ public:
 private:
     struct Incident {
         uint32_t episode;
-        size_t alarm;                 ///< step of the episode
-        std::vector<uint32_t> marks;  ///< of the episode's steps, while it is open
+        size_t alarm;                 ///< step within the episode
+        std::vector<uint32_t> marks;  ///< steps of the episode, while it is open
         bool closed;
     };
 
@@ -144,7 +144,7 @@ private:
         update();
         for (Incident& incident : incidents_) incident.closed = true;
     }
-    /// Open incidents see the steps that came since.
+    /// Adds later steps to open incidents.
     void update() {
         for (Incident& incident : incidents_)
             if (!incident.closed && incident.episode == episode_) incident.marks = marks_;
@@ -243,7 +243,7 @@ TEST(Recorder, WhatIsMissingAndWhatNobodyAskedForDiffer) {
     Row row;
     EXPECT_EQ(row.words[1], etlmon::kUnaskedBits);
     EXPECT_EQ(row.bytes[0], etlmon::kRecordedUnasked);
-    row.figures(0, etlmon::detail::from_bits(0xffc12345u), 7);  // a NaN of whatever kind
+    row.figures(0, etlmon::detail::from_bits(0xffc12345u), 7);  // any kind of NaN
     row.flag(0, etlmon::Flag());
     EXPECT_EQ(row.words[1], etlmon::detail::kMissingBits);
     EXPECT_EQ(row.words[2], 7U);

@@ -1,6 +1,6 @@
 // A search gives, step by step, the bits of the plain kernel on the same rows: every distance that
-// it knows, every order of additions, whatever the embedding does. The plain kernel is held to the
-// definitions elsewhere.
+// it supports, every order of additions, any path of the embedding. Other tests compare the plain
+// kernel with the definitions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,8 +19,7 @@ std::uint32_t bits(float x) {
     return word;
 }
 
-/// K rows of D elements, padded; in clusters of `near` rows that lie close together, some rows
-/// twice.
+/// Makes K padded rows of D elements in clusters of `near` rows, with some rows twice.
 template <std::uint32_t K, std::uint32_t D>
 struct Rows {
     static constexpr std::uint32_t kStride = etlmon::detail::padded(D);
@@ -47,7 +46,7 @@ struct Rows {
     float* at(std::uint32_t k) { return floats.data() + std::size_t{k} * kStride; }
 };
 
-/// Where the embedding goes next.
+/// Returns the next embedding.
 template <class Set>
 void move(std::vector<float>& z, Set& rows, std::uint32_t count, std::mt19937& random, float pace) {
     std::normal_distribution<float> normal;
@@ -97,7 +96,8 @@ void expect_plain() {
             expect_plain<Metric, 300, 33>(++seed, near, pace, 300);  // in lanes
             expect_plain<Metric, 500, 5>(++seed, near, pace, 300);   // in sequence
         }
-        expect_plain<Metric, 1100, 500>(++seed, 64, pace, 100);  // in one stream, rows left early
+        expect_plain<Metric, 1100, 500>(++seed, 64, pace, 100);  // in one stream, with rows dropped
+                                                                 // early
     }
 }
 
@@ -117,9 +117,9 @@ TEST(Search, Cosine) {
     expect_plain<etlmon::Cosine>();
 }
 
-/// Two rows on a line, in different blocks, and z on it: at one of them almost, then half way
-/// between them but for a few roundings. Nothing is nearer than the triangle inequality says, so
-/// the room for rounding alone keeps the second row from being left out.
+/// Two rows on a line, in different blocks, and z on it: first almost at one of them, then halfway
+/// between them up to a few roundings. The triangle inequality is tight here, so only the margin
+/// for rounding keeps the second row from being skipped.
 template <class Metric>
 void expect_plain_between_equals() {
     constexpr std::uint32_t kRows = 300, kDimension = 33, kFirst = 7, kSecond = 150;

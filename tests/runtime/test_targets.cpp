@@ -1,4 +1,4 @@
-// Files of targets: nothing but the right bytes, whole and aligned, is ready, whether mapped or
+// Tests files of targets: only the right bytes, complete and aligned, are ready, whether mapped or
 // given by pointer.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -27,7 +27,7 @@ Bytes right_bytes() {
     return bytes;
 }
 
-/// A file below the temporary folder, gone at the end.
+/// A file below the temporary folder, removed at the end.
 class File {
 public:
     explicit File(const std::string& name)
@@ -153,7 +153,7 @@ TEST(MappedTargets, OfNoFileSayWhy) {
     EXPECT_EQ(folder.error(), EISDIR);
     const File pipe("pipe");
     ASSERT_EQ(::mkfifo(pipe.path().c_str(), 0600), 0);
-    EXPECT_FALSE(Mapped(pipe.path().c_str()).ready());  // and does not wait for somebody to write
+    EXPECT_FALSE(Mapped(pipe.path().c_str()).ready());  // without waiting for a writer
 }
 
 }  // namespace

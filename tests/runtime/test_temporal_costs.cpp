@@ -1,5 +1,5 @@
-// What the windows promise to cost: combinations in the worst step, counted by a monoid that also
-// checks that every aggregate is exactly the last N elements in order; bytes, held to sizeof.
+// Checks the costs of windows: combinations in the worst step, counted by a monoid that also checks
+// that every aggregate is exactly the last N elements in order; and bytes, compared with sizeof.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,13 +12,13 @@ using etlmon::Key;
 using etlmon::Value;
 using temporal::Bits;
 
-/// Stretches of consecutive step numbers under concatenation: neither commutative nor idempotent.
-/// Counts its combinations.
+/// Ranges of consecutive step numbers under concatenation: neither commutative nor idempotent. It
+/// counts its combinations.
 struct Stretch {
     struct Element {
         uint32_t first;
         uint32_t count;
-        uint32_t broken;  ///< 1 where two that do not meet were joined
+        uint32_t broken;  ///< 1 if two non-adjacent ranges were joined
     };
     static constexpr bool kNewestLast = true;
     static uint32_t combinations;
@@ -38,8 +38,8 @@ struct StretchFromTheOldest : Stretch {
     static constexpr bool kNewestLast = false;
 };
 
-/// The most combinations in one step over `steps` steps; fails where an aggregate is not the last n
-/// elements in order.
+/// Returns the most combinations in one step over `steps` steps; fails if an aggregate is not the
+/// last n elements in order.
 template <class Monoid>
 uint32_t worst_step(uint32_t n, uint32_t steps) {
     std::vector<Stretch::Element> storage(etlmon::window_elements(n));
@@ -85,7 +85,7 @@ TEST(TemporalCost, StorageIsNeverMoreThanTwoBeyondTheLength) {
 
 namespace narrow {
 
-/// A value type of less than a cursor's alignment.
+/// A value type with less alignment than a cursor.
 struct Byte {
     uint8_t bits;
 };

@@ -1,6 +1,6 @@
-// Formulas put together from windows and delays, as generated monitors do, against their
-// definitions on every prefix: offsets of intervals, bounded until over a delayed stream with its
-// end, the pending half of G(p -> F[0,w] q).
+// Compares formulas built from windows and delays, as in generated monitors, with their definitions
+// on every prefix: offsets of intervals, bounded until over a delayed stream with its end, the
+// pending half of G(p -> F[0,w] q).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using etlmon::Span;
 using temporal::random_streams;
 using temporal::Streams;
 
-/// rho(G(p -> F[0,w] q), 0, i), clipped at the prefix; g plays q, f plays !p.
+/// rho(G(p -> F[0,w] q), 0, i), cut at the prefix; g is q, f is !p.
 Key bounded_response(const Streams<Key>& s, size_t w, size_t i) {
     Key rho = etlmon::kTop;
     for (size_t k = 0; k <= i; ++k) {
@@ -101,7 +101,7 @@ Key until_in(const Streams<Key>& s, size_t a, size_t b, size_t k, size_t last) {
     return rho;
 }
 
-/// Verdicts come B steps late; after the end, identity elements stand for the positions that never
+/// Verdicts come B steps late; after the end, identity elements replace the positions that never
 /// came.
 template <uint32_t A, uint32_t B>
 void expect_until_with_its_end() {
@@ -131,7 +131,7 @@ TEST(TemporalFormula, UntilWithAnOffsetAndItsEnd) {
     expect_until_with_its_end<12, 40>();
 }
 
-/// Four windows over one signal, the shorter ones feeding the longer.
+/// Four windows over one signal, the longer ones built from the shorter.
 TEST(TemporalFormula, OneSignalUnderManyWindows) {
     etlmon::Window<etlmon::Greatest<Key>, 10> to10;
     etlmon::Widening<etlmon::Greatest<Key>, 10, 20> to20;

@@ -1,5 +1,5 @@
-// Truth values: their algebra, the comparisons that make them, the answers made of them, lazy
-// evaluation, over all combinations; and windows over them, on every short stream.
+// Tests truth values: their algebra, comparisons, verdicts and lazy evaluation, over all
+// combinations; and windows over them, on every short stream.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ using temporal::same;
 
 constexpr Truth kAll[] = {kNo, kPerhaps, kYes};
 
-/// Truth as a number: 0, 1/2, 1.
+/// Returns a truth value as a number: 0, 1/2, 1.
 int rank(Truth t) {
     return (t.low ? 1 : 0) + (t.high ? 1 : 0);
 }
@@ -82,7 +82,7 @@ TEST(TemporalTruth, Answers) {
     EXPECT_TRUE(etlmon::sliding_verdict(kPerhaps).final());
 }
 
-// Asked from left to right, at most once each, and no further than needed.
+// Operands are evaluated from left to right, at most once each, and only as far as needed.
 TEST(TemporalTruth, LazyValuesAreAskedWhereTheyDecide) {
     for (const Truth first : kAll)
         for (const Truth second : kAll)
@@ -107,7 +107,7 @@ TEST(TemporalTruth, LazyValuesAreAskedWhereTheyDecide) {
             }
 }
 
-/// Every stream of `length` pairs of these values through a window over the last N.
+/// Runs every stream of `length` pairs of these values through a window over the last N.
 template <class Case, uint32_t N>
 void expect_every_stream(const std::vector<Truth>& values, size_t length) {
     temporal::Streams<Truth> streams{std::vector<Truth>(length), std::vector<Truth>(length)};
@@ -150,7 +150,7 @@ TEST(TemporalTruth, WindowsOnEveryStream) {
     expect_every_stream<temporal::ReleaseCase<Truth>>(kLengths);
 }
 
-/// Over words of bits, and long enough to come around several times.
+/// Long enough to wrap around several times, over words of bits.
 template <class Case, uint32_t N>
 void expect_long_streams(unsigned rarity) {
     const auto window = std::make_unique<etlmon::Window<typename Case::Monoid, N>>();
@@ -158,7 +158,7 @@ void expect_long_streams(unsigned rarity) {
     std::mt19937 random(N + rarity);
     temporal::Streams<Truth> streams;
     for (size_t i = 0; i < 6 * N + 50; ++i) {
-        // Runs in which f holds and g does not, of about that length.
+        // Runs of about that length in which f holds and g does not.
         const bool decides = random() % rarity == 0;
         streams.g.push_back(decides ? kAll[random() % 3] : kNo);
         streams.f.push_back(decides ? kAll[random() % 3] : kYes);

@@ -1,6 +1,6 @@
-// Delays and windows against loops written from the operators' definitions: every length up to 70,
-// long ones sampled, all Boolean streams of length 9, over keys, floats, pairs of keys, truth
-// values and packed Booleans.
+// Compares delays and windows with loops written from the operators' definitions: every length up
+// to 70, samples of long ones, all Boolean streams of length 9, over keys, floats, pairs of keys,
+// truth values and packed Booleans.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using temporal::same;
 using temporal::Streams;
 using temporal::Truth;
 
-/// The window functions on storage of their own, as an interpreter uses them.
+/// The window functions with separate storage, as an interpreter uses them.
 template <class Monoid>
 class RuntimeWindow {
 public:
@@ -39,8 +39,8 @@ private:
 
 constexpr size_t kNone = ~size_t{0};
 
-/// Pushes the streams through `window`; the first of the steps that `checked` picks where it is not
-/// as defined, or kNone.
+/// Pushes the streams through `window`; returns the first of the `checked` steps that differs from
+/// the definition, or kNone.
 template <class Case, class Window, class Checked>
 size_t first_mismatch(Window& window, uint32_t n, const Streams<typename Case::Value>& streams,
                       Checked checked) {
@@ -82,7 +82,7 @@ TYPED_TEST(TemporalWindow, EveryLengthTo70) {
     }
 }
 
-/// The class for one length, reset in the middle of streams: nothing of those before may be left.
+/// The class for one length, reset in the middle of streams, without remains of the earlier ones.
 template <class Case, uint32_t N>
 size_t first_mismatch_of_class() {
     const auto window = std::make_unique<etlmon::Window<typename Case::Monoid, N>>();
@@ -105,8 +105,8 @@ TYPED_TEST(TemporalWindow, ClassesAndReset) {
 
 // ---- pairs of keys, whose highs are only kept up where they differ from the lows
 
-/// Random pairs whose ends are the same but for bursts, after `quiet` steps of none, in which one
-/// in `rarity` differs.
+/// Random pairs with equal ends except in bursts, which follow `quiet` steps and in which one in
+/// `rarity` differs.
 Streams<Value> with_bursts(size_t length, uint32_t quiet, uint32_t rarity, uint32_t seed) {
     Streams<Value> streams = random_streams<Value>(length, seed);
     std::mt19937 random(seed + 1);
@@ -164,7 +164,7 @@ TYPED_TEST(TemporalLongWindow, SampledTo100000) {
         RuntimeWindow<typename TypeParam::Monoid> window(n);
         const uint32_t block = n / 2;
         const uint32_t stride = n / 9 + 1;
-        // A stride, and the steps on both sides of where blocks change.
+        // A stride, and the steps on both sides of block boundaries.
         const auto checked = [=](size_t i) { return i % stride == 0 || (i + 2) % block <= 3; };
         ASSERT_EQ(
             first_mismatch<TypeParam>(window, n, random_streams<Value>(3 * n + 7, n), checked),
@@ -173,8 +173,8 @@ TYPED_TEST(TemporalLongWindow, SampledTo100000) {
     }
 }
 
-/// All streams: 4^length pairs of Boolean signals, 32 side by side. As min and max commute with
-/// thresholds, what holds for all Boolean streams of a length holds for all values.
+/// All streams: 4^length pairs of Boolean signals, 32 side by side. Min and max commute with
+/// thresholds, so a property of all Boolean streams of a length holds for all values.
 template <class Case>
 class TemporalBooleanWindow : public testing::Test {};
 TYPED_TEST_SUITE(TemporalBooleanWindow, CasesOf<Bits>, temporal::CaseNames);

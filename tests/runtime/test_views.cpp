@@ -1,4 +1,4 @@
-// Views, flags and what counts as present.
+// Tests views, flags and presence of samples.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,7 +19,7 @@ using etlmon::kMissing;
 using etlmon::Vector;
 using View = Vector<float, 6>;
 
-// What converts, and what must not compile.
+// Conversions that work, and ones that must not compile.
 static_assert(std::is_convertible_v<float (&)[6], View>);
 static_assert(std::is_convertible_v<const float (&)[6], View>);
 static_assert(std::is_convertible_v<std::array<float, 6>&, View>);
@@ -46,7 +46,7 @@ static_assert(!Flag().present() && Flag(true).present() && Flag(true).value() &&
               Flag(false).present());
 static_assert(!Flag(false).value() && !Flag().value());
 
-/// Looks like std::span: no default constructor, a size in its type.
+/// Like std::span: no default constructor, a size in its type.
 struct Span {
     static constexpr std::size_t extent = 6;
     explicit Span(const float* at) : at_(at) {}
@@ -137,7 +137,7 @@ TEST(Views, ScalarsAreFiniteAndInRange) {
     EXPECT_TRUE(etlmon::is_nan(kMissing));
 }
 
-/// From the definition: sign, exponent and mantissa of IEEE 754 binary16, in double.
+/// By the definition: sign, exponent and mantissa of IEEE 754 binary16, in double.
 double half_value(std::uint16_t h) {
     const int exponent = (h >> 10) & 0x1f;
     const double mantissa = h & 0x3ff;

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# answers_soon_test.sh ETLC SECONDS KILOBYTES: etlc answers specs of 10 KB soon, with a header or
-# with an error, within SECONDS of processor time and KILOBYTES of memory (0: any), in texts of
-# reasonable length. Each spec below would take hours or all memory in a compiler that walks
-# formulas as trees, or that builds state machines of any size. It explains their verdicts as soon,
-# on a trace where each of thousands of samples may be what turns them.
+# answers_soon_test.sh ETLC SECONDS KILOBYTES: etlc compiles or refuses specs of 10 KB within
+# SECONDS of processor time and KILOBYTES of memory (0: any), with output of reasonable length. Each
+# spec below would take hours or all memory in a compiler that walks formulas as trees, or that
+# builds state machines of any size. etlc explains their verdicts as quickly, on a trace where any
+# of thousands of samples may flip them.
 set -euo pipefail
 etlc=$1
 seconds=$2
 kilobytes=$3
 most_diagnostics=400000 # bytes; 200 of them are shown
-most_message=1000       # characters of a line
+most_message=1000       # characters per line
 most_header=1000000
 box=$(mktemp -d)
 trap 'rm -rf "$box"' EXIT
@@ -20,7 +20,7 @@ fail() {
   exit 1
 }
 
-# times N TEXT: the TEXT N times, with i for 0, 1, ... and j for the number after i
+# times N TEXT: the TEXT N times, with i replaced by 0, 1, ... and j by i + 1
 times() {
   awk -v n="$1" -v text="$2" 'BEGIN {
     for (i = 0; i < n; ++i) {
@@ -31,7 +31,7 @@ times() {
   }'
 }
 
-# answers STATUS NAME: etlc's answer to the declarations on standard input
+# answers STATUS NAME: compiles the declarations on standard input, with this exit status
 answers() {
   local status=0
   {
@@ -53,7 +53,7 @@ answers() {
     fail "$2: $(stat -c %s "$2.hpp") bytes"
 }
 
-# ---- parts that are shared: the text of the whole doubles with each let
+# ---- shared parts: the text of the whole doubles with each let
 
 { echo "let a0 = x > 0;"; times 22 "let a@j = a@i S !a@i;"; echo "sliding monitor m = a22;"; } |
   answers 0 since
@@ -73,7 +73,7 @@ answers() {
 { echo "let a0 = b && p0;"; times 200 "let a@j = a@i && (a@i || b);"; echo \
   "monitor m = F a200;"; } | answers 0 conjuncts
 
-# ---- refusals: as soon as answers, and as short
+# ---- refusals: as quick and as short
 
 for depth in 20 24 200; do
   { echo "let c0 = x > 0;"; times $depth "let c@j = F c@i && !(G c@i);"; echo \
@@ -104,7 +104,7 @@ awk 'BEGIN {
     printf "%.3f,%.3f,%d\n", i * 37 % 97 / 97, i * 53 % 89 / 89, i * 7 % 3 % 2
 }' >trace.csv
 
-# explained NAME: the verdict of the monitor on standard input
+# explained NAME: explains the verdict of the monitor on standard input
 explained() {
   { echo "spec s; input x, y : f32; input b : bool;"; cat; } >"$1.etl"
   (

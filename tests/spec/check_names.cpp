@@ -1,4 +1,4 @@
-// check_names field|namespace <NAMES: prints those of the names, one a line, that a spec may
+// check_names field|namespace <NAMES: prints those of the names, one per line, that a spec may
 // declare.
 #include <iostream>
 #include <string>

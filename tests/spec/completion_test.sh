@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# completion_test.sh ETLC: completion offers every command and every option that --help lists, and
-# the words that an option takes; the manual page has them too, and groff does not complain of it.
+# completion_test.sh ETLC: completion offers every command and option that --help lists, and the
+# values of options; the manual page has them too, and groff accepts it without warnings.
 set -euo pipefail
 etlc=$1
 box=$(mktemp -d)
@@ -12,11 +12,11 @@ fail() { echo "FAILED: $*" >&2; exit 1; }
 mapfile -t commands < <(sed -n 's/^  etlc \([a-z]\+\)\( .*\)\?$/\1/p' help)
 [ "${#commands[@]}" -ge 10 ] || fail "these are all commands? ${commands[*]}"
 
-# names_in HELP: each name of each option, one a line.
+# names_in HELP: each name of each option, one per line.
 names_in() {
     sed -n 's/^  \(-[^ ]*\).*/\1/p' "$1" | sed 's/{.*//' | tr ',' '\n' | LC_ALL=C sort
 }
-# choices_in HELP: "--values robustness boolean", one option a line.
+# choices_in HELP: "--values robustness boolean", one option per line.
 choices_in() {
     sed -n 's/^  \(-[^ ]*\) [^ ]*:\([a-z0-9|][a-z0-9|]*\).*/\1 \2/p' "$1" |
         sed 's/{[^ ]*//; s/^-[^ ]*,//' | tr '|' ' '
@@ -25,7 +25,7 @@ choices_in() {
 # ---- bash
 "$etlc" --completion bash >etlc.bash
 source ./etlc.bash
-# completed WORD...: what bash would offer for the last one, one a line.
+# completed WORD...: the words that bash would offer for the last one, one per line.
 completed() {
     COMP_WORDS=(etlc "$@") COMP_CWORD=$#
     _etlc
@@ -56,7 +56,7 @@ expect '' run --max-work ''
 expect 'bash fish zsh ' --completion ''
 rm -r -- *
 
-# ---- all that --help lists
+# ---- everything that --help lists
 "$etlc" --completion zsh >_etlc
 "$etlc" --completion fish >etlc.fish
 "$etlc" --man >etlc.1
@@ -91,7 +91,7 @@ done
 [ "$checked" -gt 150 ] || fail "only $checked options were compared"
 if command -v zsh >/dev/null; then
     zsh -n _etlc || fail "zsh"
-    # What its functions are told: a line for each name of an option.
+    # The arguments of its functions: a line for each name of an option.
     zsh -f -c '_describe() { print -l -- "$2" >/dev/null }
         _arguments() { print -l -- "$@" }
         words=(etlc "$1" x) CURRENT=3; source ./_etlc' zsh run >told
@@ -100,7 +100,7 @@ if command -v zsh >/dev/null; then
     done < <(names_in help.run)
 fi
 
-# ---- calls that are wrong
+# ---- wrong calls
 for call in '--completion tcsh' '--completion' '--man now'; do
     status=0
     "$etlc" $call >out 2>err || status=$?

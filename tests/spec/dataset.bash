@@ -1,6 +1,6 @@
-# What cases of data sets share: `set`, of version 2.1, with an episode of three rows and the videos
-# of two cameras, which no case decodes; and specs of its rows and of a camera. Sourced in an empty
-# folder.
+# Shared by cases of data sets: `set`, of version 2.1, with an episode of three rows and the videos
+# of two cameras, which no case decodes; and specs for its rows and for a camera. Source it in an
+# empty folder.
 mkdir -p set/meta set/data/chunk-000 set/videos/{top,wrist}
 cat > set/meta/info.json << 'JSON'
 {"codebase_version": "v2.1", "total_episodes": 1, "total_frames": 3, "chunks_size": 1000, "fps": 10,

@@ -1,11 +1,11 @@
-# What cases of `etlc embed` share, without FFmpeg, ONNX Runtime or Python: images and videos of one
-# pixel a file, and encoders that always give the same. Sourced in an empty folder.
+# Shared by cases of `etlc embed`, without FFmpeg, ONNX Runtime or Python: images and videos of one
+# pixel per file, and encoders with constant results. Source it in an empty folder.
 
 dimension='\002\000\000\000'
 row='\000\000\200\077\000\000\000\100' # 1, 2
 
-# decodes [STATUS WORDS]: makes a program in the place of etlc-embed, which gives a pixel for each
-# file, and such a row for each frame, then ends like this.
+# decodes [STATUS WORDS]: makes a program in place of etlc-embed, which prints one pixel per file,
+# and this row per frame, then exits with STATUS.
 decodes() {
     cat > embedder << END
 #!/bin/sh
@@ -37,7 +37,7 @@ target bay = images("bay/*.png") by net;
 monitor m = F min l2(z, bay) <= 1;
 END
 
-# embeds_each ARGUMENT...: `etlc embed` with an encoder that gives such a row for every frame.
+# embeds_each ARGUMENT...: `etlc embed` with an encoder that prints this row for every frame.
 embeds_each() {
     "$ETLC" embed t.etl "$@" --encoder-cmd "n=\$((\$(wc -c) / 11)); printf '$dimension'
         while [ \$n -gt 0 ]; do printf '$row'; n=\$((n - 1)); done"

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # library_names_test.sh CHECK_NAMES CXX: names that the headers of C and POSIX declare at global
-# scope are refused for specs, and their macros for everything. CHECK_NAMES prints those of its
-# names that etlc allows. The compiler finds the clashes: a namespace, or a field, of each name is
-# declared after all headers. ETLC_UPDATE=1 adds what this machine's headers declare beyond the
-# standards to compiler/check/names/library_names.inc.
+# scope are refused for specs, and their macros for everything. CHECK_NAMES prints the names that
+# etlc allows. The compiler finds the clashes: it compiles a declaration of a namespace, or a field,
+# with each name after all headers. ETLC_UPDATE=1 adds the declarations of this machine's headers
+# beyond the standards to compiler/check/names/library_names.inc.
 set -euo pipefail
 check_names=$1
 cxx=$2
@@ -20,15 +20,15 @@ headers="assert complex ctype errno fenv float inttypes iso646 limits locale mat
   search semaphore spawn strings sys/ipc sys/mman sys/msg sys/resource sys/select sys/sem
   sys/shm sys/socket sys/stat sys/statvfs sys/time sys/times sys/types sys/uio sys/un
   sys/utsname sys/wait syslog tar termios ulimit unistd utime utmpx wordexp"
-# Without an update only what the standards have is asked for: a later C library may add names.
+# Without an update only names of the standards are checked: a later C library may add names.
 compile=("$cxx" -std=c++17 -w)
 [ -n "${ETLC_UPDATE:-}" ] || compile+=(-U_GNU_SOURCE -D_XOPEN_SOURCE=700)
 for header in $headers; do
     printf '#if __has_include(<%s.h>)\n#include <%s.h>\n#endif\n' "$header" "$header"
 done >headers.hpp
 
-# clashing TEXT: those of the names in candidates.txt with
-# which TEXT, where & is the name, does not compile.
+# clashing TEXT: the names in candidates.txt for which TEXT, with & replaced by the name, does not
+# compile.
 clashing() {
     { cat headers.hpp; sed "s/.*/$1/" candidates.txt; echo "struct LastLine;"; } >probe.cpp
     "${compile[@]}" -fmax-errors=0 -fsyntax-only probe.cpp 2>errors.txt || true
@@ -47,9 +47,9 @@ clashing 'namespace & { struct Inside; }' >namespaces.txt
 [ "$(wc -l <fields.txt)" -gt 500 ] && [ "$(wc -l <namespaces.txt)" -gt 1500 ]
 
 if [ -n "${ETLC_UPDATE:-}" ]; then
-    "$check_names" field <namespaces.txt >new.txt  # the others are refused as fields already
+    "$check_names" field <namespaces.txt >new.txt  # the others are already refused as fields
     { grep -oE '"[^"]+"' "$table" | tr -d '"' || true; cat new.txt; } | LC_ALL=C sort -u |
-        sed 's/.*/"&",/' | awk '  # as clang-format lays them out
+        sed 's/.*/"&",/' | awk '  # formatted like clang-format
             NR > 1 && length(line) + 1 + length($0) > 100 { print line; line = "   " }
             { line = line (NR > 1 ? " " : "") $0 }
             END { print line }' >updated.inc

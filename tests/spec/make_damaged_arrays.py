@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the damaged .npy and .npz files that the E04, E06 and E08 cases of error/ load. Needs
-only Python."""
+"""Writes the damaged .npy and .npz files for the E04, E06 and E08 cases of error/. It needs only
+Python."""
 import pathlib
 import struct
 import zipfile
@@ -20,7 +20,7 @@ def npy(descr="<f4", shape="(1, 2)", data=TWO, fortran=False):
 
 
 def zipped(members, method=zipfile.ZIP_STORED):
-    """Like zipfile, but names may repeat, and nothing depends on the clock."""
+    """Like zipfile, but names may repeat, and the clock has no influence."""
     import io
 
     bytes_ = io.BytesIO()

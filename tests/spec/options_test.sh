@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# options_test.sh ETLC: what options take and how they refuse the rest; which commands tell the
+# options_test.sh ETLC: the values that options accept and refuse; which commands report the
 # warnings of a spec.
 set -euo pipefail
 etlc=$1
@@ -15,7 +15,7 @@ monitor m = F x > 0.5;
 END
 printf 'x\n1\n' >t.csv
 
-# refuses MESSAGE ARGUMENT...: exit status 2, and MESSAGE after the name of the option.
+# refuses MESSAGE ARGUMENT...: exits with status 2 and prints MESSAGE after the name of the option.
 refuses() {
     local status=0
     "$etlc" "${@:2}" >out.txt 2>err.txt || status=$?
@@ -34,7 +34,7 @@ refuses "--emit: found 'hp', expected $expected; did you mean 'hpp'?" \
 refuses "--onnxruntime excludes --encoder-cmd" embed t.etl --onnxruntime a.so --encoder-cmd cat
 refuses "--diagnostics: found 'xml', expected text or json" t.etl --check --diagnostics xml
 refuses "-W: found 'all', expected error" t.etl --check -Wall
-# A command that is misspelt is no spec.
+# A misspelt command is not taken for a spec.
 refuses "there is no command 'rn'; did you mean 'run'?" rn t.etl --trace t.csv
 refuses "there is no command 'rn'; did you mean 'run'?" rn
 refuses "there is no command 'help'; did you mean '--help'?" help
@@ -75,7 +75,8 @@ none: leave one of the two out" t.etl -o - --explain --values boolean
 ! cmp -s boolean.hpp robustness.hpp || fail "--values makes no difference"
 "$etlc" t.etl -o usual.hpp 2>err.txt && cmp usual.hpp robustness.hpp
 
-# A class that says why names rows where 2^22 steps can be told apart: not those of the larger set.
+# A class with --explain names rows only if 2^22 steps can still be counted: not those of the larger
+# set.
 rows() { seq -s ', ' 1 "$1" | sed 's/[0-9][0-9]*/[&]/g'; }
 for sizes in '120 133 named' '120 134 left'; do
     read -r small large names <<<"$sizes"
@@ -89,7 +90,7 @@ for sizes in '120 133 named' '120 134 left'; do
     [ $named = "$names" ] || fail "the rows of $large and $small are $named"
 done
 
-# Warnings of the spec belong to those who write it.
+# Commands that compile a spec report its warnings.
 "$etlc" t.etl --check 2>err.txt
 grep -q W0201 err.txt || fail "--check does not warn"
 "$etlc" run t.etl --trace t.csv >out.txt 2>err.txt

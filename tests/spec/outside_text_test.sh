@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# outside_text_test.sh ETLC CXX: names of files, comments and strings of specs, thresholds files
-# and data stay text in every output, whatever they say. A header compiles and contains no planted
-# code; JSON parses; a terminal gets no control characters, no hidden ones and only UTF-8; make and
-# ninja rebuild when a file of the depfile changes, or etlc refuses the name.
+# outside_text_test.sh ETLC CXX: names of files, comments and strings of specs, thresholds files and
+# data stay text in every output, whatever they contain. A header compiles and contains no planted
+# code; JSON parses; a terminal gets no control or hidden characters and only UTF-8; make and ninja
+# rebuild when a file of the depfile changes, or etlc refuses the name.
 set -euo pipefail
 etlc=$1
 cxx=$2
@@ -28,8 +28,8 @@ hostile=(
     "$(printf 'long %.0s' {1..40})"
 )
 
-# Outputs are kept, each with its origin, and checked together at the end. keep KIND WHAT names the
-# next file.
+# Outputs are kept with their origin, and checked together at the end. keep KIND WHAT names the next
+# file.
 kept=0
 mkdir text json code
 keep() { out=$1/$((++kept)); printf '%s\n' "$2" >"$out.what"; }
@@ -63,8 +63,8 @@ print(json.dumps({"format": 1, "spec": spec, "predicates": {"p": entry}, "monito
 END
 }
 
-# header WHAT OF ARGUMENT...: a header, if etlc makes one; its code must equal that of the first
-# header OF the same thing.
+# header WHAT OF ARGUMENT...: makes a header, if etlc accepts the input; its code must equal that of
+# the first header with the same OF.
 header() {
     local what=$1 of=$2
     shift 2
@@ -113,7 +113,7 @@ for text in "${hostile[@]}"; do
     name=$(tr / _ <<<"${text:0:100}")  # of files
     mkdir -p "at $name"
 
-    # The spec's file, and its folder; -o, --targets-file, --thresholds; what is missing.
+    # The spec's file, and its folder; -o, --targets-file, --thresholds; missing files.
     cp plain.etl "at $name/$name.etl"
     cp plain.json "at $name/$name.json"
     everything "at $name/$name.etl" plain "spec called $shown" --thresholds "at $name/$name.json"
@@ -139,7 +139,7 @@ for text in "${hostile[@]}"; do
         "$oneline" "$closed"; } >commented.etl
     everything commented.etl commented "comment $shown" "${given[@]}"
     string=${oneline//[\"\/]/_}
-    cp o.npy "$string.npy" 2>/dev/null || true  # what is too long for a name is missing
+    cp o.npy "$string.npy" 2>/dev/null || true  # a name that is too long does not exist
     { spec_text; printf 'target o = load("%s.npy");\nmonitor c = F l2(z, o) < 1;\n' "$string"; } \
         >loads.etl
     everything loads.etl loads "string $shown" "${given[@]}"
@@ -156,7 +156,7 @@ for text in "${hostile[@]}"; do
     printf '{"format": 1, %s' "$text" >hostile.json
     header "thresholds $shown" none plain.etl --thresholds hostile.json
 
-    # The data, its files, and what else a call names.
+    # The data, its files, and everything else that a call names.
     cp episodes/1.csv "at $name/$name.csv"
     printf 'x,y,z[0],%s\n0.5,%s,1,2\n' "$text" "$text" >hostile.csv
     for trace in "at $name/$name.csv" "no $name" hostile.csv "no $name.h5:$name"; do
@@ -215,15 +215,15 @@ for path in sorted(glob.glob("*/*.what"), key=lambda p: int(p.split("/")[1][:-5]
         if re.search(r"//.*(\\|[?][?]/)[ \t]*$", text, re.M):
             fail(path, "a comment that is continued")
         code = [l for l in (re.sub("//.*", "", l).rstrip() for l in text.split("\n"))
-                if l and "kSpecHash" not in l]  # which is of the comments too
+                if l and "kSpecHash" not in l]  # which includes the comments
         if codes.setdefault(open(path + ".of").read(), code) != code: fail(path, "live text")
 print(looked)
 sys.exit(problems > 0 or min(looked.values()) < 100)
 END
 
-# Depfiles. What they can name, make and ninja follow; what
-# they cannot is refused, and nothing is written.
-rebuilds() {  # NAME: of the spec, of what it loads, of the header
+# Depfiles. Names that they can express, make and ninja follow; others are refused, and nothing is
+# written.
+rebuilds() {  # NAME: of the spec, of a file it loads, of the header
     local name=$1 loaded=${1//[$'\n\r']/}
     rm -rf built && mkdir built && cd built
     { spec_text; printf 'target o = load("%s.npy");\nmonitor c = F l2(z, o) < 1;\n' "$loaded"; } \
@@ -236,7 +236,7 @@ rebuilds() {  # NAME: of the spec, of what it loads, of the header
             fail "depfile with $name: refused, and something is written"
         cd .. && return 1
     fi
-    # As in a build, the target is a plain one; the prerequisites are the hostile ones.
+    # As in a build, the target is plain; the prerequisites are the hostile ones.
     printf '"%s" "$SPEC" --thresholds ../plain.json -o out.hpp --depfile out.d\n' "$etlc" >make.sh
     echo 'echo made >>log.txt' >>make.sh
     printf 'out.hpp:\n\tbash make.sh\n-include out.d\n' >Makefile

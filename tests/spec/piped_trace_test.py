@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""piped_trace_test.py ETLC: `etlc run --trace -` gives the verdicts of a step when its row has
-come, and in the end what it gives for the same file. Pipes that are named are read where one
-trace is; elsewhere they, and devices, are refused, and nothing waits for them."""
+"""piped_trace_test.py ETLC: `etlc run --trace -` gives the verdicts of a step as soon as its row
+arrives, and in the end the same output as for the file. Named pipes are read where one trace is
+expected; elsewhere pipes and devices are refused, and nothing waits for them."""
 import os
 import pathlib
 import subprocess
@@ -73,7 +73,7 @@ def named_pipes():
             if path == "p.csv" and "run" in words:
                 continue
             done = subprocess.run([ETLC, *words, path], capture_output=True, text=True, timeout=60)
-            place = f"{path}:" if path != "." else ": error"  # what is in the folder, too
+            place = f"{path}:" if path != "." else ": error"  # also among the files of a folder
             assert done.returncode == 1 and place in done.stderr, (words, path, done)
             if "run" not in words and (path != "." or "evaluate" in words):
                 assert "expected a file" in done.stderr, (words, path, done)

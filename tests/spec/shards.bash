@@ -1,4 +1,4 @@
-# Two shards of a call over four episodes, as 1.part and 2.part.
+# Makes two shards of a call over four episodes, as 1.part and 2.part.
 cat > t.etl <<'SPEC'
 spec t;
 input x : f32;

@@ -1,4 +1,4 @@
-// Pages made from tables: docs/diagnostics.md from codes.def, docs/command_line.md from the
+// Tests pages made from tables: docs/diagnostics.md from codes.def, docs/command_line.md from the
 // options.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A file is a test: error/CODE_name.etl gives the diagnostics of CODE_name.expected, ok/NAME.etl
+// Each file is a test: error/CODE_name.etl gives the diagnostics of CODE_name.expected, ok/NAME.etl
 // compiles.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ std::string test_name(const ::testing::TestParamInfo<std::string>& info) {
     return name;
 }
 
-/// "E0204" of "error/E0204_unknown_name.etl".
+/// Returns "E0204" for "error/E0204_unknown_name.etl".
 std::string code_of(const std::string& name) {
     return fs::path(name).stem().string().substr(0, 5);
 }
@@ -57,7 +57,7 @@ fs::path expected_of(const std::string& name) {
     return (kFolder / name).replace_extension(".expected");
 }
 
-/// A folder that is empty when the test begins and gone when it ends.
+/// A folder that is empty at the start of the test and removed at its end.
 class TemporaryFolder {
 public:
     explicit TemporaryFolder(const std::string& name)
@@ -77,7 +77,7 @@ private:
     fs::path path_;
 };
 
-/// Output and errors of `etlc FILE --check`, run beside the file.
+/// Output and errors of `etlc FILE --check`, run in the folder of the file.
 Outcome check(const fs::path& file) {
     return run(fmt::format("'{}' {} --check 2>&1", ETLC_EXECUTABLE, file.filename().string()),
                file.parent_path());
@@ -143,7 +143,7 @@ TEST(SpecErrors, EveryExpectedTextHasACase) {
 class SpecOk : public ::testing::TestWithParam<std::string> {};
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SpecOk);
 
-/// NAME.expected lists the warnings; no such file where there are none.
+/// NAME.expected lists the warnings; without warnings there is no such file.
 TEST_P(SpecOk, Compiles) {
     const fs::path file = kFolder / GetParam();
     const Outcome outcome = check(file);
@@ -151,7 +151,7 @@ TEST_P(SpecOk, Compiles) {
     EXPECT_EQ(outcome.status, 0);
 }
 
-/// NAME.ast, NAME.graph and so on, where they are there, hold the text of that stage.
+/// NAME.ast, NAME.graph and so on, if they exist, hold the text of that stage.
 TEST_P(SpecOk, EmitsItsGoldens) {
     const fs::path file = kFolder / GetParam();
     for (const std::string stage : {"ast", "graph", "plan", "dot", "report"}) {

@@ -1,4 +1,4 @@
-// Checking in tests: a text, its model and what was reported.
+// Checks a text in tests: its model and its diagnostics.
 #pragma once
 
 #include <optional>
@@ -24,7 +24,7 @@ struct Checked {
           model(check::check(std::move(spec), file, options, sink)) {}
 
     std::string diagnostics() const { return diag::render_text(file, sink); }
-    /// "E0204 W0201": codes of all findings, in the order of their places.
+    /// Returns "E0204 W0201": the codes of all diagnostics, in the order of their places.
     std::string codes() const {
         std::string result;
         for (const diag::Diagnostic& d : sink.sorted()) {
@@ -43,7 +43,7 @@ struct Checked {
             if (m.name == name) return m;
         throw std::runtime_error("no monitor " + name);
     }
-    /// The monitor's formula in canonical text.
+    /// Returns the monitor's formula in canonical text.
     std::string formula(const std::string& name) const {
         return check::print(*model, monitor(name).formula);
     }

@@ -1,6 +1,6 @@
-// Bytes of .npy and .npz files for tests, sound ones and broken ones.
-// Takes: header parts, members. Gives: the file's bytes. Keeps true: nothing is checked, so that
-// tests can lie.
+// Bytes of .npy and .npz files for tests, valid and broken.
+// Takes: header parts, members. Gives: the file's bytes. Keeps true: nothing is checked, so tests
+// can write inconsistent files.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,17 @@
 
 namespace etlc::tests {
 
-/// A header dictionary as numpy writes it.
+/// Returns a header dictionary as numpy writes it.
 std::string npy_dictionary(const std::string& descr, bool fortran_order, const std::string& shape);
 
-/// Magic word, version, length, `dictionary` padded to 64 bytes and a line feed, `data`.
+/// Returns magic, version, length, `dictionary` padded to 64 bytes and a line feed, `data`.
 std::string npy_raw(const std::string& dictionary, const std::string& data, int major = 1);
 
-/// npy_raw(npy_dictionary(...), data)
+/// Returns npy_raw(npy_dictionary(...), data).
 std::string npy(const std::string& descr, const std::string& shape, const std::string& data,
                 bool fortran_order = false);
 
-/// The little-endian bytes of float32 numbers.
+/// Returns the little-endian bytes of float32 numbers.
 std::string floats(const std::vector<float>& values);
 
 struct Member {
@@ -29,14 +29,14 @@ struct Member {
     bool encrypted = false;
 };
 
-/// A zip archive of the members, made by libzip in a temporary file.
+/// Returns a zip archive of the members, made by libzip in a temporary file.
 std::string zip_of(const std::vector<Member>& members);
 
-/// `bytes` with every `from` replaced by `to`, which has the same length. Fails the test where
-/// there is none.
+/// Returns `bytes` with every `from` replaced by `to`, of the same length. Fails the test if there
+/// is none.
 std::string patched(std::string bytes, const std::string& from, const std::string& to);
 
-/// `n` as `width` little-endian bytes.
+/// Returns `n` as `width` little-endian bytes.
 std::string little_endian(std::uint64_t n, int width);
 
 /// A file in the test's temporary folder, removed with the object.

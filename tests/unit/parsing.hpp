@@ -1,4 +1,4 @@
-// Parsing in tests: a text, its tree and what was reported.
+// Parses a text in tests: its tree and its diagnostics.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ struct Parsed {
 
     std::string tree() const { return tree_text::of(spec); }
     std::string errors() const { return diag::render_text(file, sink); }
-    /// "E0104 2:9 message; ..." of all findings.
+    /// Returns "E0104 2:9 message; ..." for all diagnostics.
     std::string brief() const {
         std::string result;
         for (const diag::Diagnostic& d : sink.sorted()) {
@@ -32,21 +32,21 @@ struct Parsed {
     }
 };
 
-/// The tree of one formula, or what was wrong with it.
+/// Returns the tree of one formula, or its errors.
 inline std::string tree_of_formula(const std::string& formula) {
     const Parsed parsed("spec a; let f = " + formula + ";");
     if (parsed.sink.has_errors()) return parsed.errors();
     return tree_text::of(*std::get<ast::Let>(parsed.spec.declarations.at(0)).formula);
 }
 
-/// The tree of one declaration, or what was wrong with it.
+/// Returns the tree of one declaration, or its errors.
 inline std::string tree_of_declaration(const std::string& declaration) {
     const Parsed parsed("spec a; " + declaration);
     if (parsed.sink.has_errors()) return parsed.errors();
     return tree_text::of(parsed.spec.declarations.at(0));
 }
 
-/// The tree of one expression, or what was wrong with it.
+/// Returns the tree of one expression, or its errors.
 inline std::string tree_of_expression(const std::string& expression) {
     const Parsed parsed("spec a; predicate p = " + expression + " < 1;");
     if (parsed.sink.has_errors()) return parsed.errors();

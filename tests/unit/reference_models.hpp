@@ -1,6 +1,6 @@
-// Models and traces by hand, for tests of the reference.
-// Takes: pieces. Gives: a typed spec without parser or checker. Keeps true: operands stand before
-// what uses them.
+// Models and traces made by hand, for tests of the reference.
+// Takes: pieces. Gives: a typed spec without parser or checker. Keeps true: operands come before
+// their users.
 #pragma once
 
 #include <cmath>
@@ -28,7 +28,7 @@ inline constexpr double kInf = std::numeric_limits<double>::infinity();
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 inline const std::vector<double> kMissing{};
 
-/// A model grown a piece at a time.
+/// Builds a model piece by piece.
 struct Spec {
     check::Model model;
 
@@ -94,7 +94,7 @@ struct Spec {
         return expr;
     }
 
-    /// The predicate as a formula; `range` is that of its robustness.
+    /// Adds the predicate as a formula; `range` is that of its robustness.
     Index predicate(Expr expression, Comparison comparison, float epsilon,
                     check::Range range = {}) {
         check::Predicate predicate;
@@ -108,7 +108,7 @@ struct Spec {
         return formula;
     }
 
-    /// x >= 0 for a new scalar in [-8, 8]: its robustness is the sample itself.
+    /// Adds x >= 0 for a new scalar in [-8, 8]: its robustness is the sample itself.
     Index sample() {
         return predicate(scalar(ranged(-8, 8)), Comparison::greater_equal, 0, {-8, 8});
     }
@@ -157,7 +157,7 @@ inline std::vector<double> robustness(const reference::Run& run, std::size_t mon
     return result;
 }
 
-/// Verdicts of one prefix monitor over samples p: the formula is made from p by `make`.
+/// Returns the verdicts of one prefix monitor over samples p; `make` builds its formula from p.
 template <class Make>
 std::vector<double> over(const std::vector<double>& p, Make make) {
     Spec spec;

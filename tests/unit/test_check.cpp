@@ -1,4 +1,4 @@
-// The model as a whole: inputs, targets, weights, thresholds, names.
+// Tests the model as a whole: inputs, targets, weights, thresholds, names.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -89,7 +89,7 @@ TEST(Check, WeightsFromATarget) {
 }
 
 /// A random matrix A gives the positive definite A A^T + I, and with a negated pivot one that is
-/// not.
+/// not positive definite.
 TEST(Check, DefinitenessOfRandomMatrices) {
     std::mt19937 random(1);
     std::normal_distribution<double> normal;
@@ -228,8 +228,7 @@ TEST(Names, AreDeclaredInAnyOrder) {
 
 // ---- robustness ---------------------------------------------------------------------------------
 
-/// Specs that lost, doubled or exchanged pieces: whatever is wrong with them is said, and nothing
-/// worse happens.
+/// Specs with lost, doubled or exchanged pieces: their errors are reported, and nothing crashes.
 TEST(Check, BearsDamagedSpecs) {
     std::vector<std::string> specs;
     for (const char* folder : {"error", "ok"})

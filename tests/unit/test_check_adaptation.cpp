@@ -1,5 +1,5 @@
-// How adaptive thresholds move, from their decimal texts: rounded on the side that the guarantee
-// needs, and exactly.
+// Tests how adaptive thresholds are read from their decimal texts: rounded to the side that the
+// guarantee needs, and exactly.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -61,9 +61,9 @@ TEST(Adaptation, BinaryFractionsAreExact) {
     EXPECT_EQ(adaptation.range.high, 1.5F);
 }
 
-/// A miss moves by at least gamma (1 - alpha), a hit by at most gamma alpha, each by less than a
-/// grid length and a bit more or less; [lo, hi] is inside the range. Long doubles are exact enough
-/// to tell: the texts are short.
+/// A miss moves by at least gamma (1 - alpha), a hit by at most gamma alpha, each by less than
+/// about one grid step more or less; [lo, hi] is inside the range. Long doubles are exact enough
+/// for the short texts.
 TEST(Adaptation, RoundsAgainstTheMissRate) {
     std::mt19937_64 engine(5);
     const auto between = [&](int low, int high) {
@@ -113,8 +113,8 @@ TEST(Adaptation, StartsOnTheGenerousSide) {
     EXPECT_FALSE(start(adaptation, std::numeric_limits<float>::infinity(), true));
 }
 
-/// The thresholds of tests/spec/ok/adaptive.etl, as if x had been declared as in this spec when
-/// they were calibrated.
+/// The thresholds of tests/spec/ok/adaptive.etl, as if x had this spec's declaration during
+/// calibration.
 std::string thresholds_for(const std::string& spec) {
     const Checked uncalibrated(spec, {.allow_uncalibrated = true});
     std::ifstream file(std::string(ETLC_SOURCE_DIR) + "/tests/spec/ok/adaptive.thresholds.json");
@@ -129,7 +129,7 @@ std::string thresholds_for(const std::string& spec) {
     return path;
 }
 
-/// The range of a predicate is that for every threshold that it may have.
+/// The range of a predicate covers every threshold that it may have.
 TEST(Adaptation, WidensTheRangeOfItsPredicate) {
     const std::string path =
         std::string(ETLC_SOURCE_DIR) + "/tests/spec/ok/adaptive.thresholds.json";
@@ -148,7 +148,8 @@ TEST(Adaptation, WidensTheRangeOfItsPredicate) {
     EXPECT_EQ(checked.predicate("high").robustness.high, 3.0F);
 }
 
-/// A comparison that every threshold makes true is warned of, not one that only the start does.
+/// A warning covers comparisons that every threshold makes true, not those that only the start
+/// does.
 TEST(Adaptation, ConstantForEveryThreshold) {
     const auto codes = [&](const std::string& range, const std::string& lo) {
         const std::string spec = "spec adaptive; input x : f32 in " + range +

@@ -1,5 +1,5 @@
-// Entries of the thresholds file against themselves: each contradiction names its key, what is
-// there and what follows.
+// Checks entries of the thresholds file against themselves: each contradiction names its key, the
+// value found and the value expected.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ std::vector<std::uint64_t> episodes(std::size_t count) {
     return result;
 }
 
-/// From nine scores at alpha = 0.2, of which the eighth is taken.
+/// An entry from nine scores at alpha = 0.2; the threshold is above the eighth.
 Entry conformal(bool upper_bound) {
     Entry entry;
     entry.method = "conformal";
@@ -42,7 +42,7 @@ Entry pooled(const std::string& method) {
     return entry;
 }
 
-/// What is said of the entry after the change; empty where it is believed.
+/// Returns the message about the entry after the change; empty if it is accepted.
 std::string said(Entry entry, const std::function<void(Entry&)>& change, bool upper_bound = true,
                  const std::vector<std::uint64_t>& of = episodes(10)) {
     change(entry);

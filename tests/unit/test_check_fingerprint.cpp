@@ -1,4 +1,4 @@
-// What a monitor was made from: the hashes are of the bytes that docs/generated_code.md names.
+// Tests the hashes of a monitor's sources: they hash the bytes that docs/generated_code.md names.
 #include <gtest/gtest.h>
 
 #include <string>

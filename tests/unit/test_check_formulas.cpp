@@ -1,4 +1,4 @@
-// Formulas: order of the DAG, canonical text, horizons, constancy.
+// Tests formulas: order of the DAG, canonical text, horizons, constancy.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -70,7 +70,7 @@ TEST(Canonical, Expressions) {
     EXPECT_EQ(checked.predicate("b").threshold.text, "1.50");
     EXPECT_EQ(checked.predicate("c").text, "abs(x) + min(x, y, 3) < ");
     EXPECT_EQ(checked.predicate("d").text,
-              "l2(z, t1) <= ");  // one row: any aggregation is the distance
+              "l2(z, t1) <= ");  // one row: every aggregation is the distance
     EXPECT_EQ(checked.predicate("e").text, "kth(2) linf(z, t2) - mean cosine([x, y], t2) <= ");
     EXPECT_EQ(checked.predicate("f").text, "mahalanobis([[1, 0], [0, 1]])(z, t1) < ");
 }
@@ -99,7 +99,7 @@ private:
     std::mt19937 random_;
 };
 
-/// Every formula in full brackets.
+/// Returns every formula in full brackets.
 std::string structure(const Model& model, Index index) {
     const Formula& f = model.formulas[index];
     std::string text = fmt::format("({}[{},{}]", static_cast<int>(f.kind), f.low, f.high);
@@ -120,7 +120,7 @@ TEST(Canonical, ReadsBackAsTheSameFormula) {
         const Checked second = monitor(text);
         ASSERT_TRUE(second.model) << second.diagnostics();
         EXPECT_EQ(second.formula("m"), text);
-        // && and || of && and || lose brackets that mean nothing; all else is the same tree.
+        // && and || within && and || lose redundant brackets; everything else is the same tree.
         const bool flat =
             text.find("&&") == std::string::npos && text.find("||") == std::string::npos;
         if (flat) {
@@ -208,7 +208,7 @@ TEST(Horizon, IsTheSumAlongTheDeepestPath) {
 
 // ---- constancy ----------------------------------------------------------------------------------
 
-/// What is called constant is +inf or -inf in the reference, on prefixes of random traces.
+/// Formulas called constant are +inf or -inf in the reference, on prefixes of random traces.
 TEST(Constancy, HoldsInTheReference) {
     RandomFormulas random(5);
     std::mt19937 values(6);
@@ -232,8 +232,8 @@ TEST(Constancy, HoldsInTheReference) {
     EXPECT_GT(constant, 50);
 }
 
-/// Operators over constants that never change on short traces of the reference are called constant:
-/// none is missed.
+/// Operators over constants that never change on short traces of the reference are all called
+/// constant.
 TEST(Constancy, FindsConstantsThatNoInputEnters) {
     EXPECT_EQ(monitor("true U p").codes(), "W0201 W0201");
     for (const char* formula :
@@ -258,7 +258,7 @@ TEST(Comparisons, OfTwoExpressionsAreOfTheirDifference) {
     EXPECT_EQ(canonical("1 < 2"), "1 < 2");
 }
 
-/// At the threshold itself all others are 0, and satisfied plain and negated.
+/// At the threshold itself all others are 0, and satisfied both plain and negated.
 TEST(Comparisons, EqualityIsYesOrNo) {
     const std::vector<double> samples{-1, 0, 0.5, 1, NAN};
     const auto robustness = [&](const std::string& formula) {
@@ -291,7 +291,7 @@ TEST(Comparisons, EqualityThatNothingChanges) {
     EXPECT_EQ(codes("x != 2"), "");
 }
 
-/// The spec with `%` before a constant; without, it has their values.
+/// Replaces `%` by a constant, or by its value.
 std::string with_constants(const std::string& text, bool named) {
     const std::vector<std::pair<char, std::string>> values{
         {'D', "2"}, {'n', "3"}, {'k', "0.5"}, {'T', "0.3 s"}, {'r', "10"}};

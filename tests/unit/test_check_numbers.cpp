@@ -1,4 +1,4 @@
-// Decimal numbers: exact values, one rounding, outward rounding, durations in steps.
+// Tests decimal numbers: exact values, one rounding, outward rounding, durations in steps.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -73,7 +73,7 @@ TEST(Decimal, OfADoubleIsExact) {
 }
 
 TEST(Float, IsRoundedOnce) {
-    // Half way between 1 and its successor, and a hair above: through a double both would become
+    // Halfway between 1 and its successor, and slightly above: through a double both would become
     // the half.
     EXPECT_EQ(rounded("1.000000059604644775390625"), 1.0F);
     EXPECT_EQ(rounded("1.00000005960464477539062500000000000000001"), std::nextafter(1.0F, 2.0F));
@@ -85,7 +85,7 @@ TEST(Float, IsRoundedOnce) {
 TEST(Float, OverflowAndUnderflow) {
     float value = 0;
     EXPECT_EQ(to_float("3.4028235677973366163753939545815e38", value),
-              Fit::overflow);  // half way to 2^128
+              Fit::overflow);  // halfway to 2^128
     EXPECT_EQ(value, kInfinity);
     EXPECT_EQ(to_float("-1e39", value), Fit::overflow);
     EXPECT_EQ(value, -kInfinity);
@@ -130,8 +130,8 @@ TEST(Float, RangesOfInputsAreRoundedOutward) {
     const Checked checked("spec t; input x : f32 in [0.1, 0.3]; monitor m = G x > 0.1;");
     ASSERT_TRUE(checked.model) << checked.diagnostics();
     const Range& range = checked.model->inputs[0].range;
-    EXPECT_EQ(range.low, std::nextafter(0.1F, 0.0F));  // 0.1F lies above 0.1
-    EXPECT_EQ(range.high, 0.3F);                       // 0.3F lies above 0.3
+    EXPECT_EQ(range.low, std::nextafter(0.1F, 0.0F));  // 0.1F is above 0.1
+    EXPECT_EQ(range.high, 0.3F);                       // 0.3F is above 0.3
     EXPECT_EQ(checked.model->predicates[0].threshold.value, 0.1F);
     EXPECT_EQ(checked.model->predicates[0].threshold.value64, 0.1);
 }
@@ -177,7 +177,7 @@ TEST(Duration, TellsWhatIsNotWhole) {
     EXPECT_FALSE(steps("123456789012345678e-18", "s", "987654321098765432e-18", "s").whole);
 }
 
-/// Against fractions of small whole numbers: n / 1000 s at r / 100 Hz.
+/// Compared with fractions of small integers: n / 1000 s at r / 100 Hz.
 TEST(Duration, AgreesWithSmallFractions) {
     for (std::uint64_t n = 1; n < 400; n += 7) {
         for (std::uint64_t r = 1; r < 20000; r += 131) {
@@ -220,7 +220,7 @@ TEST(Duration, IntervalsOfASpec) {
     EXPECT_EQ(checked.model->step_seconds, 0.01);
 }
 
-// ---- steps on purpose
+// ---- intended steps
 
 std::string with_rate(const std::string& rest) {
     return Checked("spec t; rate 30 Hz; input p, q : bool; " + rest).codes();

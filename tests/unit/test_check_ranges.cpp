@@ -1,4 +1,4 @@
-// Ranges of expressions: random samples stay inside.
+// Tests ranges of expressions: random samples stay inside.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -14,13 +14,12 @@ namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-/// float32 arithmetic, an operation at a time.
+/// Computes in float32, one operation at a time.
 float value_of(const Expr& e, const std::vector<float>& inputs) {
     std::vector<float> a;
     for (const Expr& argument : e.arguments) a.push_back(value_of(argument, inputs));
     for (const float argument : a)
-        if (std::isnan(argument))
-            return argument;  // what has no value stays so, also under min and max
+        if (std::isnan(argument)) return argument;  // NaN stays NaN, also under min and max
     switch (e.kind) {
         case Expr::Kind::number: return e.number32;
         case Expr::Kind::scalar: return inputs[e.index];
@@ -58,7 +57,7 @@ public:
         }
     }
 
-    /// Ends are likely, since they make the extremes.
+    /// Ends are likely, since they give the extremes.
     float sample(const Range& range) {
         const float low = std::max(range.low, -std::numeric_limits<float>::max());
         const float high = std::min(range.high, std::numeric_limits<float>::max());
@@ -141,7 +140,7 @@ TEST(Ranges, ByHand) {
     expect_range("abs(x)", 0, 3);
     expect_range("sqrt(y)", 1, 2);
     expect_range("sqrt(x)", 0,
-                 std::nextafter(std::sqrt(3.0F), 2.0F));  // 1.73205078F lies below the root
+                 std::nextafter(std::sqrt(3.0F), 2.0F));  // 1.73205078F is below the root
     expect_range("min(x, y)", -2, 3);
     expect_range("max(x, y, 2)", 2, 4);
     expect_range("u", -kInf, kInf);
@@ -164,7 +163,8 @@ TEST(Ranges, OutwardWhereInexact) {
     EXPECT_EQ(sum.low, 1.0F);
     EXPECT_EQ(sum.high, std::nextafter(2.0F, 3.0F));
     const Range tiny =
-        range_of("x - 1e-40", "input x : f32 in [1, 2];");  // beyond what a double holds of the sum
+        range_of("x - 1e-40", "input x : f32 in [1, 2];");  // beyond the precision of a double for
+                                                            // the sum
     EXPECT_EQ(tiny.low, std::nextafter(1.0F, 0.0F));
     const Range third = range_of("x / 3", "input x : f32 in [1, 1];");
     EXPECT_EQ(third.low, std::nextafter(1.0F / 3.0F, 0.0F));

@@ -1,4 +1,4 @@
-// Files that appear whole or not at all.
+// Tests files that appear whole or not at all.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
@@ -150,7 +150,7 @@ TEST(AtomicWrite, AKilledWriterLeavesNothing) {
     EXPECT_EQ(files_beside(file.path()), 1U);
 }
 
-/// The name of a temporary file of a process that has ended.
+/// Returns the name of a temporary file of a process that has ended.
 std::string name_of_ended() {
     const pid_t ended = ::fork();
     if (ended == 0) ::_exit(0);
@@ -176,7 +176,7 @@ TEST(AtomicWrite, WhatKilledWritersLeftGoesWithTheNextCall) {
         EXPECT_TRUE(std::filesystem::exists(kept)) << kept;
 }
 
-/// Files of a folder, of which the last one cannot take its name: it is a folder by then.
+/// Files of a folder, the last of which cannot take its name, because a folder has it by then.
 class SeveralFiles : public ::testing::Test {
 protected:
     void create(bool with_old) {

@@ -1,4 +1,4 @@
-// .csv traces: what they hold, what is missing, and where they are broken.
+// Tests .csv traces: contents, missing samples, and errors with their places.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,8 @@ const std::vector<Channel> kChannels{{"z", Channel::Kind::vector, 2},
                                      {"grip", Channel::Kind::scalar, 1},
                                      {"held", Channel::Kind::boolean, 1}};
 
-/// All steps as text: "1 2|0.5|1", "-" where a channel is missing; then the failure that ended it.
+/// Returns all steps as text: "1 2|0.5|1", "-" for a missing channel; then the failure that ended
+/// it.
 struct Read {
     std::vector<std::string> steps;
     std::optional<Failure> failure;
@@ -34,7 +35,7 @@ std::string text(const Sample& sample) {
         if (c > 0) result += "|";
         std::string values;
         for (const double value : sample.values[c]) {
-            // What is missing has no number that could be used by mistake.
+            // Missing samples have no number that could be used by mistake.
             EXPECT_TRUE(sample.present[c] || std::isnan(value));
             std::ostringstream number;
             number << value;
@@ -80,7 +81,7 @@ TEST(CsvTrace, AnOptionalColumnMayBeAbsent) {
     ASSERT_TRUE(trace);
     EXPECT_FALSE((*trace)->has(0));
     EXPECT_TRUE((*trace)->has(1));
-    // Half a vector is not an absent one.
+    // Half a vector is not a missing one.
     const auto half = open_csv_trace(from_memory("grip,v[0]\n"), channels);
     ASSERT_FALSE(half);
     EXPECT_EQ(half.failure().code, Code::no_such_channel);
@@ -241,7 +242,7 @@ TEST(Csv, AFailureStays) {
     for (int i = 0; i < 3; ++i) EXPECT_FALSE((*trace)->next(sample));
 }
 
-/// Bytes in pieces of any size, to put every seam of the buffer everywhere.
+/// Returns bytes in pieces of any size, to put buffer boundaries everywhere.
 class Pieces final : public ByteSource {
 public:
     Pieces(std::string_view bytes, std::size_t piece) : rest_(bytes), piece_(piece) {}

@@ -1,5 +1,5 @@
-// Sets of episodes: what folders and patterns stand for, and in which order; contents that are told
-// apart.
+// Tests sets of episodes: the meaning and order of folders and patterns, and how contents are
+// compared.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 using diag::Code;
 using Kind = Channel::Kind;
 
-/// Empty files below a folder of its own, gone afterwards.
+/// Empty files in a separate folder, removed afterwards.
 class Episodes : public testing::Test {
 protected:
     void SetUp() override {
@@ -34,7 +34,7 @@ protected:
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    /// The episodes, relative to the folder.
+    /// Returns the episodes, relative to the folder.
     std::vector<std::string> find(std::vector<std::string> arguments, diag::Sink& sink) const {
         for (std::string& argument : arguments) argument = (folder_ / argument).string();
         std::vector<std::string> found = find_episodes(arguments, "", sink);
@@ -150,7 +150,7 @@ TEST(EpisodeHash, IsThatOfTheFloat32Values) {
         if (found.empty()) found = hash;
         EXPECT_EQ(hash, found);
     }
-    EXPECT_EQ(found, "ca8bc1bc4bf26407");  // thresholds files hold such hashes
+    EXPECT_EQ(found, "ca8bc1bc4bf26407");  // thresholds files hold these hashes
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Whole files, the content hash, and text that goes into messages.
+// Tests whole files, the content hash, and text for messages.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -50,7 +50,7 @@ TEST(File, SaysWhyItCannotRead) {
 TEST(File, StreamsAreReadOnlyWhereTheyAreMeantToBe) {
     const TemporaryPath pipe("pipe");
     ASSERT_EQ(::mkfifo(pipe.path().c_str(), 0600), 0);
-    const auto refused = read_file(pipe.path(), 9, Code::unreadable_trace);  // and does not wait
+    const auto refused = read_file(pipe.path(), 9, Code::unreadable_trace);  // without waiting
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.failure().message, "is a pipe, expected a file");
     EXPECT_EQ(open_file(pipe.path()).failure().message, "is a pipe, expected a file");
@@ -113,7 +113,7 @@ TEST(Hash, EveryLengthAndBitCounts) {
 
 TEST(Hash, OfContentDependsOnShapeAndBits) {
     const std::string hash = content_hash({2, 3}, {0, 1, 2, 3, 4, 5});
-    EXPECT_EQ(hash, "b08b72ea4df23cb1");  // as the reference library, libxxhash 0.8.1, computes it
+    EXPECT_EQ(hash, "b08b72ea4df23cb1");  // as computed by the reference library, libxxhash 0.8.1
     EXPECT_NE(hash, content_hash({3, 2}, {0, 1, 2, 3, 4, 5}));
     EXPECT_NE(hash, content_hash({6}, {0, 1, 2, 3, 4, 5}));
     EXPECT_NE(hash, content_hash({2, 3}, {-0.0F, 1, 2, 3, 4, 5}));
@@ -127,7 +127,7 @@ TEST(Quote, EscapesAndCuts) {
               "'Z\xc3\xbcrich \xe2\x82\xac \xf0\x9f\x98\x80'");
     EXPECT_EQ(in_quotes(std::string("\0\t\x1b\x7f", 4)), "'\\x00\\x09\\x1b\\x7f'");
     // A C1 control, a lone continuation byte, an overlong form, a surrogate, beyond Unicode, a
-    // character cut off.
+    // truncated character.
     EXPECT_EQ(in_quotes("\xc2\x9b\x80\xc0\xaf"), "'\\u{9B}\\x80\\xc0\\xaf'");
     EXPECT_EQ(in_quotes("\xe0\x80\xaf\xed\xa0\x80"), "'\\xe0\\x80\\xaf\\xed\\xa0\\x80'");
     EXPECT_EQ(in_quotes("\xf4\x90\x80\x80\xe2\x82"), "'\\xf4\\x90\\x80\\x80\\xe2\\x82'");

@@ -1,5 +1,5 @@
-// .h5 traces through the reading process: element types, shapes, groups, links, damage, and readers
-// that die.
+// Tests .h5 traces through the reader process: element types, shapes, groups, links, damage, and
+// readers that crash.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -27,7 +27,7 @@ class Hdf5Trace : public testing::Test {
 protected:
     void SetUp() override { ::setenv("ETLC_HDF5_READER", ETLC_HDF5_READER_PATH, 1); }
 
-    /// What is wrong with reading these channels, to the end.
+    /// Returns the error of reading these channels to the end.
     static diag::Failure failure(const std::string& path, const std::vector<Channel>& channels) {
         auto trace = open_trace(path, channels);
         if (!trace) return trace.failure();
@@ -137,7 +137,8 @@ TEST_F(Hdf5Trace, ShapesFitTheirInputs) {
               "array 'one': has shape (), expected (steps,) or (steps, 1)");
     EXPECT_EQ(message({{"z", Kind::vector, 3}, {"short", Kind::scalar, 1}}),
               "arrays differ in length: 'z' has 7 steps, 'short' has 5");
-    EXPECT_EQ(message({{"none", Kind::vector, 3}}), "nothing is wrong");  // an episode of no steps
+    EXPECT_EQ(message({{"none", Kind::vector, 3}}), "nothing is wrong");  // an episode without
+                                                                          // steps
 }
 
 TEST_F(Hdf5Trace, ElementsFitTheirInputs) {
@@ -190,7 +191,7 @@ TEST_F(Hdf5Trace, WhatKillsTheReaderIsAMessage) {
     }
 }
 
-/// A shell script in the reader's place.
+/// A shell script in place of the reader.
 class Hdf5Reader : public testing::Test {
 protected:
     void SetUp() override {

@@ -1,4 +1,4 @@
-// Incidents as files: what a recorder wrote is read, and nothing that differs from it.
+// Tests incidents as files: what a recorder wrote is read, and anything else is refused.
 #include <gtest/gtest.h>
 
 #include "data/files/hash.hpp"
@@ -36,7 +36,7 @@ Code code_of(const std::string& bytes) {
     return result ? Code{} : result.failure().code;
 }
 
-/// With the checksum that its bytes have now.
+/// Updates the checksum for the current bytes.
 std::string sealed(std::string bytes) {
     const std::uint64_t sum = xxh64(std::string_view(bytes).substr(0, bytes.size() - 8));
     for (std::size_t i = 0; i < 8; ++i)
@@ -82,12 +82,12 @@ TEST(Incident, EveryByteCounts) {
     EXPECT_EQ(code_of(bytes + bytes), Code::damaged_incident);
 }
 
-/// A number of the head, whatever the checksum says of it.
+/// Changes a number of the header, and updates the checksum.
 TEST(Incident, AHeadThatContradictsItsRowsIsRefused) {
     const std::size_t words = 48, row_bytes = 52, rows = 76, alarm = 80;
     for (const std::size_t at : {words, row_bytes, rows, alarm})
         for (const char value : {'\0', '\x7f', '\xff'}) {
-            if (at == alarm && value == '\0') continue;  // the first row would do
+            if (at == alarm && value == '\0') continue;  // for the first row it would be valid
             std::string changed = written();
             changed.replace(at, 4, std::string(4, value));
             EXPECT_EQ(code_of(sealed(changed)), Code::damaged_incident) << at;

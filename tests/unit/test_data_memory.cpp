@@ -1,4 +1,4 @@
-// Memory does not grow with the length of a trace, nor with what a hostile header promises.
+// Memory does not grow with the length of a trace, nor with the claims of a hostile header.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -16,7 +16,7 @@ using Kind = Channel::Kind;
 
 constexpr std::uint64_t kMiB = 1ULL << 20U;
 
-/// Bytes of this process in memory now.
+/// Returns the resident bytes of this process.
 std::uint64_t resident_bytes() {
     std::ifstream file("/proc/self/statm");
     std::uint64_t pages = 0;
@@ -26,7 +26,7 @@ std::uint64_t resident_bytes() {
     return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-/// Reads a trace to its end. Gives its steps and by how much memory grew meanwhile, in bytes.
+/// Reads a trace to its end. Returns its steps and the growth of memory, in bytes.
 std::pair<std::uint64_t, std::uint64_t> read_all(Trace& trace) {
     Sample sample;
     std::uint64_t steps = 0;
@@ -36,13 +36,13 @@ std::pair<std::uint64_t, std::uint64_t> read_all(Trace& trace) {
         const auto more = trace.next(sample);
         EXPECT_TRUE(more);
         if (!more || !*more) break;
-        if (steps == 100) before = most = resident_bytes();  // buffers are there now
+        if (steps == 100) before = most = resident_bytes();  // buffers are allocated by now
         if (++steps % 1000 == 0) most = std::max(most, resident_bytes());
     }
     return {steps, most - before};
 }
 
-/// A .csv file that nobody stores: a header, then `rows` rows of 100 bytes.
+/// A generated .csv file: a header, then `rows` rows of 100 bytes.
 class EndlessCsv final : public ByteSource {
 public:
     explicit EndlessCsv(std::uint64_t rows)
@@ -100,7 +100,7 @@ TEST(Memory, LongNpz) {
 }
 
 TEST(Memory, HeadersThatLie) {
-    // Header and archive agree on 400 MB; 8 bytes are there.
+    // Header and archive both declare 400 MB; 8 bytes are present.
     const std::string data = tests::floats({1, 2});
     const std::string lie = tests::npy("<f4", "(100000000,)", data);
     const std::string bytes =

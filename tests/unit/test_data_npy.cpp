@@ -1,4 +1,4 @@
-// .npy files: what numpy writes reads back exactly, and everything else gets its message.
+// Tests .npy files: files of numpy are read exactly, and everything else gets its message.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -91,7 +91,7 @@ TEST(Npy, SpecialValuesStay) {
     EXPECT_EQ(v[5], 65504);
 }
 
-/// binary16 to binary32 by moving bits, the other way to do it.
+/// Converts binary16 to binary32 by moving bits, as an alternative implementation.
 float half_by_bits(std::uint32_t half) {
     const std::uint32_t sign = (half & 0x8000U) << 16U;
     const std::uint32_t exponent = (half >> 10U) & 0x1fU;
@@ -247,7 +247,7 @@ TEST(Npy, EveryFaultHasItsMessage) {
         ASSERT_FALSE(array) << one.what;
         EXPECT_EQ(array.failure().code, one.code) << one.what;
         const std::string message = array.failure().message;
-        // What is quoted from a header may run on into its padding.
+        // A quotation of a header may extend into its padding.
         const bool open_end = one.message.ends_with("}") || one.message.ends_with("'1");
         const std::string& expected = one.message;
         EXPECT_EQ(open_end ? message.substr(0, expected.size()) : message, expected) << one.what;

@@ -1,4 +1,4 @@
-// .npz files: members stored and deflated, keys, and archives that lie.
+// Tests .npz files: stored and deflated members, keys, and inconsistent archives.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ TEST(Npz, TheOnlyArrayNeedsNoKey) {
 
 const std::string kTwo = floats({1, 2});
 
-/// The archive of one array `z`; `from` becomes `to` in both of its headers.
+/// Returns the archive of one array `z`, with `from` replaced by `to` in both of its headers.
 std::string archive(bool deflated = true) {
     return zip_of({{"z.npy", npy("<f4", "(2,)", kTwo), deflated}});
 }
@@ -57,8 +57,8 @@ std::vector<BrokenArchive> broken_archives() {
     const std::string stored = archive(false);
     const std::string two_z =
         patched(zip_of({{"z1.npy", array}, {"z2.npy", array}}), "z2.npy", "z1.npy");
-    // The central directory's copy of the header names the method 10 bytes in, the local one 8
-    // bytes in.
+    // The central directory's copy of the header has the method at offset 10, the local one at
+    // offset 8.
     std::string method = stored;
     method[8] = 12;
     method[stored.find("PK\x01\x02") + 10] = 12;
@@ -111,7 +111,7 @@ TEST(Npz, EveryFaultHasItsMessage) {
     }
 }
 
-/// `bytes` with the little-endian number of 4 bytes at `at` raised by `by`.
+/// Adds `by` to the little-endian number of 4 bytes at `at`.
 std::string raised(std::string bytes, std::size_t at, std::size_t by) {
     std::uint64_t value = 0;
     for (std::size_t i = 4; i-- > 0;)
@@ -119,8 +119,7 @@ std::string raised(std::string bytes, std::size_t at, std::size_t by) {
     return bytes.replace(at, 4, tests::little_endian(value + by, 4));
 }
 
-/// The archive with `more` put in at `at`, at its beginning or before its directory; what it says
-/// of places is right.
+/// Inserts `more` at `at`, at the beginning or before the directory; the offsets stay right.
 std::string moved(const std::string& archive, std::size_t at, const std::string& more) {
     const std::size_t directory = archive.find("PK\x01\x02");
     std::string bytes = raised(archive, archive.size() - 6, more.size());
@@ -159,7 +158,7 @@ TEST(Npz, OneArchiveAndNothingElse) {
     EXPECT_TRUE(parse_npz(with_comment(one, "made by hand"), "z"));
 }
 
-/// An archive of one array, which has the bytes of the archive `inner`.
+/// Returns an archive of one array that has the bytes of the archive `inner`.
 std::string around(const std::string& inner) {
     return zip_of({{"z.npy", npy("|u1", "(" + std::to_string(inner.size()) + ",)", inner), false}});
 }
@@ -170,8 +169,7 @@ TEST(Npz, AnArchiveInAMemberIsNotTakenForTheArchive) {
     const auto array = parse_npz(outer, "z");
     ASSERT_TRUE(array) << array.failure().message;
     EXPECT_EQ(array->values.size(), inner.size());
-    // What it says of places may be right in the outer archive, and its comment be all that comes
-    // behind it.
+    // Its offsets may be right in the outer archive, and its comment may be everything after it.
     const std::size_t at = outer.find(inner);
     std::string polyglot =
         raised(raised(inner, inner.size() - 6, at), inner.find("PK\x01\x02") + 42, at);
@@ -190,7 +188,7 @@ TEST(Npz, OtherCompressionMethodsOfPythonAreRefused) {
 }
 
 TEST(Npz, ABombThatAgreesWithItselfStopsWhereItsBytesDo) {
-    // Header and directory promise 400 MB alike, 8 bytes of data are there.
+    // Header and directory both declare 400 MB, but 8 bytes of data are present.
     const std::string lie = npy("<f4", "(100000000,)", kTwo);
     const std::string header_only = lie.substr(0, lie.size() - kTwo.size());
     const std::string bytes =
@@ -220,7 +218,7 @@ TEST(Npz, AnyByteChangedIsSoundOrAnError) {
             std::string bytes = whole;
             bytes[i] = static_cast<char>(bytes[i] ^ change);
             const auto array = parse_npz(bytes, "z");
-            // The checksum leaves no way to other values.
+            // The checksum detects every other value.
             EXPECT_TRUE(!array || array->values == (std::vector<double>{1, 2})) << i;
         }
     }

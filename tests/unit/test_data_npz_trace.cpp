@@ -1,4 +1,4 @@
-// .npz traces: shapes, element types, Fortran order, lengths.
+// Tests .npz traces: shapes, element types, Fortran order, lengths.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -64,7 +64,7 @@ TEST(NpzTrace, AnOptionalArrayMayBeAbsent) {
     }
     const auto nothing =
         open_trace(kTraces + "trace_deflated.npz", {{"truth.at_a", Kind::boolean, 1, true}});
-    ASSERT_FALSE(nothing);  // how many steps it has, nobody knows
+    ASSERT_FALSE(nothing);  // its number of steps is unknown
     EXPECT_EQ(nothing.failure().code, Code::trace_shape);
 }
 
@@ -163,7 +163,7 @@ std::vector<BrokenTrace> broken_traces() {
     };
 }
 
-/// The first failure, on opening or on any step.
+/// Returns the first failure, on opening or on any step.
 std::optional<diag::Failure> first_failure(const ArchivePlace& place,
                                            const std::vector<Channel>& channels) {
     auto trace = open_npz_trace(place, channels);

@@ -1,4 +1,4 @@
-// Which episodes are the same recording, in whole or in part.
+// Tests which episodes are the same recording, in whole or in part.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ TEST(Overlap, WholesAndPieces) {
 }
 
 TEST(Overlap, IsMoreThanHalfOfTheSmaller) {
-    // Too few for a sample: what is counted is all.
+    // Too few for a sample: all are counted.
     const Numbers a = random_numbers(40, 1);
     const Numbers others = random_numbers(100, 2);
     for (const std::size_t shared : {1U, 10U, 19U, 20U, 21U, 30U}) {
@@ -98,7 +98,7 @@ TEST(Overlap, EstimatesSharesOfLongEpisodes) {
 }
 
 TEST(Overlap, FramesCountOnce) {
-    // Standing still for long at a common place is one frame in common.
+    // Standing still for long at a common place counts as one common frame.
     const Numbers still(500, 0.25F);
     EXPECT_FALSE(found(episode(joined(still, random_numbers(30, 1))),
                        episode(joined(still, random_numbers(30, 2)))));
@@ -114,17 +114,17 @@ TEST(Overlap, OfShortEpisodesTwoFramesAreEnough) {
             EXPECT_EQ(found(episode(piece(a, 0, n)), episode(b)).has_value(), expected)
                 << n << ' ' << shared;
         }
-    // Frames that are missing are not shared.
+    // Missing frames are not shared.
     const Numbers missing(20, NAN);
     EXPECT_FALSE(found(episode(joined(missing, piece(a, 0, 3))),
                        episode(joined(missing, piece(others, 0, 3)))));
     EXPECT_TRUE(
         found(episode(joined(missing, piece(a, 0, 3))), episode(joined(piece(a, 0, 3), missing))));
-    // A world of few images: they come again in every episode.
+    // A world of few images: they recur in every episode.
     const Numbers world = random_numbers(3, 4);
     EXPECT_FALSE(found(episode(joined(joined(world, world), world)),
                        episode(joined(joined(world, piece(world, 0, 1)), joined(world, world)))));
-    // Where another input has more to say, a few frames of this one say nothing.
+    // If another input has more units, a few frames of this one do not count.
     const auto both = [](const Numbers& z, const Numbers& w) {
         return EpisodeContent{{"z", content_of(z, true)}, {"w", content_of(w, true)}};
     };
@@ -136,7 +136,7 @@ TEST(Overlap, ScalarsTellByRuns) {
     const auto scalar = [](const Numbers& samples) {
         return EpisodeContent{{"x", content_of(samples, false)}};
     };
-    const auto digits = [](std::size_t n, unsigned seed) {  // all of the same sixteen
+    const auto digits = [](std::size_t n, unsigned seed) {  // the same sixteen in all
         std::mt19937 random(seed);
         Numbers numbers(n);
         for (float& number : numbers) number = static_cast<float>(random() % 16);
@@ -145,7 +145,7 @@ TEST(Overlap, ScalarsTellByRuns) {
     const Numbers a = digits(200, 1);
     EXPECT_FALSE(found(scalar(a), scalar(digits(200, 2))));
     EXPECT_TRUE(found(scalar(a), scalar(piece(a, 0, 199))));
-    // A step tells nothing but where it is equal.
+    // A single step does not count unless it is equal.
     const Numbers step = joined(Numbers(100, 0), Numbers(100, 1));
     EXPECT_FALSE(found(scalar(step), scalar(piece(step, 0, 199))));
     EXPECT_TRUE(found(scalar(step), scalar(step)));
@@ -159,7 +159,7 @@ TEST(Overlap, LooksAtCommonInputs) {
     EXPECT_TRUE(found(episode(z), both)->equal);
     EXPECT_FALSE(found(both, EpisodeContent{}));
     EXPECT_FALSE(found(both, EpisodeContent{{"v", content_of(z, true)}}));
-    // One camera that looked at the same wall is no common recording.
+    // A camera that saw the same wall is not a common recording.
     const EpisodeContent other{{"z", content_of(random_numbers(50, 3), true)},
                                {"w", content_of(w, true)}};
     EXPECT_FALSE(found(both, other));
@@ -178,7 +178,7 @@ TEST(Overlap, FindsTheEqualOneBeforeAPart) {
 }
 
 TEST(Overlap, SketchesAreTheSameWhateverTheOrderOfCompaction) {
-    // More units than are held before they are sifted.
+    // More units than are held before they are thinned out.
     Numbers a = random_numbers(60000, 1);
     const Sketch forwards = content_of(a, true).sketch;
     std::reverse(a.begin(), a.end());

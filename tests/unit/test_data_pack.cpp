@@ -1,5 +1,4 @@
-// What was made of an episode reads back as it was written, and bytes that nothing is written as
-// are refused.
+// Packed results of an episode read back as written, and invalid bytes are refused.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -45,7 +44,7 @@ TEST(Pack, ReadsWhatItWrote) {
     EXPECT_EQ(*again, example());
 }
 
-// Of every byte, each other value either means another result or is refused. A fuzzer found a bool
+// For every byte, each other value either gives another result or is refused. A fuzzer found a bool
 // of 2 that was read as true, and written again as 1.
 TEST(Pack, WritesWhatItReadAgain) {
     const std::string bytes = packed(example());

@@ -1,5 +1,5 @@
-// Rows of Parquet files through the reading process, readers that die or lie, and paths of data
-// sets. tests/datasets/ reads every form of such files.
+// Tests rows of Parquet files through the reader process, readers that crash or lie, and paths of
+// data sets. tests/datasets/ reads every form of such files.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -20,7 +20,7 @@ using diag::Code;
 
 const std::string kFile = ETLC_SOURCE_DIR "/tests/spec/error/E0850_rows.parquet";
 
-/// What is wrong with reading a column to its end.
+/// Returns the error of reading a column to its end.
 std::string message(const std::string& path, const std::vector<std::string>& names) {
     const auto table = Table::open(path, names);
     if (!table) return table.failure().message;
@@ -48,7 +48,7 @@ TEST(ParquetTable, GivesCells) {
     EXPECT_EQ(message(ETLC_SOURCE_DIR, {"q"}), "is a directory, expected a file");
 }
 
-/// A shell script in the reader's place.
+/// A shell script in place of the reader.
 class ParquetReader : public testing::Test {
 protected:
     void SetUp() override {

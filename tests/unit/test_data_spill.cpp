@@ -1,4 +1,4 @@
-// What does not stay in memory comes back as it was, few values and many.
+// Data moved to temporary files come back unchanged, few values and many.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -30,7 +30,7 @@ TEST(SpillFile, GivesBytesFromMemoryAndFromTheFile) {
     }
 }
 
-/// Names another folder for temporary files, for as long as it lives.
+/// Sets another folder for temporary files, for its own lifetime.
 class TemporaryFolder {
 public:
     explicit TemporaryFolder(const char* path) {
@@ -52,7 +52,7 @@ TEST(SpillFile, SaysWhereThereIsNoRoom) {
     SpillFile file;
     const std::string half(SpillFile::kInMemory / 2, 'x');
     file.append(half);
-    file.append(half);  // so far without a file
+    file.append(half);  // still without a file
     try {
         file.append(half);
         FAIL() << "a folder that is not there";

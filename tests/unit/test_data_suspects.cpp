@@ -1,5 +1,5 @@
-// Many episodes without holding them all: the suspects are enough to find what all of them would,
-// and what is kept in files comes back.
+// Compares many episodes without holding all of them: the suspects find everything that all of them
+// would, and data in files come back.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace etlc::data {
 namespace {
 
-/// Draws contents as recordings have them, small ones, of which many have something in common.
+/// Draws contents like those of recordings, but small; many have something in common.
 class Drawn {
 public:
     /// `common`: units that all episodes have in every input.
@@ -34,7 +34,7 @@ private:
     std::size_t draw(std::size_t below) { return random_() % below; }
     std::uint32_t unit() { return static_cast<std::uint32_t>(random_()); }
 
-    /// Some of another episode's units, and some of its own.
+    /// Some units of another episode, and some new ones.
     InputContent input(const std::string& name) {
         if (!made_.empty() && draw(8) == 0) {
             const EpisodeContent& other = made_[draw(made_.size())];
@@ -69,7 +69,7 @@ std::string text(const Answer& answer) {
            std::to_string(answer->share);
 }
 
-/// Recordings that is given the suspects alone, under their numbers among all.
+/// Holds only the suspects, under their numbers among all.
 class OfSuspects {
 public:
     explicit OfSuspects(const std::vector<bool>& is_suspect) : is_suspect_(is_suspect) {}
@@ -102,7 +102,7 @@ struct Tally {
     }
 };
 
-/// Each of `n` episodes among those before it.
+/// Compares each of `n` episodes with those before it.
 void compare_with_earlier(Drawn drawn, std::size_t n, Tally& tally) {
     std::vector<EpisodeContent> episodes(n);
     Suspects suspects(true);
@@ -123,7 +123,7 @@ void compare_with_earlier(Drawn drawn, std::size_t n, Tally& tally) {
     }
 }
 
-/// Each of some episodes among others.
+/// Compares each of some episodes with others.
 void compare_with_known(Drawn drawn, std::size_t n, Tally& tally) {
     std::vector<EpisodeContent> episodes(n);
     Suspects suspects(false);
@@ -158,13 +158,13 @@ TEST(Suspects, FindWhatAllEpisodesFind) {
     }
     EXPECT_GT(tally.equal, 100U);
     EXPECT_GT(tally.in_part, 100U);
-    EXPECT_LT(tally.suspects, kWorlds * kEpisodes * 5 / 4);  // of 1.5 times as many
+    EXPECT_LT(tally.suspects, kWorlds * kEpisodes * 5 / 4);  // 1.5 times as many
 }
 
 TEST(Suspects, FindTheSameWhereAllEpisodesShareUnits) {
     Tally tally;
     for (unsigned seed = 0; seed < kWorlds; ++seed) {
-        const std::size_t common = seed % 12;  // fewer, and more, than it takes
+        const std::size_t common = seed % 12;  // fewer, and more, than needed
         compare_with_earlier(Drawn(seed, common), kEpisodes, tally);
         compare_with_known(Drawn(seed, common), kEpisodes, tally);
     }
@@ -175,10 +175,10 @@ TEST(Suspects, FindTheSameWhereAllEpisodesShareUnits) {
 TEST(Suspects, AreFewAmongDifferentRecordings) {
     Suspects suspects(true);
     std::mt19937_64 random(1);
-    constexpr std::size_t kMany = 3000;  // whose units are more than stay in memory
+    constexpr std::size_t kMany = 3000;  // whose units exceed the memory limit
     for (std::size_t e = 0; e < kMany; ++e) {
         Sketch units{1};                       // that all have
-        for (std::size_t i = 0; i < 100; ++i)  // each some others have too
+        for (std::size_t i = 0; i < 100; ++i)  // each shares some with others
             units.push_back(3 + static_cast<std::uint32_t>(random() % 600'000));
         std::sort(units.begin(), units.end());
         units.erase(std::unique(units.begin(), units.end()), units.end());
@@ -196,7 +196,7 @@ TEST(Suspects, OfThoseThatAreNotComparedThereAreNone) {
     suspects.ask(one);
     suspects.ask(one);
     EXPECT_EQ(suspects.find(), (std::vector<bool>{false, false}));
-    suspects.know({{"w", one.at("z")}});  // of another input
+    suspects.know({{"w", one.at("z")}});  // in another input
     EXPECT_EQ(suspects.find(), (std::vector<bool>{false, false, false}));
     suspects.know(one);
     EXPECT_EQ(suspects.find(), (std::vector<bool>{true, true, false, true}));

@@ -186,7 +186,7 @@ TEST(Text, ManyFindingsAreCountedNotAllShown) {
     EXPECT_NE(text.find("(800 more not shown)\n1000 errors\n"), std::string::npos);
 }
 
-/// Any warning of the table; the tests below want one, whichever.
+/// Any warning of the table; the tests below need just one.
 Code some_warning() {
     const auto& codes = diag::all_codes();
     const auto found = std::find_if(codes.begin(), codes.end(), [](const auto& row) {

@@ -1,4 +1,4 @@
-// Text from outside, as each kind of output has it.
+// Tests text from outside in each kind of output.
 #include <gtest/gtest.h>
 
 #include "source/escape.hpp"

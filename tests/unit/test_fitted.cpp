@@ -1,6 +1,6 @@
-// The file of fitted things: it reads back to the same bits, is an archive that numpy reads, and
-// every fault has its key, what is there and what should be.
-#include "fitted/fitted.hpp"
+// Tests the file of fits: it reads back to the same bits, numpy can read it, and every fault is
+// reported with its key, the value found and the value expected.
+#include "artifacts/fitted.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -87,7 +87,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text.replace(at, from.size(), to);
 }
 
-/// Of the description with `from` replaced by `to`.
+/// Replaces `from` by `to` in the description.
 diag::Failure failure_of(const std::string& from, const std::string& to) {
     const auto file = parse(archive(replaced(kDescription, from, to)), "x.fitted.npz");
     EXPECT_FALSE(file) << to;
@@ -147,13 +147,14 @@ TEST(Fitted, FaultsNameTheKeyWhatIsThereAndWhatIsExpected) {
         {R"("offset": "Q-offset")", R"("offset": "anchors")",
          "array 'anchors' has shape (2, 3), expected dimension"},
         {R"("array": "Q")", R"("array": "metric-1")",
-         "array 'Q-offset' has 3 numbers, expected 1, as many as the columns of its matrix"},
+         "array 'Q-offset' has 3 numbers, expected 1, one per column of its matrix"},
         {R"("array": "metric-1")", R"("array": "infinite")",
          "array 'infinite' holds inf at element 1, expected finite numbers"},
         {R"("anchors": {)", R"("a b": {)",
-         "'entries.a b' is no name of a projection or target, nor the declaration of a metric"},
+         "'entries.a b' is neither the name of a projection or target nor the declaration of a "
+         "metric"},
         {R"("step": 12 },)", R"("step": 12 }, {},)",
-         "'entries.anchors.medoids' is an array, expected one of 2 frames, as many as rows"},
+         "'entries.anchors.medoids' is an array, expected one of 2 frames, one per row"},
         {R"("0123456789abcdef", "step": 80)", R"("0123", "step": 80)",
          "'entries.anchors.medoids[1].episode' is the text '0123', expected a content hash of 16 "
          "hex digits"},

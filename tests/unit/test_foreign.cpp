@@ -1,4 +1,4 @@
-// What people write who know other tools: one error, which says how it is written here.
+// Notation of other tools gives one error, which shows the notation of this language.
 #include <gtest/gtest.h>
 
 #include "checking.hpp"

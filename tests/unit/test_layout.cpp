@@ -1,4 +1,4 @@
-// Where lines of generated code break.
+// Tests the line breaks of generated code.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,4 +1,4 @@
-// What is right: every declaration, precedence and associativity of every pair of operators,
+// Tests valid specs: every declaration, precedence and associativity of every pair of operators,
 // contextual words.
 #include <gtest/gtest.h>
 
@@ -116,7 +116,7 @@ std::string tree(const std::string& op, const std::string& a, const std::string&
     return "(" + op + " " + a + " " + b + ")";
 }
 
-/// What `a op1 b op2 c` has to mean.
+/// Returns the required meaning of `a op1 b op2 c`.
 std::string expected_tree(const Binary& first, const Binary& second) {
     const bool to_the_left = first.level != second.level ? first.level > second.level
                                                          : first.associates != Binary::right;

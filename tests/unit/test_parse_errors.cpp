@@ -1,5 +1,5 @@
-// What is wrong: one message a broken declaration, in the user's words, and the rest of the file
-// read all the same.
+// Tests errors: one message per broken declaration, in the user's terms, and the rest of the file
+// is still read.
 #include <gtest/gtest.h>
 
 #include "parsing.hpp"
@@ -12,7 +12,7 @@ std::string brief(const std::string& text) {
     return Parsed(text).brief();
 }
 
-/// What is said of one declaration after `spec a;` on a line of its own.
+/// Returns the messages about one declaration on its own line after `spec a;`.
 std::string of_line(const std::string& line) {
     return brief("spec a;\n" + line + "\n");
 }
@@ -163,7 +163,7 @@ TEST(Words, UnknownKeywordsWithTheNearest) {
            "did you mean 'hold'?");
 }
 
-// ---- what can stand where
+// ---- expected words
 
 TEST(Places, MessagesNameWhatWasExpected) {
     const std::vector<std::pair<std::string, std::string>> cases{
@@ -230,7 +230,7 @@ TEST(Places, MessagesNameWhatWasExpected) {
 }
 
 TEST(Places, NeverAntlrsOwnWords) {
-    // Every prefix of a spec that uses everything ends in an error that speaks the user's language.
+    // Every prefix of a spec with all features ends in an error in the user's terms.
     const std::string spec =
         "spec a; const k = -2 s; rate 20 Hz; input z : i8[D] scale 0.1 hold n; input x : f32 in "
         "[-1, inf]; target "

@@ -1,5 +1,4 @@
-// Large and deep input: refused with one error where it exceeds a limit, read in linear time where
-// it does not.
+// Tests large and deep input: refused with one error beyond a limit, read in linear time otherwise.
 #include <gtest/gtest.h>
 
 #include "parsing.hpp"
@@ -18,7 +17,7 @@ std::string formula(const std::string& text) {
     return "spec a; let f = " + text + "; let g = b;";
 }
 
-/// One error, of nesting, and the declaration after it is read.
+/// Expects one error, about nesting, and the declaration after it.
 void expect_too_deep(const std::string& text) {
     const Parsed parsed(formula(text));
     ASSERT_EQ(parsed.sink.errors(), 1U) << parsed.errors();
@@ -31,7 +30,7 @@ void expect_fine(const std::string& text) {
     EXPECT_EQ(Parsed(formula(text)).errors(), "");
 }
 
-/// Everything that the parser reads by recursion: what `n` of it look like.
+/// Everything that the parser reads recursively, nested `n` deep.
 std::vector<std::string> nested(int n) {
     return {
         repeated("(", n) + "a" + repeated(")", n),

@@ -1,4 +1,4 @@
-// ast::print: its text parses back to the same tree, and has no bracket that could be left out.
+// Tests ast::print: its text parses back to the same tree, and has no redundant bracket.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -52,7 +52,7 @@ TEST(Print, CanonicalForm) {
 
 // ---- random trees
 
-/// Trees of every kind that the parser can build, at random.
+/// Random trees of every kind that the parser can build.
 class Generator {
 public:
     explicit Generator(unsigned seed) : random_(seed) {}
@@ -213,8 +213,8 @@ TEST(Print, RandomExpressionsReadBackAsTheyWere) {
     }
 }
 
-/// `text` without the bracket at `open` and its partner; empty where the bracket is not one of
-/// grouping.
+/// Returns `text` without the bracket at `open` and its partner; empty if it is not a grouping
+/// bracket.
 std::string without_brackets(const std::string& text, std::size_t open) {
     const bool call = open > 0 && (std::isalnum(static_cast<unsigned char>(text[open - 1])) != 0 ||
                                    text[open - 1] == ')' || text[open - 1] == '_');
@@ -229,7 +229,7 @@ std::string without_brackets(const std::string& text, std::size_t open) {
 }
 
 TEST(Print, NoBracketCouldBeLeftOut) {
-    // But those of a comparison under a prefix operator, which are there for the reader.
+    // Except those of a comparison under a prefix operator, which help the reader.
     const auto compared = [](const std::string& text, std::size_t open) {
         const std::string inner = text.substr(open, text.find(')', open) - open);
         const bool prefixed =

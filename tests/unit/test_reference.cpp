@@ -1,4 +1,5 @@
-// The judge judged: verdicts worked out by hand from docs/language.md, on models made by hand.
+// Tests the reference evaluator: verdicts worked out by hand from docs/language.md, on models made
+// by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -191,7 +192,7 @@ TEST(Reference, BoundsOverPastOperators) {
     const Index p = spec.sample();
     const auto always = [&](Index f) { spec.monitor(spec.f(Kind::always, {f}, 1)); };
     const auto eventually = [&](Index f) { spec.monitor(spec.f(Kind::eventually, {f}, 1)); };
-    always(spec.f(Kind::once, {p}));              // an unbounded O keeps what it saw
+    always(spec.f(Kind::once, {p}));              // an unbounded O keeps past values
     eventually(spec.f(Kind::historically, {p}));  // and so does H
     always(spec.f(Kind::once, {p}, 0, 3));        // a bounded one forgets
     always(spec.f(Kind::previous, {p}));
@@ -244,7 +245,7 @@ TEST(Reference, HoldStandsInForAtMostNSteps) {
     const Index p = spec.sample();
     spec.model.inputs[0].hold = 2;
     spec.monitor(p, true);
-    // Nothing to hold before the first sample; 9 is out of range; the third missing one in a row is
+    // No sample to hold before the first one; 9 is out of range; the third missing one in a row is
     // missing.
     reference::Trace trace = scalars({0, 5, 9, 0, 0, 4, 0});
     trace[0][0] = trace[3][0] = trace[4][0] = trace[6][0] = kMissing;

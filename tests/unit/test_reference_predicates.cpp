@@ -1,4 +1,4 @@
-// The judge judged: distances, aggregations and expressions, on models made by hand.
+// Tests the reference evaluator: distances, aggregations and expressions, on models made by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -87,7 +87,7 @@ TEST(Reference, Expressions) {
                             Expr::Kind::divide, Expr::Kind::min, Expr::Kind::max})
         term(kind, {a, b});
     for (const auto kind : {Expr::Kind::negate, Expr::Kind::abs, Expr::Kind::sqrt}) term(kind, {a});
-    // A term without a value is unknown through min and max, on either side.
+    // NaN is unknown through min and max, on either side.
     term(Expr::Kind::min, {Spec::apply(Expr::Kind::sqrt, {b}), Spec::number(1)});
     term(Expr::Kind::max, {Spec::number(1), Spec::apply(Expr::Kind::divide, {b, b})});
     const auto run = evaluate(spec.model, scalars({4, 0}, {-2, 0}));

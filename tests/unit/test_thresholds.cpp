@@ -1,5 +1,5 @@
-// The thresholds file: it reads back to the same bits, and every fault has its key, what is there
-// and what should be.
+// Tests the thresholds file: it reads back to the same bits, and every fault is reported with its
+// key, the value found and the value expected.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -7,8 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "artifacts/file.hpp"
+#include "artifacts/thresholds.hpp"
 #include "npy_bytes.hpp"
-#include "thresholds/thresholds.hpp"
 
 namespace etlc::thresholds {
 namespace {
@@ -124,7 +125,7 @@ TEST(Thresholds, WritingWhatWasReadChangesNothing) {
     ASSERT_TRUE(file);
     EXPECT_EQ(write(*file), kWhole);
     const std::string old = patched(kWhole, "\"format\": 2", "\"format\": 1");
-    EXPECT_EQ(write(*parse(old, "x")), old);  // its episodes are told apart as they were
+    EXPECT_EQ(write(*parse(old, "x")), old);  // its episodes are identified by their stored bytes
 }
 
 TEST(Thresholds, SmallestFile) {
@@ -199,7 +200,7 @@ struct Broken {
     std::uint32_t column = 0;
 };
 
-/// kWhole with one place changed.
+/// Returns kWhole with one change.
 std::string with(const std::string& from, const std::string& to) {
     std::string json = kWhole;
     const std::size_t at = json.find(from);
@@ -214,16 +215,17 @@ std::vector<Broken> syntax() {
         return Broken{what, json, Code::malformed_thresholds, message, line, column};
     };
     return {
-        broken("empty", "", "is no JSON: unexpected its end", 1, 1),
-        broken("cut short", "{\n  \"format\": 1,\n", "is no JSON: unexpected its end", 3, 1),
-        broken("a word", "{\n  \"format\": one}", "is no JSON: unexpected 'o'", 2, 13),
-        broken("after the end", "{} {}", "is no JSON: unexpected '{'", 1, 4),
-        broken("NaN", with("0.30999997", "NaN"), "is no JSON: unexpected 'N'", 8, 18),
+        broken("empty", "", "is not JSON: unexpected end", 1, 1),
+        broken("cut short", "{\n  \"format\": 1,\n", "is not JSON: unexpected end", 3, 1),
+        broken("a word", "{\n  \"format\": one}", "is not JSON: unexpected 'o'", 2, 13),
+        broken("after the end", "{} {}", "is not JSON: unexpected '{'", 1, 4),
+        broken("NaN", with("0.30999997", "NaN"), "is not JSON: unexpected 'N'", 8, 18),
         broken("number overflow", with("0.30999997", "1e999"),
-               "is no JSON: unexpected a number that no double holds", 8, 22),
-        broken("comma", "{\"a\": 1,}", "is no JSON: unexpected '}'", 1, 9),
-        broken("UTF-8", "{\"\xff\": 1}", "is no JSON: unexpected '\\xff'", 1, 3),
-        broken("column counts characters", "{\"\xc3\xbc\": x}", "is no JSON: unexpected 'x'", 1, 7),
+               "is not JSON: unexpected number outside the range of a double", 8, 22),
+        broken("comma", "{\"a\": 1,}", "is not JSON: unexpected '}'", 1, 9),
+        broken("UTF-8", "{\"\xff\": 1}", "is not JSON: unexpected '\\xff'", 1, 3),
+        broken("column counts characters", "{\"\xc3\xbc\": x}", "is not JSON: unexpected 'x'", 1,
+               7),
         broken("nesting bomb", deep, "nests deeper than 16 levels", 0, 0),
         broken("nesting bomb of objects", "{\"a\":" + deep, "nests deeper than 16 levels", 0, 0),
     };
@@ -240,18 +242,18 @@ std::vector<Broken> content() {
         {"nothing in it", "{}", Code::invalid_thresholds,
          "key 'format' is missing, expected a number from 1 to 2"},
         {"format 3", with("\"format\": 2", "\"format\": 3"), Code::unknown_thresholds_format,
-         "'format' is '3', expected a number from 1 to 2, those this version reads"},
+         "'format' is '3', expected a number from 1 to 2, the formats that this version reads"},
         {"format 3 with other keys", R"({"format": 3, "entries": []})",
          Code::unknown_thresholds_format,
-         "'format' is '3', expected a number from 1 to 2, those this version reads"},
+         "'format' is '3', expected a number from 1 to 2, the formats that this version reads"},
         broken("\"format\": 2", "\"format\": \"2\"",
                "'format' is the text '2', expected a number from 1 to 2"),
         broken("\"spec\": \"dubins\"", "\"spec\": null", "'spec' is null, expected a text"),
         broken("\"spec\"", "\"spek\"", "unknown key 'spek'; did you mean 'spec'?"),
-        broken("\"etlc\"", "\"spec\"", "key 'spec' stands twice in one object"),
+        broken("\"etlc\"", "\"spec\"", "key 'spec' occurs twice in one object"),
         broken("  \"spec\": \"dubins\",\n", "", "key 'spec' is missing, expected a text"),
         broken("\"predicates\": {", "\"predicates\": true, \"episodes\": {",
-               "key 'episodes' stands twice in one object"),
+               "key 'episodes' occurs twice in one object"),
         broken("\"held\": {", "\"held\": 1, \"other\": {",
                "'predicates.held' is '1', expected an object"),
         broken("\"method\": \"conformal\"", "\"method\": \"conform\"",
@@ -309,7 +311,7 @@ std::vector<Broken> content() {
                "'episodes[1]' is the text 'fffffffffffffffff', expected a content hash of 16 hex "
                "digits"),
         broken("\"monitors\": {", "\"monitors\": [], \"episodes\": {",
-               "key 'episodes' stands twice in one object"),
+               "key 'episodes' occurs twice in one object"),
     };
 }
 
@@ -327,14 +329,14 @@ TEST(Thresholds, EveryFaultHasItsMessage) {
 }
 
 TEST(Thresholds, CutAnywhere) {
-    // The line feed at the end is not missed.
+    // A missing line feed at the end is not an error.
     for (std::size_t n = 0; n + 1 < kWhole.size(); ++n)
         EXPECT_FALSE(parse(kWhole.substr(0, n), "x")) << n;
 }
 
 TEST(Thresholds, MoreValuesThanAreRead) {
     std::string json = "[0";
-    for (std::uint64_t i = 0; i < kMaxValues; ++i) json += ",0";
+    for (std::uint64_t i = 0; i < artifacts::kMaxValues; ++i) json += ",0";
     const auto file = parse(json + "]", "x");
     ASSERT_FALSE(file);
     EXPECT_EQ(file.failure().code, Code::malformed_thresholds);

@@ -1,13 +1,14 @@
-// What a thresholds file has of every episode: much of it, read and written a piece at a time, with
-// the messages and places of files that are read whole.
+// Tests the episodes in a thresholds file: many of them, read and written piece by piece, with the
+// messages and places of files that are read whole.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 
+#include "artifacts/file.hpp"
+#include "artifacts/thresholds.hpp"
 #include "data/files/hash.hpp"
 #include "npy_bytes.hpp"
-#include "thresholds/thresholds.hpp"
 
 namespace etlc::thresholds {
 namespace {
@@ -49,7 +50,7 @@ TEST(ThresholdsOfEpisodes, ARecordingStandsOnce) {
         return message("\"recordings\": {" + members + "}");
     };
     const auto twice = [](const std::string& key) {
-        return fmt::format("key '{}' stands twice in one object", key);
+        return fmt::format("key '{}' occurs twice in one object", key);
     };
     EXPECT_EQ(said(a + "," + b + "," + a), twice("000000000000000a"));
     EXPECT_EQ(said(a + "," + b + "," + b + "," + a), twice("000000000000000b"));  // the first
@@ -68,7 +69,7 @@ TEST(ThresholdsOfEpisodes, FaultsComeInTheOrderOfTheKeysNotOfTheFile) {
               "unknown key 'spek'; did you mean 'spec'?");
     EXPECT_EQ(parse(R"({"recordings": {"x": {}}, "format": 3})", "x").failure().code,
               Code::unknown_thresholds_format);
-    EXPECT_NE(message(R"("recordings": {"x": {}}, ?)").find("is no JSON"), std::string::npos);
+    EXPECT_NE(message(R"("recordings": {"x": {}}, ?)").find("is not JSON"), std::string::npos);
 }
 
 TEST(ThresholdsOfEpisodes, PlacesBehindTheFirstPiece) {
@@ -81,11 +82,11 @@ TEST(ThresholdsOfEpisodes, PlacesBehindTheFirstPiece) {
                  {"x", "'x'", 0},
                  {"\xc3\xbc", "'\xc3\xbc'", 0},
                  {"\xf0\x9f\x98\x80", "'\xf0\x9f\x98\x80'", 0},
-                 {"1e999,", "a number that no double holds", 4},
-                 {"", "its end", 0}}) {
+                 {"1e999,", "number outside the range of a double", 4},
+                 {"", "end", 0}}) {
             const auto file = parse(json + wrong, "x");
             ASSERT_FALSE(file);
-            EXPECT_EQ(file.failure().message, "is no JSON: unexpected " + what) << blanks;
+            EXPECT_EQ(file.failure().message, "is not JSON: unexpected " + what) << blanks;
             EXPECT_EQ(file.failure().line, 2U);
             EXPECT_EQ(file.failure().column, blanks - 2 - 1 + 1 + width) << blanks << what;
         }
@@ -96,7 +97,7 @@ TEST(ThresholdsOfEpisodes, PlacesBehindTheFirstPiece) {
     }
 }
 
-/// So many that their text is more than 64 MB.
+/// So many that their text exceeds 64 MB.
 File many_episodes() {
     File file;
     file.spec = "s";
@@ -138,7 +139,7 @@ TEST(ThresholdsOfEpisodes, LargeFilesThatAreWrittenAreRead) {
 }
 
 TEST(ThresholdsOfEpisodes, WhatStaysInMemoryIsLimited) {
-    const auto large = parse(std::string(kMaxKeptBytes + (1U << 17U), ' '), "x");
+    const auto large = parse(std::string(artifacts::kMaxKeptBytes + (1U << 17U), ' '), "x");
     ASSERT_FALSE(large);
     EXPECT_EQ(large.failure().code, Code::unreadable_thresholds);
     EXPECT_EQ(large.failure().message,

@@ -1,6 +1,6 @@
-// Syntax trees as fully bracketed text, spans left out.
-// Takes: ast:: structs. Gives: S-expressions, so that equal texts mean equal trees. Keeps true:
-// shares nothing with ast::print, which it is used to test.
+// Prints syntax trees as fully bracketed text, without spans.
+// Takes: ast:: structs. Gives: S-expressions, so equal texts mean equal trees. Keeps true: it
+// shares nothing with ast::print, which it helps to test.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace etlc::tree_text {
 std::string of(const ast::Expr& expression);
 std::string of(const ast::Formula& formula);
 std::string of(const ast::Declaration& declaration);
-/// The spec's name and declarations, one a line. Unreadable names are left out.
+/// Prints the spec's name and declarations, one per line. Unreadable names are omitted.
 std::string of(const ast::Spec& spec);
 
 }  // namespace etlc::tree_text

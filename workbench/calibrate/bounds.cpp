@@ -26,11 +26,11 @@ using check::round_up;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Covers the rounding of what is computed here in double.
+/// Covers the rounding of this file's own arithmetic in double.
 constexpr double kSlack = 1 + 1e-12;
 
-/// |computed - exact| of one row, or of a mean over `rows` rows, where the exact distance is
-/// `exact`. Concave in it, so what holds of rows holds of their mean.
+/// Bounds |computed - exact| for a row, or for a mean over `rows` rows, at the distance `exact`.
+/// The bound is concave in `exact`, so a bound for rows also holds for their mean.
 double error(const Distance& distance, std::uint32_t rows, std::uint32_t dimension, double exact,
              double magnitude) {
     double bound = etlmon::rounding_bound(plan::metric_id(distance), dimension, exact, magnitude);
@@ -38,8 +38,8 @@ double error(const Distance& distance, std::uint32_t rows, std::uint32_t dimensi
     return bound * kSlack;
 }
 
-/// How far a distance changes where its point moves by `moved` in the distance's norm, of cosine
-/// and angular at length 1: see etlmon/distance/enclosed.hpp. Concave in the distance.
+/// Bounds the change of a distance whose point moves by `moved` in the distance's norm (cosine and
+/// angular: at length 1), see etlmon/distance/enclosed.hpp. Concave in the distance.
 double change(const Distance& distance, double exact, double moved) {
     switch (distance.metric) {
         case check::Metric::l2sq: return moved * (2 * std::sqrt(exact) + moved);
@@ -49,9 +49,10 @@ double change(const Distance& distance, double exact, double moved) {
     }
 }
 
-/// Two builds differ by twice the error of one. The greatest exact distance that may measure as
-/// `delta` solves exact = delta + error(exact); from below the iteration converges to it, because
-/// the error grows slower than exact. `moved`: between the points that two builds measure from.
+/// Returns the interval of distances that any build may measure. Two builds differ by at most twice
+/// the error of one. The greatest exact distance that measures as `delta` solves
+/// exact = delta + error(exact); the iteration converges to it from below, because the error grows
+/// slower than exact. `moved` is the distance between the points that two builds measure from.
 Interval spread(const Distance& distance, std::uint32_t rows, std::uint32_t dimension, double delta,
                 double magnitude, double moved) {
     if (std::isinf(delta)) return {delta, delta};
@@ -66,13 +67,13 @@ Interval spread(const Distance& distance, std::uint32_t rows, std::uint32_t dime
         if (settled) break;
     }
     greatest = greatest * kSlack + DBL_MIN;
-    // With full weights the error falls at first as `exact` grows, from r: it is r^2 / exact above
-    // r. Where delta is above 2 r the exact distance is at least delta / 2; below, no positive
-    // number is a lower bound, nor comes out.
+    // With full weights the error is r^2 / exact above some r, so it first falls as `exact` grows.
+    // For delta above 2 r the exact distance is at least delta / 2; for smaller ones the lower
+    // bound is not positive.
     double below = error_at(delta) + (magnitude > 0 ? error_at(delta / 2) : 0);
     if (moved > 0) {
         const double changed = change(distance, greatest, moved) * kSlack;
-        // at zero it is the greatest, but for the part that grows
+        // the falling part of the error is greatest at zero
         below += changed / 2 + (magnitude > 0 ? error_at(0) : 0);
         greatest += changed;
     }
@@ -82,8 +83,8 @@ Interval spread(const Distance& distance, std::uint32_t rows, std::uint32_t dime
     return {std::max(0.0, delta - 2 * below), std::min(ceiling, greatest + error_at(greatest))};
 }
 
-/// |a - b| of every element of a point, where two builds compute a and b; empty where both take it
-/// as it comes.
+/// Bounds |a - b| for each element of a point, of which two builds compute a and b; empty for
+/// points that are not computed.
 std::vector<double> moves_of(const check::Model& model, Index index,
                              const plan::Evaluator& measured) {
     const check::Point& point = model.points[index];
@@ -111,7 +112,7 @@ std::vector<double> moves_of(const check::Model& model, Index index,
     return moves;
 }
 
-/// The moves of elements in the norm of the distance; of cosine and angular at length 1.
+/// Returns the norm of the moves, in the norm of the distance (cosine and angular: at length 1).
 double norm_of(const Distance& distance, const std::vector<double>& moves, const float* z) {
     const std::size_t n = moves.size();
     double sum = 0;
@@ -140,9 +141,9 @@ double norm_of(const Distance& distance, const std::vector<double>& moves, const
     }
 }
 
-/// sum over i, j of |d_i| |W_ij| |d_j|, d = z - g: see etlmon/hosted/error_bounds.hpp. At least
-/// that: it is the square of a distance by weights |W|, whose terms are not negative, so that a
-/// kernel is off by roundings alone. Each |d_i| as large as `moves` may make it.
+/// An upper bound of the sum over i, j of |d_i| |W_ij| |d_j|, d = z - g, with each |d_i| enlarged
+/// by `moves` (see etlmon/hosted/error_bounds.hpp). It is the square of a distance with weights
+/// |W|. The terms are not negative, so a kernel's error is rounding alone.
 class Magnitude {
 public:
     explicit Magnitude(const Distance& distance) : absolute_(distance) {
@@ -171,8 +172,8 @@ private:
     std::vector<float> origin_;
 };
 
-/// Row by row, since each has an error of its own: aggregates are monotonic in every row, and a
-/// minimum does not ask for `rows` that are left out.
+/// Combines the intervals of the `rows`, each of which has its own error: aggregates are monotonic
+/// in every row, and a minimum does not depend on the rows left out.
 Interval of_full_weights(const Distance& distance, const check::Target& target, const float* z,
                          const std::vector<std::uint32_t>& rows, const std::vector<double>& moves) {
     Distance row = distance;
@@ -196,8 +197,8 @@ Interval of_full_weights(const Distance& distance, const check::Target& target, 
     return result;
 }
 
-/// An end of an interval of a row is off by at most six times what a kernel rounds: see spread().
-/// Others than these rows cannot be the nearest, in any build that measures from the same point.
+/// Returns the rows that may be the nearest in some build that measures from the same point. An end
+/// of a row's interval is off by at most six times a kernel's rounding, see spread().
 std::vector<std::uint32_t> rows_that_count(const Distance& distance, const check::Target& target,
                                            Index index, const std::vector<double>& moves,
                                            const plan::Evaluator& measured) {
@@ -208,8 +209,23 @@ std::vector<std::uint32_t> rows_that_count(const Distance& distance, const check
     return all;
 }
 
-/// EXPR over intervals. Exact operands give an exact result; one so small that a build may flush it
-/// to zero does not.
+Interval of_distance(const check::Model& model, Index index, const plan::Evaluator& measured) {
+    const Distance& distance = model.distances[index];
+    const check::Target& target = model.targets[distance.target];
+    const float delta = measured.measured(index).delta;
+    const float* const z = measured.point(distance.point);
+    if (std::isinf(delta))
+        return spread(distance, target.rows, target.dimension, static_cast<double>(delta), 0, 0);
+    const std::vector<double> moves = moves_of(model, distance.point, measured);
+    if (distance.full_weights())
+        return of_full_weights(distance, target, z,
+                               rows_that_count(distance, target, index, moves, measured), moves);
+    return spread(distance, target.rows, target.dimension, static_cast<double>(delta), 0,
+                  norm_of(distance, moves, z));
+}
+
+/// Evaluates an expression over intervals. Exact operands give an exact result, unless a build may
+/// flush it to zero.
 class Expression {
 public:
     Expression(const check::Model& model, const plan::Evaluator& measured)
@@ -267,30 +283,9 @@ private:
         return {round_down(interval.low), round_up(interval.high)};
     }
 
-    static Interval of_distance(const check::Model& model, Index index,
-                                const plan::Evaluator& measured);
-    friend std::optional<Interval> etlc::calibrate::interval_of(const check::Model&, Index,
-                                                                const plan::Evaluator&);
-
     const check::Model& model_;
     const plan::Evaluator& measured_;
 };
-
-Interval Expression::of_distance(const check::Model& model, Index index,
-                                 const plan::Evaluator& measured) {
-    const Distance& distance = model.distances[index];
-    const check::Target& target = model.targets[distance.target];
-    const float delta = measured.measured(index).delta;
-    const float* const z = measured.point(distance.point);
-    if (std::isinf(delta))
-        return interval_of(distance, target.rows, target.dimension, static_cast<double>(delta));
-    const std::vector<double> moves = moves_of(model, distance.point, measured);
-    if (distance.full_weights())
-        return of_full_weights(distance, target, z,
-                               rows_that_count(distance, target, index, moves, measured), moves);
-    return spread(distance, target.rows, target.dimension, static_cast<double>(delta), 0,
-                  norm_of(distance, moves, z));
-}
 
 }  // namespace
 
@@ -303,7 +298,7 @@ std::optional<Interval> interval_of(const check::Model& model, Index predicate,
                                     const plan::Evaluator& measured) {
     const check::Predicate& p = model.predicates[predicate];
     if (std::isnan(measured.distance(predicate))) return std::nullopt;
-    if (p.plain_distance()) return Expression::of_distance(model, p.expression.index, measured);
+    if (p.plain_distance()) return of_distance(model, p.expression.index, measured);
     const Range range = Expression(model, measured).of(p.expression);
     if (!(range.low <= range.high))
         return Interval{-kInfinity, kInfinity};  // infinities that cancel

@@ -4,16 +4,14 @@
 
 #include <algorithm>
 
-#include "calibrate/doubts.hpp"
-#include "calibrate/folds.hpp"
 #include "check/guarantees/adaptation.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/conformal.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
+#include "episodes/data_warnings.hpp"
 #include "episodes/folds.hpp"
-#include "episodes/unmarked.hpp"
 
 namespace etlc::calibrate {
 
@@ -23,86 +21,54 @@ using check::ThresholdOrigin;
 using diag::Code;
 using diag::counted;
 
-class Refusing {
-public:
-    Refusing(const check::Model& model, diag::Sink& sink) : model_(model), sink_(sink) {}
-
-    void report(Index predicate, const Evidence& of, Refusal refusal) {
-        const check::Predicate& p = model_.predicates[predicate];
-        switch (refusal) {
-            case Refusal::no_positives: no_positives(p, of); break;
-            case Refusal::too_few: too_few(p, of); break;
-            case Refusal::not_finite:
-                sink_.report(Code::no_threshold, p.threshold.span,
-                             fmt::format("the score of '{}' at the rank of alpha = {} is infinite: "
-                                         "no threshold lies beyond it",
-                                         p.name, p.threshold.alpha));
-                break;
-            case Refusal::no_f1:
-                sink_.report(
-                    Code::no_threshold, p.threshold.span,
-                    fmt::format(
-                        "no observed value as threshold of '{}' finds a positive frame; it has {}",
-                        p.name, counted(of.positives, "positive frame")));
-                break;
+void refuse(const check::Model& model, const check::Predicate& p, const Evidence& of,
+            Refusal refusal, diag::Sink& sink) {
+    const std::string all = counted(of.demonstrations, "demonstration");
+    switch (refusal) {
+        case Refusal::no_positives: {
+            auto& error = sink.report(
+                Code::no_positive_frame, p.threshold.span,
+                of.positives == 0
+                    ? fmt::format("'{}' is true at no frame of {}, so there is nothing to learn "
+                                  "its threshold from",
+                                  p.name, all)
+                    : fmt::format("the distance of '{}' is unknown at all {} where it is true, in "
+                                  "{}",
+                                  p.name, counted(of.positives, "frame"), all));
+            for (const check::Truth& truth : model.truths)
+                if (&model.predicates[truth.predicate] == &p)
+                    error.note(truth.span, "its truth is here");
+            break;
         }
+        case Refusal::too_few:
+            if (p.threshold.origin == ThresholdOrigin::class_conditional)
+                refuse_too_few(p.threshold, {of.reaches.size(), "positive frame"}, sink);
+            else
+                refuse_too_few(p.threshold,
+                               {of.worst.size(), "demonstration",
+                                fmt::format(" in which '{}' is true at some frame", p.name),
+                                "frame", of.demonstrations},
+                               sink);
+            break;
+        case Refusal::not_finite: refuse_infinite(p.name, p.threshold, "threshold", sink); break;
+        case Refusal::no_f1:
+            sink.report(
+                Code::no_threshold, p.threshold.span,
+                fmt::format("no observed value as threshold of '{}' finds a positive frame; it "
+                            "has {}",
+                            p.name, counted(of.positives, "positive frame")));
+            break;
     }
+}
 
-private:
-    void no_positives(const check::Predicate& p, const Evidence& of) {
-        const std::string all = counted(of.demonstrations, "demonstration");
-        auto& error = sink_.report(
-            Code::no_positive_frame, p.threshold.span,
-            of.positives == 0
-                ? fmt::format("'{}' is true at no frame of {}, so there is nothing to learn its "
-                              "threshold from",
-                              p.name, all)
-                : fmt::format("the distance of '{}' is unknown at all {} where it is true, in {}",
-                              p.name, counted(of.positives, "frame"), all));
-        for (const check::Truth& truth : model_.truths)
-            if (&model_.predicates[truth.predicate] == &p)
-                error.note(truth.span, "its truth is here");
-    }
-
-    void too_few(const check::Predicate& p, const Evidence& of) {
-        const bool pooled = p.threshold.origin == ThresholdOrigin::class_conditional;
-        const std::uint64_t needed = check::scores_needed(p.threshold.alpha);
-        const std::uint64_t there = pooled ? of.reaches.size() : of.worst.size();
-        const std::string what = pooled ? "positive frame" : "demonstration";
-        auto& error = sink_.report(
-            Code::too_few_scores, p.threshold.span,
-            fmt::format("alpha = {} needs at least {}{}; there {} {}", p.threshold.alpha,
-                        counted(needed, what),
-                        pooled ? "" : fmt::format(" in which '{}' is true at some frame", p.name),
-                        there == 1 ? "is" : "are", there));
-        const std::uint64_t left_out = of.demonstrations - of.worst.size();
-        if (!pooled && left_out > 0)
-            error.note(fmt::format("of {}, {} without such a frame {} left out",
-                                   counted(of.demonstrations, "demonstration"), left_out,
-                                   left_out == 1 ? "is" : "are"));
-    }
-
-    const check::Model& model_;
-    diag::Sink& sink_;
-};
-
-thresholds::Entry entry_of(const check::Model& model, Index predicate, const Evidence& evidence,
-                           const Fitted& fitted) {
+thresholds::Entry entry_of_predicate(const check::Model& model, Index predicate,
+                                     const Evidence& evidence, const Fitted& fitted) {
     check::Provenance provenance = check::provenance(model, predicate);
     const check::Labelling labelling{evidence.demonstrations, {{predicate, evidence.from_array}}};
-    thresholds::Entry entry;
-    entry.method = check::method_name(model.predicates[predicate].threshold.origin);
-    entry.alpha = model.predicates[predicate].threshold.alpha;
-    entry.epsilon = fitted.epsilon;
-    entry.n = fitted.n;
-    entry.k = fitted.k;
-    entry.scores = fitted.scores;
-    entry.predicate = std::move(provenance.predicate);
-    entry.truth = check::labels(provenance.truth, predicate, labelling);
-    entry.targets = std::move(provenance.targets);
-    entry.targets.merge(provenance.truth_targets);
-    entry.reads = std::move(provenance.reads);
-    return entry;
+    provenance.truth = check::labels(provenance.truth, predicate, labelling);
+    provenance.targets.merge(provenance.truth_targets);
+    const check::Threshold& threshold = model.predicates[predicate].threshold;
+    return entry_of(threshold, check::method_name(threshold.origin), fitted, std::move(provenance));
 }
 
 }  // namespace
@@ -114,7 +80,8 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
         sink.report(Code::nothing_to_calibrate, model.monitors.front().span,
                     "nothing in this spec is calibrated")
             .note(
-                "a calibrated one is written: predicate p = min l2(z, t) <= calibrated(conformal, "
+                "write a calibrated threshold as: predicate p = min l2(z, t) <= "
+                "calibrated(conformal, "
                 "alpha = 0.1);");
         return std::nullopt;
     }
@@ -147,12 +114,11 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     for (const thresholds::Allowance& used : result.file.allowances)
         calibrated.reservations.push_back(thresholds::text(used));
     std::vector<Fitted> all;
-    Refusing refusing(model, sink);
     for (std::size_t i = 0; i < predicates.size(); ++i) {
         const check::Predicate& predicate = model.predicates[predicates[i]];
         const Fit fitted = fit(predicate, evidence[i]);
         if (const auto* refusal = std::get_if<Refusal>(&fitted)) {
-            refusing.report(predicates[i], evidence[i], *refusal);
+            refuse(model, predicate, evidence[i], *refusal, sink);
             continue;
         }
         if (const auto* out = std::get_if<OutOfRange>(&fitted)) {
@@ -171,7 +137,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
         threshold.n = all.back().n;
         threshold.k = all.back().k;
         result.file.predicates[predicate.name] =
-            entry_of(model, predicates[i], evidence[i], all.back());
+            entry_of_predicate(model, predicates[i], evidence[i], all.back());
     }
     if (sink.has_errors()) return std::nullopt;
     demonstrations.for_each([&](std::size_t, const episodes::Recorded& demonstration) {

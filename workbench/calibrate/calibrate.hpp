@@ -1,8 +1,7 @@
-// `etlc calibrate`: thresholds from labelled demonstrations.
-// Takes: a spec that may lack thresholds, and the episodes. Gives: the thresholds file and what a
-// person should know about it. Keeps true: the result is the same whatever the number of threads;
-// one episode a thread is open at a time; what voids the guarantee (too few demonstrations, one
-// that is given twice, one that is its own target) is refused.
+// `etlc calibrate`: computes thresholds from labelled demonstrations, and reports on them. The
+// result does not depend on the number of threads, and each thread has one episode open at a time.
+// Whatever voids the guarantee is refused: too few demonstrations, repeated ones, targets among
+// their frames.
 #pragma once
 
 #include <cstdint>
@@ -11,28 +10,27 @@
 #include <string>
 #include <vector>
 
+#include "artifacts/fitted.hpp"
+#include "artifacts/thresholds.hpp"
 #include "calibrate/fit.hpp"
 #include "calibrate/scores.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
 #include "episodes/shared/sharing.hpp"
-#include "fitted/fitted.hpp"
-#include "thresholds/thresholds.hpp"
 
 namespace etlc::calibrate {
 
 struct Request {
     std::vector<std::string> episodes;  ///< as data::find_episodes gives them
     data::NamesInFile names;
-    /// The reason for which overlaps are passed over; empty: they are not.
-    std::string allow_overlap;
-    fitted::File fitted;      ///< what is fitted in the model: its episodes are refused
-    unsigned jobs = 0;        ///< threads; 0: as many as the machine has
-    std::uint32_t folds = 0;  ///< without each of which thresholds are taken too; 0: none
-    std::string version;      ///< of etlc
-    /// Called now and then, by any thread, never by two at once.
+    std::string allow_overlap;  ///< reason to allow overlaps; empty: refuse them
+    fitted::File fitted;        ///< the model's fitted entries, whose episodes are refused
+    unsigned jobs = 0;          ///< threads; 0: as many as the machine has
+    std::uint32_t folds = 0;    ///< to report on thresholds without each fold; 0: none
+    std::string version;        ///< of etlc
+    /// Called occasionally, by any thread, never by two at once.
     std::function<void(std::size_t done, std::size_t total)> progress;
-    /// One shard of the episodes, or all of them; null: this process reads them all.
+    /// One shard of the episodes, or all shards; null: this process reads all episodes.
     episodes::Sharing* sharing = nullptr;
 };
 
@@ -41,14 +39,19 @@ struct Calibration {
     std::string report;
 };
 
-/// Nothing where the sink now says why.
+/// Calibrates the predicates. Returns nothing after an error, which it reports.
 std::optional<Calibration> calibrate(const check::Model& model, const Request& request,
                                      diag::Sink& sink);
 
-/// What the thresholds are, what they were taken from, and what they guarantee. `model` has them
-/// already.
+/// Describes the thresholds, their scores and their guarantees. `model` already has the thresholds.
 std::string report(const check::Model& model, const std::vector<Index>& predicates,
                    const std::vector<Evidence>& evidence, std::uint64_t frames,
                    const std::vector<Fitted>& fitted);
+
+/// Reports the thresholds without each fold, and their results on it; empty for 0 folds. They show
+/// how much the thresholds depend on single recordings, and guarantee nothing.
+std::string report_of_folds(const check::Model& model, const std::vector<Index>& predicates,
+                            const std::vector<Evidence>& evidence,
+                            const episodes::Identities& episodes, std::uint32_t folds);
 
 }  // namespace etlc::calibrate

@@ -1,18 +1,20 @@
-#include "calibrate/doubts.hpp"
-
+// Errors where no threshold can be fitted, and warnings about those that are doubtful.
 #include <fmt/format.h>
 
 #include <cmath>
 
+#include "calibrate/fit.hpp"
+#include "check/guarantees/conformal.hpp"
 #include "check/numbers/decimal.hpp"
-#include "episodes/label_doubts.hpp"
+#include "episodes/data_warnings.hpp"
 #include "episodes/ranking/auroc.hpp"
 
 namespace etlc::calibrate {
 
 namespace {
 
-/// Which part of the negative frames the threshold takes for positive; 0 where there are none.
+/// Returns the share of the negative frames that the threshold takes for positive, or 0 without
+/// any.
 double false_part(const check::Predicate& predicate, const Evidence& evidence,
                   const Fitted& fitted) {
     const float epsilon = predicate.upper_bound() ? fitted.epsilon : -fitted.epsilon;
@@ -26,6 +28,27 @@ double false_part(const check::Predicate& predicate, const Evidence& evidence,
 }
 
 }  // namespace
+
+void refuse_too_few(const check::Threshold& threshold, const TooFew& found, diag::Sink& sink) {
+    auto& error =
+        sink.report(diag::Code::too_few_scores, threshold.span,
+                    fmt::format("alpha = {} needs at least {}{}; there {} {}", threshold.alpha,
+                                diag::counted(check::scores_needed(threshold.alpha), found.noun),
+                                found.which, found.scores == 1 ? "is" : "are", found.scores));
+    if (found.all <= found.scores) return;
+    const std::uint64_t left_out = found.all - found.scores;
+    error.note(fmt::format("of {}, {} without such a {} {} left out",
+                           diag::counted(found.all, found.noun), left_out, found.unit,
+                           left_out == 1 ? "is" : "are"));
+}
+
+void refuse_infinite(const std::string& name, const check::Threshold& threshold, const char* what,
+                     diag::Sink& sink) {
+    sink.report(diag::Code::no_threshold, threshold.span,
+                fmt::format("the score of '{}' at the rank of alpha = {} is infinite: no {} lies "
+                            "beyond it",
+                            name, threshold.alpha, what));
+}
 
 void warn_of_large_alpha(const std::string& name, const check::Threshold& threshold,
                          diag::Sink& sink) {
@@ -57,15 +80,15 @@ void warn_of_doubts(const check::Predicate& predicate, const Evidence& evidence,
                          "ROC curve is {:.2f}, with a 95 % interval from {:.2f} to {:.2f}",
                          predicate.name, ranked->value, ranked->interval->low,
                          ranked->interval->high))
-            .note("0.5 is chance: look at the labels, the embedding and the targets");
+            .note("0.5 is chance: check the labels, the embedding and the targets");
         return;
     }
     const double part = false_part(predicate, evidence, fitted);
     if (part < kNearlyEvery) return;
-    warn(fmt::format("with the threshold {:.9g} '{}' is true of {:.0f} % of the frames of which it "
-                     "should be false",
+    warn(fmt::format("with the threshold {:.9g}, '{}' is true at {:.0f} % of the frames labelled "
+                     "false",
                      fitted.epsilon, predicate.name, std::floor(100 * part)))
-        .note("a weaker guarantee, more targets or other labels make it say more");
+        .note("a weaker guarantee, more targets or other labels may make it narrower");
 }
 
 }  // namespace etlc::calibrate

@@ -1,5 +1,7 @@
 #include "calibrate/fit.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -14,7 +16,7 @@ namespace {
 
 using check::ThresholdOrigin;
 
-/// true positives / (positives + found): half of F1, compared without rounding.
+/// Half of F1: true positives / (positives + claims), compared without rounding.
 struct HalfF1 {
     std::uint64_t true_positives = 0;
     std::uint64_t of = 1;
@@ -22,18 +24,18 @@ struct HalfF1 {
     double value() const {
         return 2 * static_cast<double>(true_positives) / static_cast<double>(of);
     }
-    /// Frames are fewer than 2^32 in any memory, so the products fit.
+    /// There are fewer than 2^32 frames, so the products fit.
     bool operator<(const HalfF1& other) const {
         return true_positives * other.of < other.true_positives * of;
     }
 };
 
-/// Goes over the scores of labelled frames, ascending, and finds the best of them as epsilon.
+/// Finds the score that is the best epsilon, from the scores of labelled frames in ascending order.
 class BestF1 {
 public:
     BestF1(std::uint64_t positives, bool strict) : positives_(positives), strict_(strict) {}
 
-    /// The next score, and how many frames have it.
+    /// Adds the next score and the numbers of frames that have it.
     void add(float score, std::uint64_t positives, std::uint64_t negatives) {
         if (is_best_ && !strict_ && !std::isinf(score)) other_ = score;
         is_best_ = false;
@@ -41,7 +43,7 @@ public:
         true_positives_ += positives;
         frames_ += positives + negatives;
         const HalfF1 here = strict_ ? below : HalfF1{true_positives_, positives_ + frames_};
-        // Of equals the first is the strictest.
+        // The first of equals is the strictest.
         if (!std::isinf(score) && best_ < here) {
             best_ = here;
             taken_ = score;
@@ -53,9 +55,8 @@ public:
 
     const HalfF1& best() const { return best_; }
     std::uint64_t frames() const { return frames_; }
-    /// The scores between which epsilon may lie and say the same of all frames: the one that was
-    /// taken, and of <= the next above it, of < the next below. Ascending; the one alone where
-    /// there is no finite other.
+    /// Returns the scores, ascending, between which epsilon makes the same claims: the one taken,
+    /// and the next above it (for <=) or below it (for <) if that is finite.
     std::vector<float> gap() const {
         if (!other_) return {taken_};
         return strict_ ? std::vector{*other_, taken_} : std::vector{taken_, *other_};
@@ -69,12 +70,12 @@ private:
     std::uint64_t frames_ = 0;
     HalfF1 best_;
     float taken_ = 0;
-    bool is_best_ = false;  ///< the score before this one
+    bool is_best_ = false;  ///< the previous score is the best so far
     std::optional<float> before_;
     std::optional<float> other_;
 };
 
-/// The k-th smallest of n, k the rank of alpha. `kth(k)` gives it.
+/// Fits a threshold beyond the score at the rank of alpha; `kth(k)` returns the k-th smallest of n.
 template <class Kth>
 Fit ranked(std::uint64_t n, const std::string& alpha, const Kth& kth) {
     Fitted result;
@@ -90,7 +91,7 @@ Fit ranked(std::uint64_t n, const std::string& alpha, const Kth& kth) {
     return result;
 }
 
-/// Of all positive frames.
+/// Fits a threshold to all positive frames.
 Fit fit_rank(const data::Sorted<Evidence::Reach>& reaches, const std::string& alpha,
              const Counts& counts) {
     std::uint64_t n = 0;
@@ -105,6 +106,35 @@ Fit fit_rank(const data::Sorted<Evidence::Reach>& reaches, const std::string& al
 }
 
 }  // namespace
+
+thresholds::Entry entry_of(const check::Threshold& threshold, std::string_view method,
+                           const Fitted& fitted, check::Provenance provenance) {
+    thresholds::Entry entry;
+    entry.method = method;
+    entry.alpha = threshold.alpha;
+    entry.epsilon = fitted.epsilon;
+    entry.n = fitted.n;
+    entry.k = fitted.k;
+    entry.scores = fitted.scores;
+    entry.predicate = std::move(provenance.predicate);
+    entry.truth = std::move(provenance.truth);
+    entry.targets = std::move(provenance.targets);
+    entry.reads = std::move(provenance.reads);
+    return entry;
+}
+
+std::string describe_place(const Fitted& fitted, bool upper_bound, const std::string& each) {
+    const std::uint64_t last = fitted.k % 10;
+    const bool teen = fitted.k / 10 % 10 == 1;
+    const char* const ending = teen        ? "th"
+                               : last == 1 ? "st"
+                               : last == 2 ? "nd"
+                               : last == 3 ? "rd"
+                                           : "th";
+    return fmt::format("just {} the {}{} {} of {}, one per {}", upper_bound ? "above" : "below",
+                       fitted.k, ending, upper_bound ? "smallest" : "greatest",
+                       diag::counted(fitted.n, "score"), each);
+}
 
 void mirror(Fitted& fitted, bool upper_bound) {
     if (!upper_bound) {

@@ -1,31 +1,34 @@
-// From scores to thresholds.
-// Takes: what demonstrations say of a predicate. Gives: epsilon, or why there is none.
-// Keeps true: Definitions "F1-Optimal Threshold" and "Conformal Calibration Threshold" (Kapoor et
-// al.), mirrored for >= and >; what an F1-optimal threshold says of the frames that it is from is
-// what the definition's says; the rank is never clamped: too few demonstrations are an error.
+// Computes thresholds from scores, by the definitions "F1-Optimal Threshold" and "Conformal
+// Calibration Threshold" (Kapoor et al.), mirrored for >= and >. The rank is never clamped: too few
+// demonstrations are an error.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
-#include "calibrate/evidence.hpp"
+#include "artifacts/thresholds.hpp"
+#include "calibrate/scores.hpp"
+#include "check/guarantees/provenance.hpp"
+#include "diag/diag.hpp"
 
 namespace etlc::calibrate {
 
 struct Fitted {
-    float epsilon = 0;    ///< of an adaptive threshold: before it is put on its grid
-    std::uint64_t n = 0;  ///< scores: demonstrations (conformal) or frames
+    float epsilon = 0;    ///< for an adaptive threshold: before rounding to its grid
+    std::uint64_t n = 0;  ///< number of scores: demonstrations (conformal) or frames
     std::uint64_t k = 0;  ///< rank taken; 0 for f1
-    /// Conformal: all, as far out as any build may measure them, ascending. Class-conditional: the
-    /// one taken. F1: that one and the next, where epsilon is halfway between them.
+    /// Conformal: all scores, as far out as any build may measure them, ascending.
+    /// Class-conditional: the score taken. F1: the score taken, and the next if epsilon is halfway
+    /// between the two.
     std::vector<double> scores;
-    double f1 = 0;  ///< f1: what epsilon reaches on the frames that it was chosen on
+    double f1 = 0;  ///< f1: the F1 of epsilon on the frames that it was chosen on
 };
 
-/// Why no threshold can be had, in the order in which it is looked for.
+/// Reasons why there is no threshold, in the order in which they are checked.
 enum class Refusal : std::uint8_t {
     no_positives,  ///< no frame with a known distance is positive
     too_few,       ///< the rank is beyond the scores
@@ -46,17 +49,46 @@ inline constexpr auto kAll = [](std::uint32_t) { return true; };
 
 Fit fit(const check::Predicate& predicate, const Evidence& evidence, const Counts& counts = kAll);
 
-/// From scores of which a smaller one is always better, to thresholds and scores as they are
-/// compared: those of >= and > change their sign. Scores are ascending after it.
+/// Returns an entry of the thresholds file.
+thresholds::Entry entry_of(const check::Threshold& threshold, std::string_view method,
+                           const Fitted& fitted, check::Provenance provenance);
+
+/// Describes the place of a threshold: "just above the 19th smallest of 20 scores, one per
+/// demonstration", where `each` is a demonstration. Lower bounds lie below the greatest scores.
+std::string describe_place(const Fitted& fitted, bool upper_bound, const std::string& each);
+
+/// Restores the sign of a threshold and its scores, which are negated for >= and > so that smaller
+/// ones are better, and sorts the scores.
 void mirror(Fitted& fitted, bool upper_bound);
 
-/// The first float32 strictly beyond the k-th smallest, k the rank of alpha.
+/// Returns the first float32 strictly above the k-th smallest score, where k is the rank of alpha.
 Fit fit_rank(std::vector<double> reaches, const std::string& alpha);
 
-/// Epsilon such that `score <= epsilon`, or < where `strict`, has the greatest F1 that a score as
-/// epsilon has; of equals it is the least. From that score it is moved halfway to the next that
-/// says another thing, where there is one: of these frames that says the same. Of all labelled
-/// frames of the demonstrations that count.
+/// Finds the score that has the greatest F1 as epsilon in `score <= epsilon` (< if `strict`), over
+/// the labelled frames of the demonstrations that count; ties go to the least. Then moves epsilon
+/// halfway to the next score, which changes the claim for none of these frames.
 Fit fit_f1(const episodes::FramesByScore& labelled, bool strict, const Counts& counts = kAll);
+
+/// A number of scores that is too small for alpha.
+struct TooFew {
+    std::uint64_t scores = 0;
+    std::string noun;       ///< what gives a score: "demonstration"
+    std::string which{};    ///< " in which 'p' is true at some frame"
+    std::string unit{};     ///< "frame" or "step", missing in those left out
+    std::uint64_t all = 0;  ///< scores and those left out; 0: none was left out
+};
+void refuse_too_few(const check::Threshold& threshold, const TooFew& found, diag::Sink& sink);
+/// Reports that no threshold or shift (`what`) lies beyond an infinite score.
+void refuse_infinite(const std::string& name, const check::Threshold& threshold, const char* what,
+                     diag::Sink& sink);
+
+/// Warns about alpha > 0.5 of the predicate or monitor `name`.
+void warn_of_large_alpha(const std::string& name, const check::Threshold& threshold,
+                         diag::Sink& sink);
+
+/// Warns about doubtful labels, a distance that does not tell them apart, a threshold so wide that
+/// nearly every frame is within, and a large alpha. Silent where too few episodes leave it open.
+void warn_of_doubts(const check::Predicate& predicate, const Evidence& evidence,
+                    const Fitted& fitted, diag::Sink& sink);
 
 }  // namespace etlc::calibrate

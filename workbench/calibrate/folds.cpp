@@ -1,10 +1,10 @@
-#include "calibrate/folds.hpp"
-
+// Thresholds without each fold, and their results on it.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
+#include "calibrate/shift.hpp"
 #include "check/guarantees/adaptation.hpp"
 #include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
@@ -15,13 +15,13 @@ namespace {
 
 using diag::counted;
 
-/// Of one predicate or monitor, over all folds.
+/// Results of a predicate or monitor over all folds.
 struct HeldOut {
     float least = std::numeric_limits<float>::infinity();  ///< threshold
     float greatest = -std::numeric_limits<float>::infinity();
-    std::uint64_t without_threshold = 0;  ///< folds whose others give none
-    std::uint64_t episodes = 0;           ///< with something to miss
-    std::uint64_t covered = 0;            ///< of them, nothing was missed
+    std::uint64_t without_threshold = 0;  ///< folds without which there is no threshold
+    std::uint64_t episodes = 0;           ///< held-out episodes with something to miss
+    std::uint64_t covered = 0;            ///< those in which nothing was missed
     std::uint64_t hits = 0;               ///< frames
     std::uint64_t false_alarms = 0;
     std::uint64_t misses = 0;
@@ -34,7 +34,7 @@ struct HeldOut {
     std::string text(const std::string& name, std::uint32_t folds, const char* what) const {
         std::string text = fmt::format("    {}: ", name);
         if (least <= greatest)
-            text += fmt::format("{:.7g} to {:.7g}; held out, nothing is missed in {} of {}", least,
+            text += fmt::format("{:.7g} to {:.7g}; held out, {} of {} miss nothing", least,
                                 greatest, covered, counted(episodes, what));
         if (const std::uint64_t frames = 2 * hits + false_alarms + misses; frames > 0)
             text += fmt::format(", F1 of the frames {:.3f}",
@@ -51,7 +51,7 @@ std::string heading(std::uint32_t folds) {
                        folds);
 }
 
-/// What the threshold gets right in the demonstrations of a fold, which it was not taken from.
+/// Adds the results of the threshold in the demonstrations of the fold that it was fitted without.
 void judge(const check::Predicate& predicate, float threshold, const Evidence& evidence,
            const Counts& in_fold, HeldOut& result) {
     struct Positives {
@@ -77,50 +77,16 @@ void judge(const check::Predicate& predicate, float threshold, const Evidence& e
     }
 }
 
-HeldOut held_out(const check::Predicate& predicate, const Evidence& evidence,
-                 const std::vector<std::uint32_t>& fold_of, std::uint32_t folds) {
+/// Calls `judge_fold(fold, fitted, result)` with the fit that `fit_others(fold)` returns for each.
+template <class FitOthers, class Judge>
+HeldOut held_out(std::uint32_t folds, const FitOthers& fit_others, const Judge& judge_fold) {
     HeldOut result;
     for (std::uint32_t fold = 0; fold < folds; ++fold) {
-        const auto in_fold = [&](std::uint32_t d) { return fold_of[d] == fold; };
-        const Fit found = fit(predicate, evidence, [&](std::uint32_t d) { return !in_fold(d); });
-        const auto* fitted = std::get_if<Fitted>(&found);
-        if (fitted == nullptr) {
+        Fit found = fit_others(fold);
+        if (auto* fitted = std::get_if<Fitted>(&found))
+            judge_fold(fold, *fitted, result);
+        else
             ++result.without_threshold;
-            continue;
-        }
-        const auto& moves = predicate.threshold.adaptation;
-        const float threshold =
-            moves ? *check::start(*moves, fitted->epsilon, predicate.upper_bound())
-                  : fitted->epsilon;
-        result.add(threshold);
-        judge(predicate, threshold, evidence, in_fold, result);
-    }
-    return result;
-}
-
-HeldOut held_out(const check::Monitor& monitor, const std::vector<MonitorScores>& episodes,
-                 std::size_t of, const std::vector<std::uint32_t>& fold_of, std::uint32_t folds) {
-    HeldOut result;
-    for (std::uint32_t fold = 0; fold < folds; ++fold) {
-        std::vector<double> others;
-        for (std::size_t e = 0; e < episodes.size(); ++e)
-            if (fold_of[e] != fold && episodes[e][of].steps > 0)
-                others.push_back(episodes[e][of].worst);
-        Fit found = fit_rank(std::move(others), monitor.calibration->threshold.alpha);
-        auto* fitted = std::get_if<Fitted>(&found);
-        if (fitted == nullptr) {
-            ++result.without_threshold;
-            continue;
-        }
-        const auto beyond = static_cast<double>(fitted->epsilon);
-        mirror(*fitted, monitor.calibration->against == check::Against::missed_alarm);
-        result.add(fitted->epsilon);
-        for (std::size_t e = 0; e < episodes.size(); ++e) {
-            const MonitorScore& score = episodes[e][of];
-            if (fold_of[e] != fold || score.steps == 0) continue;
-            ++result.episodes;
-            result.covered += score.worst < beyond ? 1 : 0;
-        }
     }
     return result;
 }
@@ -135,8 +101,20 @@ std::string report_of_folds(const check::Model& model, const std::vector<Index>&
     std::string text = heading(folds);
     for (std::size_t i = 0; i < predicates.size(); ++i) {
         const check::Predicate& predicate = model.predicates[predicates[i]];
-        text += held_out(predicate, evidence[i], fold_of, folds)
-                    .text(predicate.name, folds, "demonstration");
+        const auto fit_others = [&](std::uint32_t fold) {
+            return fit(predicate, evidence[i], [&](std::uint32_t d) { return fold_of[d] != fold; });
+        };
+        const auto judge_fold = [&](std::uint32_t fold, const Fitted& fitted, HeldOut& result) {
+            const auto& moves = predicate.threshold.adaptation;
+            const float threshold =
+                moves ? *check::start(*moves, fitted.epsilon, predicate.upper_bound())
+                      : fitted.epsilon;
+            result.add(threshold);
+            const auto in_fold = [&](std::uint32_t d) { return fold_of[d] == fold; };
+            judge(predicate, threshold, evidence[i], in_fold, result);
+        };
+        text +=
+            held_out(folds, fit_others, judge_fold).text(predicate.name, folds, "demonstration");
     }
     return text;
 }
@@ -149,7 +127,25 @@ std::string report_of_folds(const check::Model& model, const std::vector<Index>&
     std::string text = heading(folds);
     for (std::size_t i = 0; i < monitors.size(); ++i) {
         const check::Monitor& monitor = model.monitors[monitors[i]];
-        text += held_out(monitor, scores, i, fold_of, folds).text(monitor.name, folds, "episode");
+        const auto fit_others = [&](std::uint32_t fold) {
+            std::vector<double> others;
+            for (std::size_t e = 0; e < scores.size(); ++e)
+                if (fold_of[e] != fold && scores[e][i].steps > 0)
+                    others.push_back(scores[e][i].worst);
+            return fit_rank(std::move(others), monitor.calibration->threshold.alpha);
+        };
+        const auto judge_fold = [&](std::uint32_t fold, Fitted& fitted, HeldOut& result) {
+            const auto beyond = static_cast<double>(fitted.epsilon);
+            mirror(fitted, monitor.calibration->against == check::Against::missed_alarm);
+            result.add(fitted.epsilon);
+            for (std::size_t e = 0; e < scores.size(); ++e) {
+                const MonitorScore& score = scores[e][i];
+                if (fold_of[e] != fold || score.steps == 0) continue;
+                ++result.episodes;
+                result.covered += score.worst < beyond ? 1 : 0;
+            }
+        };
+        text += held_out(folds, fit_others, judge_fold).text(monitor.name, folds, "episode");
     }
     return text;
 }

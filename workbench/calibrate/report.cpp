@@ -1,4 +1,4 @@
-// What `etlc calibrate` says when it is done.
+// The report that `etlc calibrate` prints.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,36 +16,35 @@ using diag::counted;
 
 std::string how(const check::Predicate& predicate, const Fitted& fitted) {
     const check::Threshold& threshold = predicate.threshold;
-    const char* from = predicate.upper_bound() ? "smallest" : "greatest";
+    const auto place = [&](const char* each) {
+        return describe_place(fitted, predicate.upper_bound(), each);
+    };
     switch (threshold.origin) {
         case ThresholdOrigin::f1:
             return fmt::format("f1: {:.4f} on the {} it was chosen on; no guarantee", fitted.f1,
                                counted(fitted.n, "labelled frame"));
         case ThresholdOrigin::conformal:
             return fmt::format(
-                "conformal, alpha = {}: beyond score {} of {}, from the {}, one of each "
-                "demonstration\n"
+                "conformal, alpha = {}: {}\n"
                 "    a new demonstration is covered with probability >= 1 - {}; given these {}, "
-                "with {:.3f} to {:.3f} (5 % and 95 % quantile of Beta({}, {}), without ties)",
-                threshold.alpha, fitted.k, fitted.n, from, threshold.alpha, fitted.n,
+                "with {:.3f} to {:.3f} (5 % and 95 % quantiles of Beta({}, {}), without ties)",
+                threshold.alpha, place("demonstration"), threshold.alpha, fitted.n,
                 check::coverage_quantile(fitted.n, fitted.k, 0.05),
                 check::coverage_quantile(fitted.n, fitted.k, 0.95), fitted.k,
                 fitted.n + 1 - fitted.k);
         case ThresholdOrigin::class_conditional:
             return fmt::format(
-                "class_conditional, alpha = {}: beyond score {} of {}, from the {}, one of each "
-                "positive frame\n"
-                "    a positive frame is covered with probability >= 1 - {} where frames are "
+                "class_conditional, alpha = {}: {}\n"
+                "    a positive frame is covered with probability >= 1 - {} if frames are "
                 "exchangeable, which those of one recording seldom are; no guarantee for episodes",
-                threshold.alpha, fitted.k, fitted.n, from, threshold.alpha);
+                threshold.alpha, place("positive frame"), threshold.alpha);
         case ThresholdOrigin::adaptive: {
             const check::Adaptation& moves = *threshold.adaptation;
             return fmt::format(
-                "adaptive, alpha = {}, gamma = {}, in [{}, {}]: starts beyond score {} of {}, from "
-                "the {}, one of each demonstration\n"
-                "    of the first T labelled positive frames it misses at most {}, H being the "
-                "misses at which the end of its range held it back",
-                threshold.alpha, moves.gamma, moves.lo, moves.hi, fitted.k, fitted.n, from,
+                "adaptive, alpha = {}, gamma = {}, in [{}, {}]: starts {}\n"
+                "    of the first T labelled positive frames it misses at most {}, where H counts "
+                "the misses at the end of its range",
+                threshold.alpha, moves.gamma, moves.lo, moves.hi, place("demonstration"),
                 check::miss_bound(predicate));
         }
         case ThresholdOrigin::literal: break;
@@ -66,7 +65,7 @@ std::string predicate_report(const check::Model& model, Index index, const Evide
     text += '\n';
     if (evidence.from_array > 0)
         text += fmt::format(
-            "    labels of {} of {} are those of the array truth.{}, not of a truth in the spec\n",
+            "    labels of {} of {} come from the array truth.{}, not from a truth in the spec\n",
             evidence.from_array, counted(evidence.demonstrations, "demonstration"), predicate.name);
     const bool by_demonstration =
         predicate.threshold.origin == ThresholdOrigin::conformal || predicate.threshold.adaptation;
@@ -100,9 +99,9 @@ std::string monitor_report(const check::Model& model) {
     for (const std::string& reservation : model.reservations)
         text += fmt::format("    {}\n", reservation);
     return text +
-           "    Probabilities are over the demonstrations and the new episode together, which have "
-           "to be exchangeable, per episode as recorded.\n"
-           "    Where a sample is missing, what is said of successes does not hold.\n";
+           "    Probabilities are over the demonstrations and the new episode together, which must "
+           "be exchangeable, per episode as recorded.\n"
+           "    Bounds on successes exclude steps with missing samples.\n";
 }
 
 }  // namespace

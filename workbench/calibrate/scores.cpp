@@ -12,6 +12,19 @@ namespace etlc::calibrate {
 using check::ThresholdOrigin;
 using episodes::Label;
 
+void Evidence::add(const Scores& scores) {
+    const auto demonstration = static_cast<std::uint32_t>(demonstrations++);
+    from_array += scores.from_array ? 1 : 0;
+    positives += scores.positives;
+    negatives += scores.negatives;
+    unlabelled += scores.unlabelled;
+    unmeasured += scores.unmeasured;
+    if (scores.has_score) worst.push_back({scores.worst_reach, demonstration});
+    for (const double reach : scores.reaches) reaches.add({reach, demonstration});
+    for (const Scores::Labelled& frame : scores.labelled)
+        labelled.add({frame.score, demonstration, frame.positive});
+}
+
 std::vector<Index> calibrated_predicates(const check::Model& model) {
     std::vector<Index> found;
     for (Index i = 0; i < model.predicates.size(); ++i)

@@ -1,35 +1,35 @@
-// Nonconformity scores: what the calibrated predicates measured in one demonstration.
-// Takes: a demonstration. Gives: per calibrated predicate its score and the counts that the report
-// needs. Keeps true: distances come from the kernels that the monitor uses; memory is that of one
-// frame and of a number for every labelled one.
+// Nonconformity scores of the calibrated predicates. Distances come from the kernels that the
+// monitor uses. Memory is that of one frame and of a number per labelled frame.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "data/spill/sorted.hpp"
+#include "episodes/ranking/auroc.hpp"
 #include "episodes/replay.hpp"
 
 namespace etlc::calibrate {
 
 using check::Index;
 
-/// One predicate in one demonstration. Scores are negated for >= and >, so that a smaller one
-/// always is a better one.
+/// Scores of a predicate in one demonstration, negated for >= and > so that smaller ones are
+/// better.
 struct Scores {
     struct Labelled {
         float score = 0;
         bool positive = false;
     };
     std::uint64_t positives = 0;   ///< frames at which its truth holds
-    std::uint64_t negatives = 0;   ///< at which it does not
-    std::uint64_t unlabelled = 0;  ///< at which a missing sample leaves that open
+    std::uint64_t negatives = 0;   ///< frames at which it does not
+    std::uint64_t unlabelled = 0;  ///< frames at which a missing sample leaves it open
     std::uint64_t unmeasured = 0;  ///< positive or negative frames whose distance is unknown
-    bool from_array = false;       ///< labels are those of an array of the episode
+    bool from_array = false;       ///< labels come from an array of the episode
 
-    bool has_score = false;          ///< some positive frame was measured
-    double worst_reach = 0;          ///< the greatest score of one that any build may have measured
-    std::vector<double> reaches;     ///< class_conditional: those of all positive frames
+    bool has_score = false;          ///< at least one positive frame was measured
+    double worst_reach = 0;          ///< its greatest score in any build
+    std::vector<double> reaches;     ///< class_conditional: scores of all positive frames
     std::vector<Labelled> labelled;  ///< all measured frames
 };
 
@@ -54,10 +54,37 @@ void fields(Archive& archive, Demonstration& demonstration) {
     archive(static_cast<episodes::Recorded&>(demonstration), demonstration.scores);
 }
 
-/// Predicates of the model whose threshold is calibrated, in order.
+/// Scores of a predicate in all demonstrations. Memory is 16 bytes per demonstration and that of
+/// data::Sorted, however many frames there are.
+struct Evidence {
+    /// The greatest score that any build may have measured.
+    struct Reach {
+        double reach = 0;
+        std::uint32_t demonstration = 0;
+
+        bool operator<(const Reach& other) const {
+            return reach != other.reach ? reach < other.reach : demonstration < other.demonstration;
+        }
+    };
+
+    std::uint64_t demonstrations = 0;
+    std::uint64_t from_array = 0;  ///< demonstrations with an array of labels
+    std::uint64_t positives = 0;   ///< frames, as in Scores
+    std::uint64_t negatives = 0;
+    std::uint64_t unlabelled = 0;
+    std::uint64_t unmeasured = 0;
+    std::vector<Reach> worst;          ///< one per demonstration with a score
+    data::Sorted<Reach> reaches;       ///< class_conditional: one per positive frame
+    episodes::FramesByScore labelled;  ///< all measured frames; `episode` is the demonstration
+
+    /// Adds the next demonstration.
+    void add(const Scores& scores);
+};
+
+/// Returns the predicates with a calibrated threshold, in the order of the model.
 std::vector<Index> calibrated_predicates(const check::Model& model);
 
-/// Scores one demonstration after the other. Not shared between threads.
+/// Scores one demonstration after the other, on one thread.
 class Scorer {
 public:
     Scorer(const check::Model& model, const episodes::Leaks& leaks, std::vector<Index> predicates,

@@ -3,20 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <set>
 
-#include "calibrate/doubts.hpp"
-#include "calibrate/folds.hpp"
-#include "calibrate/shift_scores.hpp"
+#include "calibrate/bounds.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/conformal.hpp"
 #include "check/guarantees/guarantees.hpp"
 #include "check/guarantees/provenance.hpp"
+#include "check/numbers/decimal.hpp"
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
+#include "episodes/data_warnings.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
-#include "episodes/unmarked.hpp"
+#include "episodes/replay.hpp"
 #include "pipeline/compile.hpp"
 
 namespace etlc::calibrate {
@@ -24,6 +25,8 @@ namespace etlc::calibrate {
 namespace {
 
 using check::Against;
+using check::round_down;
+using check::round_up;
 using diag::Code;
 using diag::counted;
 
@@ -31,9 +34,104 @@ bool against_alarms(const check::Monitor& monitor) {
     return monitor.calibration->against == Against::missed_alarm;
 }
 
-/// What the ground truth does at the steps that give a score.
+/// Returns the ground truth's verdict at the steps that give a score.
 std::string_view truth_word(const check::Monitor& monitor) {
     return against_alarms(monitor) ? "violated" : "satisfied";
+}
+
+/// Returns the least and the greatest robustness of the predicate in any build.
+plan::Value spread(const check::Model& model, Index predicate, const plan::Evaluator& measured) {
+    const Interval delta = *interval_of(model, predicate, measured);
+    const check::Predicate& p = model.predicates[predicate];
+    const float epsilon = p.threshold.value;
+    const float low =
+        p.upper_bound() ? epsilon - round_up(delta.high) : round_down(delta.low) - epsilon;
+    const float high =
+        p.upper_bound() ? epsilon - round_down(delta.low) : round_up(delta.high) - epsilon;
+    return {etlmon::key_of(low), etlmon::key_of(high)};
+}
+
+/// Scores the calibrated monitors in one episode after the other, on one thread. Rho is as
+/// pessimistic as that of a verdict where samples are missing, and as high (low) as in any build
+/// otherwise. The arguments must outlive it.
+class MonitorScorer {
+public:
+    MonitorScorer(const check::Model& model, const MonitorPlans& plans,
+                  const episodes::Leaks& leaks, const std::vector<Index>& monitors,
+                  const data::NamesInFile& names);
+    MonitorScorer(const MonitorScorer&) = delete;
+    MonitorScorer& operator=(const MonitorScorer&) = delete;
+
+    /// Failures do not name the path.
+    diag::Result<MonitorEpisode> score(const std::string& path);
+
+private:
+    void note(std::vector<MonitorScore>& scores) const;
+
+    const check::Model& model_;
+    const std::vector<Index>& monitors_;
+    const data::NamesInFile& names_;
+    episodes::Follower highest_;  ///< the highest rho in any build
+    episodes::Follower lowest_;
+    episodes::Follower truths_;
+    episodes::Wanted wanted_;
+};
+
+MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plans,
+                             const episodes::Leaks& leaks, const std::vector<Index>& monitors,
+                             const data::NamesInFile& names)
+    : model_(model),
+      monitors_(monitors),
+      names_(names),
+      highest_(plans.monitors),
+      lowest_(plans.monitors),
+      truths_(plans.truths, &plans.ground_truth),
+      wanted_(episodes::wanted(model, {&plans.monitors, &plans.truths},
+                               episodes::labelled_predicates(plans.ground_truth), leaks)) {
+    plan::Evaluator& lowest = lowest_.evaluator();
+    lowest.replace_predicate_values([&](Index p) { return spread(model_, p, lowest); });
+    // A verdict reads the low end: the first end for a literal, the second for a negated one. With
+    // the ends exchanged it reads the highest in any build, and the range of a missing sample
+    // stays.
+    plan::Evaluator& highest = highest_.evaluator();
+    highest.replace_predicate_values([&](Index p) {
+        const plan::Value value = spread(model_, p, highest);
+        return plan::Value{value.high, value.low};
+    });
+}
+
+diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path) {
+    auto recording = episodes::Recording::open(wanted_, path, names_);
+    if (!recording) return recording.failure();
+    std::vector<MonitorScore> scores(monitors_.size());
+    const auto note_step = [&] {
+        note(scores);
+        return true;
+    };
+    const auto done =
+        episodes::replay(*recording, {&truths_, &highest_, &lowest_}, note_step, note_step);
+    if (!done) return done.failure();
+    MonitorEpisode result{recording->recorded(), std::move(scores), {}};
+    for (const Index predicate : wanted_.predicates)
+        if (recording->from_array(predicate)) result.from_arrays.push_back(predicate);
+    return result;
+}
+
+void MonitorScorer::note(std::vector<MonitorScore>& scores) const {
+    for (std::size_t i = 0; i < monitors_.size(); ++i) {
+        const Index monitor = monitors_[i];
+        if (!truths_.reports(monitor)) continue;
+        const etlmon::Verdict& truth = truths_.verdict(monitor);
+        MonitorScore& score = scores[i];
+        if (truth.unknown()) ++score.unknown;
+        const bool alarms =
+            model_.monitors[monitor].calibration->against == check::Against::missed_alarm;
+        if (alarms ? !truth.violated() : !truth.satisfied()) continue;
+        const double rho = alarms ? static_cast<double>(highest_.verdict(monitor).robustness)
+                                  : -static_cast<double>(lowest_.verdict(monitor).robustness);
+        score.worst = score.steps == 0 ? rho : std::max(score.worst, rho);
+        ++score.steps;
+    }
 }
 
 struct Totals {
@@ -57,47 +155,27 @@ struct Totals {
 void refuse(const check::Monitor& monitor, const Totals& totals, std::size_t episodes,
             Refusal refusal, diag::Sink& sink) {
     const check::Threshold& threshold = monitor.calibration->threshold;
-    if (refusal == Refusal::no_positives) {
+    if (refusal == Refusal::no_positives)
         sink.report(Code::no_positive_frame, threshold.span,
                     fmt::format("the ground truth of '{}' is {} at no step of {}, so there is "
                                 "nothing to learn its shift from",
                                 monitor.name, truth_word(monitor), counted(episodes, "episode")));
-    } else if (refusal == Refusal::too_few) {
-        auto& error = sink.report(
-            Code::too_few_scores, threshold.span,
-            fmt::format("alpha = {} needs at least {} in which the ground truth of '{}' is {} at "
-                        "some step; there {} {}",
-                        threshold.alpha, counted(check::scores_needed(threshold.alpha), "episode"),
-                        monitor.name, truth_word(monitor), totals.with_score == 1 ? "is" : "are",
-                        totals.with_score));
-        if (totals.with_score < episodes)
-            error.note(fmt::format("of {}, {} without such a step {} left out",
-                                   counted(episodes, "episode"), episodes - totals.with_score,
-                                   episodes - totals.with_score == 1 ? "is" : "are"));
-    } else {
-        sink.report(
-            Code::no_threshold, threshold.span,
-            fmt::format(
-                "the score of '{}' at the rank of alpha = {} is infinite: no shift lies beyond it",
-                monitor.name, threshold.alpha));
-    }
+    else if (refusal == Refusal::too_few)
+        refuse_too_few(threshold,
+                       {totals.with_score, "episode",
+                        fmt::format(" in which the ground truth of '{}' is {} at some step",
+                                    monitor.name, truth_word(monitor)),
+                        "step", episodes},
+                       sink);
+    else
+        refuse_infinite(monitor.name, threshold, "shift", sink);
 }
 
-thresholds::Entry entry_of(const check::Model& model, const check::Monitor& monitor,
-                           const Fitted& fitted, const episodes::Identities& episodes,
-                           const check::Labelling& labelling) {
-    check::Provenance provenance = check::provenance(model, monitor, labelling);
-    thresholds::Entry entry;
-    entry.method = "conformal";
-    entry.alpha = monitor.calibration->threshold.alpha;
-    entry.epsilon = fitted.epsilon;
-    entry.n = fitted.n;
-    entry.k = fitted.k;
-    entry.scores = fitted.scores;
-    entry.predicate = std::move(provenance.predicate);
-    entry.truth = std::move(provenance.truth);
-    entry.targets = std::move(provenance.targets);
-    entry.reads = std::move(provenance.reads);
+thresholds::Entry entry_of_monitor(const check::Model& model, const check::Monitor& monitor,
+                                   const Fitted& fitted, const episodes::Identities& episodes,
+                                   const check::Labelling& labelling) {
+    thresholds::Entry entry = entry_of(monitor.calibration->threshold, "conformal", fitted,
+                                       check::provenance(model, monitor, labelling));
     entry.against = check::word(monitor.calibration->against);
     episodes.for_each([&](std::size_t, const episodes::Recorded& episode) {
         entry.episodes.push_back(episodes::hash_of(episode));
@@ -109,13 +187,12 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
                            const Totals& totals, const Fitted& fitted, std::size_t episodes) {
     std::string text = fmt::format(
         "\n{}: rho of {} less {:.9g}\n"
-        "    conformal, alpha = {}: beyond score {} of {}, from the {}, one of each episode whose "
-        "ground truth is {} at some step\n"
+        "    conformal, alpha = {}: {} whose ground truth is {} at some step\n"
         "    {}; given these {}, with probability >= 1 - {:.3f} to 1 - {:.3f} (5 % and 95 % "
-        "quantile, without ties)\n",
+        "quantiles, without ties)\n",
         monitor.name, check::shown(model, monitor.formula), fitted.epsilon,
-        monitor.calibration->threshold.alpha, fitted.k, fitted.n,
-        against_alarms(monitor) ? "smallest" : "greatest", truth_word(monitor),
+        monitor.calibration->threshold.alpha,
+        describe_place(fitted, against_alarms(monitor), "episode"), truth_word(monitor),
         check::text(check::claims(model, monitor)[0]), fitted.n,
         1 - check::coverage_quantile(fitted.n, fitted.k, 0.05),
         1 - check::coverage_quantile(fitted.n, fitted.k, 0.95));
@@ -123,13 +200,12 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
         text += fmt::format("    {} without such a step left out\n",
                             counted(episodes - totals.with_score, "episode"));
     if (totals.unknown > 0)
-        text +=
-            fmt::format("    {} at which a missing label leaves the ground truth open skipped\n",
-                        counted(totals.unknown, "step"));
+        text += fmt::format("    {} skipped, where a missing label leaves the ground truth open\n",
+                            counted(totals.unknown, "step"));
     return text;
 }
 
-/// All that are not their own truth, and those that the first episode has an array of labels for.
+/// Returns the predicates that are not their own truth or have labels in the first episode.
 std::optional<std::vector<Index>> find_labelled(const check::Model& model,
                                                 const std::vector<Index>& monitors,
                                                 const Request& request, diag::Sink& sink) {
@@ -168,7 +244,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     const check::Model plain = unshifted(model);
     const episodes::GroundTruth truth = episodes::ground_truth(plain, *labelled);
     const auto compiled = pipeline::compile(plain, {}, sink);
-    // What is true is not a matter of rho.
+    // The truth does not depend on rho.
     const auto truths = pipeline::compile(truth.model, {{}, check::Values::boolean}, sink);
     if (!compiled || !truths) return std::nullopt;
     const MonitorPlans plans{compiled->plan, truths->plan, truth};
@@ -215,7 +291,8 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         fitted.scores = totals.scores;
         mirror(fitted, against_alarms(monitor));
         warn_of_large_alpha(monitor.name, monitor.calibration->threshold, sink);
-        result.file.monitors[monitor.name] = entry_of(model, monitor, fitted, recorded, labelling);
+        result.file.monitors[monitor.name] =
+            entry_of_monitor(model, monitor, fitted, recorded, labelling);
         result.report += monitor_report(model, monitor, totals, fitted, scored.size());
     }
     if (sink.has_errors()) return std::nullopt;

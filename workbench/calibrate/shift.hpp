@@ -1,9 +1,8 @@
-// Calibration of whole monitors: by how much rho has to be shifted.
-// Takes: a spec whose predicates have their thresholds, and labelled episodes that these were not
-// calibrated on. Gives: per calibrated monitor a shift. Keeps true: the score of an episode is the
-// greatest rho over the steps at which the ground-truth monitor is violated (against
-// missed_success: the least over those at which it is satisfied), in every build; the shift is
-// strictly beyond score k, so a covered episode has no such step with the wrong sign.
+// Calibration of whole monitors: the shift of rho of each calibrated monitor, from labelled
+// episodes on which the thresholds of its predicates were not calibrated. The score of an episode
+// is the greatest rho, in any build, over the steps at which the ground-truth monitor is violated
+// (against missed_success: the least rho over those at which it is satisfied). The shift is
+// strictly beyond score k, so no such step of a covered episode has the wrong sign.
 #pragma once
 
 #include <optional>
@@ -11,16 +10,16 @@
 #include <vector>
 
 #include "calibrate/calibrate.hpp"
-#include "episodes/ground_truth.hpp"
 #include "episodes/recording.hpp"
+#include "episodes/truth.hpp"
 #include "plan/plan.hpp"
 
 namespace etlc::calibrate {
 
-/// Monitors of the model that are calibrated as a whole.
+/// Returns the monitors that are calibrated as a whole.
 std::vector<Index> calibrated_monitors(const check::Model& model);
 
-/// The model without shifts: what its plan is made of.
+/// Returns the model without shifts, from which its plan is made.
 check::Model unshifted(check::Model model);
 
 /// Plans of the unshifted model and of its ground truth.
@@ -30,19 +29,19 @@ struct MonitorPlans {
     const episodes::GroundTruth& ground_truth;
 };
 
-/// One monitor in one episode. Scores are negated for missed_success, so that a smaller one always
-/// is a better one.
+/// The score of a monitor in one episode, negated for missed_success so that smaller ones are
+/// better.
 struct MonitorScore {
-    std::uint64_t steps = 0;    ///< at which the truth is what the monitor must not miss
-    std::uint64_t unknown = 0;  ///< at which a missing sample leaves that open
-    double worst = 0;           ///< where steps > 0: the worst rho over them in any build
+    std::uint64_t steps = 0;    ///< steps that the monitor must not miss
+    std::uint64_t unknown = 0;  ///< steps at which a missing sample leaves the truth open
+    double worst = 0;           ///< the worst rho in any build over these steps, if any
 };
 
 using MonitorScores = std::vector<MonitorScore>;  ///< per calibrated monitor
 
 struct MonitorEpisode : episodes::Recorded {
     MonitorScores scores;
-    std::vector<Index> from_arrays;  ///< predicates whose labels are those of an array of its
+    std::vector<Index> from_arrays;  ///< predicates with an array of labels
 };
 
 template <class Archive>
@@ -55,11 +54,16 @@ void fields(Archive& archive, MonitorEpisode& episode) {
     archive(static_cast<episodes::Recorded&>(episode), episode.scores, episode.from_arrays);
 }
 
-/// Shifts for the calibrated monitors, added to `before`, the file that has the thresholds of the
-/// predicates (or an empty one where all are literal). Labels are asked for of the predicates in
-/// these monitors that are not their own truth, or that the first episode has an array of labels
-/// for. Nothing where the sink now says why.
+/// Adds the shifts of the calibrated monitors to `before`, the file with the thresholds of the
+/// predicates, which is empty if all are literal. Labels are read for the predicates in these
+/// monitors that are not their own truth, and for those with an array of labels in the first
+/// episode. Returns nothing after an error, which it reports.
 std::optional<Calibration> calibrate_monitors(const check::Model& model, thresholds::File before,
                                               const Request& request, diag::Sink& sink);
+
+/// Reports the shifts without each fold, as for predicates. `scores` are per episode.
+std::string report_of_folds(const check::Model& model, const std::vector<Index>& monitors,
+                            const std::vector<MonitorScores>& scores,
+                            const episodes::Identities& episodes, std::uint32_t folds);
 
 }  // namespace etlc::calibrate

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "artifacts/embedded.hpp"
 #include "check/model/model.hpp"
 #include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
 #include "embed/encoder.hpp"
 #include "embed/recordings.hpp"
-#include "embedded/embedded.hpp"
 
 namespace etlc::embed {
 

@@ -7,9 +7,9 @@
 #include <bit>
 #include <cmath>
 
+#include "artifacts/embedded.hpp"
 #include "data/frames/protocol.hpp"
 #include "data/text/quote.hpp"
-#include "embedded/embedded.hpp"
 
 namespace etlc::embed {
 

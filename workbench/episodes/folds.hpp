@@ -1,7 +1,5 @@
-// Episodes dealt into folds, for cross-validation.
-// Takes: what was read of every episode, and the number of folds. Gives: the fold of each. Keeps
-// true: the content of the episodes alone decides, neither their names nor their order; folds are
-// disjoint, and their sizes differ by at most one.
+// Deals episodes into folds for cross-validation. Only their content decides, not their names or
+// their order. Folds are disjoint, and their sizes differ by at most one.
 #pragma once
 
 #include <cstddef>
@@ -14,19 +12,18 @@
 
 namespace etlc::episodes {
 
-/// The episodes in the order of their hashes, which is that of no recording session.
+/// Returns the episodes in the order of their hashes, which does not follow recording sessions.
 std::vector<std::size_t> by_content(const Identities& episodes);
 
-/// Per episode its fold, 0 to folds - 1: in that order, they are dealt in turn.
+/// Returns the fold of each episode, 0 to folds - 1: they are dealt in turn, in the order of
+/// by_content.
 std::vector<std::uint32_t> folds_of(const Identities& episodes, std::uint32_t folds);
 
-/// Whether there are enough of them; reports where not, E0690. Any number can be dealt into 0
-/// folds.
+/// Returns whether there are enough episodes, and reports E0690 where not. 0 folds always fit.
 bool can_be_dealt(std::size_t episodes, std::uint32_t folds, const check::Model& model,
                   diag::Sink& sink);
 
-/// Reads episodes for what tells them apart. Not shared between threads; all that it is given
-/// outlives it.
+/// Reads the identity of episodes. Not thread-safe; the arguments outlive it.
 class ContentScorer {
 public:
     ContentScorer(const check::Model& model, const data::NamesInFile& names);

@@ -17,7 +17,7 @@ namespace etlc::episodes {
 void report(const std::vector<Fault>& faults, std::size_t episodes, diag::Sink& sink) {
     constexpr std::size_t kMostKinds = 10;
     std::map<std::pair<diag::Code, std::string>, std::size_t> known;
-    std::vector<std::vector<std::string>> kinds;  // paths, in order of the first
+    std::vector<std::vector<std::string>> kinds;  // paths of each kind, in the order of the first
     std::vector<diag::Failure> failures;
     for (const Fault& fault : faults) {
         const auto [at, is_new] =
@@ -28,18 +28,18 @@ void report(const std::vector<Fault>& faults, std::size_t episodes, diag::Sink& 
         }
         kinds[at->second].push_back(fault.path);
     }
-    std::size_t told = 0;
+    std::size_t reported = 0;
     for (std::size_t i = 0; i < std::min(kinds.size(), kMostKinds); ++i) {
         const std::vector<std::string>& paths = kinds[i];
-        told += paths.size();
+        reported += paths.size();
         auto& error = sink.report(data::in_trace(failures[i], paths.front()));
         if (paths.size() > 1)
-            error.note(fmt::format("this is wrong with {} of {} episodes, also with {}",
+            error.note(fmt::format("the same is wrong with {} of {} episodes, also with {}",
                                    paths.size(), episodes,
                                    data::listed({paths.begin() + 1, paths.end()})));
-        if (i + 1 == kMostKinds && told < faults.size())
+        if (i + 1 == kMostKinds && reported < faults.size())
             error.note(fmt::format("of {} episodes, {} more are wrong in other ways", episodes,
-                                   faults.size() - told));
+                                   faults.size() - reported));
     }
 }
 

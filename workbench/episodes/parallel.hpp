@@ -1,8 +1,6 @@
-// Episodes, several at a time.
-// Takes: what reads one episode, a copy for every thread. Gives: what it made of each, in the order
-// of the paths. Keeps true: the order, and which failures are reported, do not depend on the number
-// of threads. Threads that cannot be made are done without, and so are those for which memory is
-// too short, as long as one can work.
+// Reads several episodes at a time. The order of results and the failures reported do not depend on
+// the number of threads. A thread that cannot be started, or runs out of memory, is done without as
+// long as another works.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +20,7 @@
 
 namespace etlc::episodes {
 
-/// What is wrong with an episode.
+/// An error in an episode.
 struct Fault {
     std::string path;
     diag::Failure failure;
@@ -31,48 +29,15 @@ struct Fault {
 /// Reports each kind of fault once, with the other episodes that have it, out of `episodes`.
 void report(const std::vector<Fault>& faults, std::size_t episodes, diag::Sink& sink);
 
-/// `work` in this thread and in others: in as many as asked for (0: as the machine has cores), at
-/// most `most`, and no more than can be started. All have returned at the end. Gives: the first
-/// exception that ended one of them.
+/// Runs `work` in this thread and in others: as many as asked for (0: one per core), at most
+/// `most`, and no more than can be started. Returns when all have ended, with the first exception
+/// that ended one of them.
 std::exception_ptr in_threads(unsigned asked, std::size_t most, const std::function<void()>& work);
 
-/// `make()` gives the reader of a thread, whose `score(path)` a diag::Result<T>. Nothing where an
-/// episode cannot be read: the sink then says why. Of the request it uses `jobs` and `progress`.
-template <class T, class Request, class Make>
-std::optional<std::vector<T>> over_episodes(const std::vector<std::string>& paths,
-                                            const Request& request, diag::Sink& sink, Make make) {
-    std::vector<std::optional<diag::Result<T>>> results(paths.size());
-    std::atomic<std::size_t> next = 0;
-    std::size_t done = 0;
-    std::mutex reporting;
-    const auto work = [&] {
-        const auto reader = make();
-        for (std::size_t i = next++; i < paths.size(); i = next++) {
-            results[i].emplace(data::within_memory([&] { return reader->score(paths[i]); }));
-            const std::lock_guard lock(reporting);
-            ++done;
-            if (request.progress) request.progress(done, paths.size());
-        }
-    };
-    const std::exception_ptr failure = in_threads(request.jobs, paths.size(), work);
-    if (failure && done < paths.size()) std::rethrow_exception(failure);
-
-    std::vector<T> all;
-    std::vector<Fault> faults;
-    for (std::size_t i = 0; i < paths.size(); ++i) {
-        if (*results[i])
-            all.push_back(std::move(**results[i]));
-        else
-            faults.push_back({paths[i], results[i]->failure()});
-    }
-    report(faults, paths.size(), sink);
-    if (!faults.empty()) return std::nullopt;
-    return all;
-}
-
-/// The same, where what was made of all episodes is too much to be kept: `take(i, result)` gets
-/// each in the order of the paths, never two at once, and few wait for their turn. False where an
-/// episode cannot be read: the sink then says why.
+/// Reads all episodes: `make()` makes the reader of a thread, whose `score(path)` returns a
+/// diag::Result<T>; `take(i, result)` gets each in the order of the paths, never two at once, and
+/// few wait for their turn. Returns false after an error in some episode. Uses `jobs` and
+/// `progress` of the request.
 template <class T, class Request, class Make, class Take>
 bool in_order(const std::vector<std::string>& paths, const Request& request, diag::Sink& sink,
               Make make, Take take) {
@@ -95,7 +60,7 @@ bool in_order(const std::vector<std::string>& paths, const Request& request, dia
         ++turn;
         if (request.progress) request.progress(turn, paths.size());
     };
-    bool broken = false;  // nobody waits for a turn that does not come
+    bool broken = false;  // a thread failed: its turn will not come
     const auto read = [&](auto& reader) {
         for (std::size_t i = next++; i < paths.size(); i = next++) {
             auto result = data::within_memory([&] { return reader.score(paths[i]); });
@@ -122,6 +87,17 @@ bool in_order(const std::vector<std::string>& paths, const Request& request, dia
     if (failure && turn < paths.size()) std::rethrow_exception(failure);
     report(faults, paths.size(), sink);
     return faults.empty();
+}
+
+/// Reads all episodes as in_order does, and returns all results.
+template <class T, class Request, class Make>
+std::optional<std::vector<T>> over_episodes(const std::vector<std::string>& paths,
+                                            const Request& request, diag::Sink& sink, Make make) {
+    std::vector<T> all;
+    if (!in_order<T>(paths, request, sink, make,
+                     [&](std::size_t, T&& one) { all.push_back(std::move(one)); }))
+        return std::nullopt;
+    return all;
 }
 
 }  // namespace etlc::episodes

@@ -18,9 +18,9 @@ public:
         x = (x ^ (x >> 27U)) * 0x94d049bb133111ebU;
         return x ^ (x >> 31U);
     }
-    /// 0 to n - 1, n below 2^32; the bias is below n / 2^64.
+    /// Returns 0 to n - 1, n below 2^32; the bias is below n / 2^64.
     std::uint64_t below(std::uint64_t n) { return next() % n; }
-    /// From 0 to below 1.
+    /// Returns a number in [0, 1).
     double unit() { return static_cast<double>(next() >> 11U) * 0x1p-53; }
 
 private:

@@ -3,15 +3,110 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
+#include <utility>
 
+#include "artifacts/embedded.hpp"
 #include "check/encoders/encoders.hpp"
 #include "data/datasets/trace.hpp"
 #include "data/text/quote.hpp"
-#include "embedded/embedded.hpp"
-#include "episodes/unmarked.hpp"
+#include "episodes/data_warnings.hpp"
 
 namespace etlc::episodes {
+
+namespace {
+
+using check::Input;
+using check::InputType;
+
+/// Samples of fewer bits coincide by chance.
+constexpr std::uint32_t kBitsThatTell = 32;
+
+std::uint32_t bits_of(const Input& input) {
+    switch (input.type) {
+        case InputType::f32: return 32 * input.dimension;
+        case InputType::f16: return 16 * input.dimension;
+        case InputType::i8: return 8 * input.dimension;
+        case InputType::scalar:
+        case InputType::boolean: break;
+    }
+    return 0;
+}
+
+/// Names an input with its declaration, because another declaration changes the samples that the
+/// monitor sees.
+std::string name_of(const Input& input) {
+    std::string name = input.name;
+    if (input.type == InputType::f16) name += " f16";
+    if (input.type == InputType::i8) name += fmt::format(" i8 scale {:.9g}", input.scale);
+    if (input.has_range)
+        name += fmt::format(" in [{:.9g}, {:.9g}]", input.range.low, input.range.high);
+    if (input.hold > 0) name += fmt::format(" hold {}", input.hold);
+    if (input.missing) name += *input.missing ? " missing true" : " missing false";
+    return name;
+}
+
+std::vector<data::HashedInput> hashed(const check::Model& model, const std::vector<Index>& inputs) {
+    std::vector<data::HashedInput> result;
+    for (const Index index : inputs) {
+        const Input& input = model.inputs[index];
+        result.push_back({name_of(input), input.dimension, bits_of(input) >= kBitsThatTell});
+    }
+    return result;
+}
+
+/// Written so that compilers vectorise it.
+bool are_finite(const std::vector<float>& values) {
+    bool finite = true;
+    for (const float x : values) finite &= std::abs(x) <= std::numeric_limits<float>::max();
+    return finite;
+}
+
+bool is_there(const Input& input, const plan::Sample& sample) {
+    return sample.present && !sample.values.empty() && are_finite(sample.values) &&
+           (input.type != InputType::scalar || input.range.contains(sample.values[0]));
+}
+
+void see_as(const Input& input, const std::vector<float>& values, std::vector<float>& seen) {
+    seen.resize(values.size());
+    const bool is_bool = input.type == InputType::boolean;
+    if (is_bool) seen[0] = values[0] != 0 ? 1 : 0;
+    for (std::size_t i = is_bool ? 1 : 0; i < values.size(); ++i)
+        seen[i] = values[i] + 0.0F;  // -0 becomes 0
+}
+
+}  // namespace
+
+Seen::Seen(const check::Model& model, std::vector<Index> inputs)
+    : model_(model),
+      inputs_(std::move(inputs)),
+      held_(inputs_.size()),
+      seen_(inputs_.size()),
+      hash_(hashed(model, inputs_)) {}
+
+void Seen::add(const std::vector<plan::Sample>& samples) {
+    for (std::size_t i = 0; i < inputs_.size(); ++i)
+        see(model_.inputs[inputs_[i]], samples[inputs_[i]], held_[i], seen_[i]);
+    hash_.add(seen_);
+}
+
+/// Applies range, `hold` and `missing` as plan::Evaluator does.
+void Seen::see(const Input& input, const plan::Sample& sample, Held& held,
+               std::vector<float>& seen) const {
+    seen.clear();
+    if (is_there(input, sample)) {
+        see_as(input, sample.values, seen);
+        if (input.hold > 0) held = {seen, 0};
+        return;
+    }
+    if (!held.values.empty() && held.age < input.hold)
+        seen = held.values;
+    else if (input.missing)
+        seen.push_back(*input.missing ? 1 : 0);
+    if (held.age < input.hold) ++held.age;
+}
 
 namespace {
 
@@ -31,7 +126,7 @@ std::string array_name(const check::Model& model, Index predicate) {
     return "truth." + model.predicates[predicate].name;
 }
 
-/// What an episode is opened with: the inputs, then an array of labels for every predicate.
+/// Returns the channels to open: the inputs, then an array of labels for every predicate.
 std::vector<Channel> channels_of(const Wanted& wanted, const std::vector<Index>& inputs,
                                  const std::vector<bool>& required) {
     std::vector<Channel> channels;
@@ -44,7 +139,7 @@ std::vector<Channel> channels_of(const Wanted& wanted, const std::vector<Index>&
     return channels;
 }
 
-/// Inputs that are wanted, and those that truths read.
+/// Returns the wanted inputs and those that truths read.
 std::vector<Index> inputs_of(const Wanted& wanted, const TruthEvaluator& truths) {
     std::set<Index> inputs(wanted.inputs.begin(), wanted.inputs.end());
     inputs.insert(truths.inputs().begin(), truths.inputs().end());
@@ -58,16 +153,16 @@ std::vector<Index> formulas_of(const check::Model& model, const std::vector<Inde
     return formulas;
 }
 
-/// `absent`: what opening the episode says where the array has to be there.
+/// `absent`: the error of opening the episode with the array required.
 Failure no_label(const check::Model& model, Index predicate, const Failure& absent) {
     return {Code::no_label,
-            fmt::format("does not say when '{}' holds, nor does a truth in the spec: {}",
+            fmt::format("does not say when '{}' holds, and the spec has no truth for it: {}",
                         model.predicates[predicate].name, absent.message),
             absent.line, absent.column};
 }
 
-/// Whether it does not say which encoder made the embeddings. Failures: that it was another than
-/// the spec's.
+/// Returns whether the episode fails to name the encoder of its embeddings. Fails where that is
+/// another than the spec's.
 diag::Result<bool> read_encoders(const Wanted& wanted, const std::string& path,
                                  const data::NamesInFile& names) {
     const check::Model& model = *wanted.model;
@@ -113,7 +208,7 @@ diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const st
     std::vector<Index> labelled;
     for (const check::Truth& truth : model.truths) labelled.push_back(truth.predicate);
     if (!asked.empty()) {
-        for (const Index input : identity_inputs(model))  // which tell the number of steps
+        for (const Index input : identity_inputs(model))  // they give the number of steps
             channels.push_back(channel_of(model.inputs[input]));
         const auto trace = data::open_trace(path, data::renamed(channels, names));
         if (!trace) return trace.failure();
@@ -145,7 +240,7 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
     std::vector<bool> required(model.inputs.size());
     for (const Index input : wanted.inputs) required[input] = true;
 
-    // What only truths read may be absent where arrays stand in for them.
+    // Inputs that only truths read may be absent where arrays replace these truths.
     Recording result(wanted);
     auto trace = open(channels_of(wanted, inputs, required));
     if (!trace) return trace.failure();
@@ -175,7 +270,7 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
         complete = complete && result.trace_->has(static_cast<std::size_t>(channel));
         required[input] = true;
     }
-    if (!complete) {  // the message about what is lacking is that of the file's format
+    if (!complete) {  // opening with these required gives the message of the file's format
         trace = open(channels_of(wanted, inputs, required));
         if (!trace) return trace.failure();
     }

@@ -1,10 +1,9 @@
-// One recorded episode, a frame after the other: what the monitor would have been given, and what
-// was true. Takes: what is wanted of an episode, and where it lies. Gives: per frame the samples in
-// the monitor's precision and the label of every predicate; at the end what tells it from others.
-// Keeps true: memory is that of one frame (and of the windows of truths); a Boolean array
-// `truth.NAME` in the episode stands in for the spec's `truth NAME`.
+// Reads a recorded episode frame by frame: the samples that the monitor would have got, and the
+// labels of predicates. A Boolean array `truth.NAME` in the episode replaces the spec's `truth
+// NAME`. Memory is that of one frame and of the windows of truths.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -16,31 +15,80 @@
 #include "data/recordings/episodes.hpp"
 #include "data/recordings/open.hpp"
 #include "data/spill/spool.hpp"
-#include "episodes/frames.hpp"
+#include "diag/diag.hpp"
 #include "episodes/leaks/leaks.hpp"
-#include "episodes/seen.hpp"
 #include "episodes/truth.hpp"
 #include "plan/evaluate/inputs.hpp"
 
 namespace etlc::episodes {
 
-struct Wanted {
-    const check::Model* model = nullptr;
-    std::vector<Index> inputs;      ///< whose samples are wanted, of the model
-    std::vector<Index> predicates;  ///< whose labels are wanted: named ones
-    std::vector<Index> identity;    ///< inputs that the hash is made of, all of them wanted too
-    const Leaks* leaks = nullptr;   ///< targets that no frame may be; null: all may
+/// Hashes the samples of an episode as the monitor sees them. Two files of one recording hash alike
+/// where the monitor could not distinguish them: float16 is rounded, missing samples are missing
+/// however they are written, `hold` replaces them, a bool is true or false, and a zero has no sign.
+class Seen {
+public:
+    /// The model outlives it.
+    Seen(const check::Model& model, std::vector<Index> inputs);
+
+    /// Adds the next frame; `samples`: by index of the model's inputs.
+    void add(const std::vector<plan::Sample>& samples);
+    /// Returns the hash of the frames so far.
+    const data::EpisodeHash& hash() const { return hash_; }
+
+private:
+    struct Held {
+        std::vector<float> values;
+        std::uint32_t age = 0;  ///< missing samples since then
+    };
+    void see(const check::Input& input, const plan::Sample& sample, Held& held,
+             std::vector<float>& seen) const;
+
+    const check::Model& model_;
+    std::vector<Index> inputs_;
+    std::vector<Held> held_;                ///< per input, the last present sample
+    std::vector<std::vector<float>> seen_;  ///< per input, of this frame; empty where missing
+    data::EpisodeHash hash_;
 };
 
-/// What an episode is told by once it has been read.
+/// The frames of an episode, in order, from a file (Recording) or from memory.
+class Frames {
+public:
+    virtual ~Frames() = default;
+
+    /// Reads the next frame; returns false at the end of the episode.
+    virtual diag::Result<bool> next() = 0;
+    /// Returns the samples of this frame by index of the model's inputs; unwanted ones are absent.
+    virtual const std::vector<plan::Sample>& samples() const = 0;
+    /// Returns the label of a wanted predicate in this frame.
+    virtual Label label(Index predicate) const = 0;
+    /// Returns the number of frames so far.
+    virtual std::uint64_t frames() const = 0;
+
+protected:
+    Frames() = default;
+    Frames(const Frames&) = default;
+    Frames(Frames&&) = default;
+    Frames& operator=(const Frames&) = default;
+    Frames& operator=(Frames&&) = default;
+};
+
+struct Wanted {
+    const check::Model* model = nullptr;
+    std::vector<Index> inputs;      ///< inputs of the model to read
+    std::vector<Index> predicates;  ///< named predicates whose labels are wanted
+    std::vector<Index> identity;    ///< inputs in the hash; all are in `inputs` too
+    const Leaks* leaks = nullptr;   ///< targets that no frame may equal; null: no check
+};
+
+/// The identity of an episode that has been read.
 struct Recorded {
     std::string path;
     std::string hash;  ///< 16 hex digits
     data::EpisodeContent content;
     std::uint64_t frames = 0;
-    std::optional<Leak> leak;    ///< the first one
-    std::vector<NearLeak> near;  ///< which LeakEvidence judges
-    bool is_unmarked = false;    ///< it does not say which encoder made its embeddings
+    std::optional<Leak> leak;    ///< the first leak
+    std::vector<NearLeak> near;  ///< judged by LeakEvidence
+    bool is_unmarked = false;    ///< it does not name the encoder of its embeddings
 };
 
 template <class Archive>
@@ -49,15 +97,15 @@ void fields(Archive& archive, Recorded& recorded) {
             recorded.near, recorded.is_unmarked);
 }
 
-/// Its hash as a number, as files of thresholds and of fitted things have it.
+/// Returns the hash as a number, as in files of thresholds and of fitted things.
 inline std::uint64_t hash_of(const Recorded& recorded) {
-    return data::hash_of_text(recorded.hash).value_or(0);  // which all of EpisodeHash are
+    return data::hash_of_text(recorded.hash).value_or(0);  // always valid in an EpisodeHash
 }
 
-/// Of all episodes of a call, in their order.
+/// The identities of all episodes of a call, in order.
 using Identities = data::Spool<Recorded>;
 
-/// What was read of them for more.
+/// Returns the identities of episodes.
 template <class Episodes>
 Identities recorded(const Episodes& episodes) {
     Identities result;
@@ -65,13 +113,12 @@ Identities recorded(const Episodes& episodes) {
     return result;
 }
 
-/// The inputs that predicates with a calibrated threshold read, in order of their names: two
-/// episodes with equal samples of these give equal scores, whatever else they hold. Without such a
-/// predicate, the inputs of all.
+/// Returns the inputs of predicates with a calibrated threshold, in order of their names: episodes
+/// that agree in these give equal scores. Without such a predicate, returns the inputs of all.
 std::vector<Index> identity_inputs(const check::Model& model);
 
-/// The predicates whose truth is known: from the spec, or from an array in the episode of that
-/// path. Failures do not name the path.
+/// Returns the predicates with a truth in the spec, or an array in this episode. Failures do not
+/// name the path.
 diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const std::string& path,
                                              const data::NamesInFile& names);
 
@@ -81,8 +128,8 @@ using Opener =
 
 class Recording final : public Frames {
 public:
-    /// Failures: what opening the trace fails with; no_label where a predicate has neither a truth
-    /// nor an array. They do not name the episode.
+    /// Opens an episode. Fails as opening the trace does, or with no_label where a predicate has
+    /// neither a truth nor an array. Failures do not name the episode.
     static diag::Result<Recording> open(const Wanted& wanted, const std::string& path,
                                         const data::NamesInFile& names);
     static diag::Result<Recording> open(const Wanted& wanted, const Opener& open);
@@ -90,13 +137,13 @@ public:
     diag::Result<bool> next() override;
     const std::vector<plan::Sample>& samples() const override { return samples_; }
     Label label(Index predicate) const override;
-    /// Whether its labels come from an array of the episode.
+    /// Returns whether its labels come from an array of the episode.
     bool from_array(Index predicate) const { return sources_[predicate].from_array; }
 
     std::uint64_t frames() const override { return frames_; }
-    /// Number of frames where the file tells it beforehand, else 0.
+    /// Returns the number of frames if the file gives it, else 0.
     std::uint64_t length() const { return trace_->length(); }
-    /// Of the frames so far; hash and content over the inputs of `identity`.
+    /// Returns the identity of the frames so far, over the inputs of `identity`.
     Recorded recorded() const {
         return {path_, seen_.hash().text(), seen_.hash().content(), frames_, leak_,
                 near_, is_unmarked_};
@@ -105,7 +152,7 @@ public:
 private:
     struct Source {
         bool from_array = false;
-        std::size_t channel = 0;  ///< of the array
+        std::size_t channel = 0;  ///< channel of the array
         Index formula = check::kNone;
     };
 
@@ -120,8 +167,8 @@ private:
     bool is_unmarked_ = false;
     Seen seen_;
     std::unique_ptr<data::Trace> trace_;
-    std::vector<Index> channel_inputs_;  ///< per channel of an input, that input
-    std::vector<bool> narrowed_;         ///< per such channel: its samples are wanted
+    std::vector<Index> channel_inputs_;  ///< per channel of an input, the input
+    std::vector<bool> narrowed_;         ///< per such channel: whether its samples are wanted
     std::vector<Source> sources_;        ///< per predicate of the model
     std::unique_ptr<TruthEvaluator> truth_;
     data::Sample sample_;

@@ -132,7 +132,7 @@ Label TruthEvaluator::value(Index index) {
         case always:
         case until:
         case weak_until:
-        case release: break;  // no future operator stands in a truth
+        case release: break;  // truths have no future operators
     }
     return Label::unknown;
 }
@@ -160,7 +160,7 @@ Label TruthEvaluator::compare(const check::Predicate& predicate) const {
                                       [&](Index input) { return values_[input].empty(); });
     const double delta = present ? expression(predicate.expression) : kUnknown;
     if (std::isnan(delta)) return Label::unknown;
-    // Samples are float32, and so is what a monitor takes as equal.
+    // Samples are float32, and monitors compare for equality in float32.
     if (predicate.equality())
         return label_of(check::holds(predicate.comparison, static_cast<float>(delta),
                                      predicate.threshold.value));
@@ -200,6 +200,47 @@ double TruthEvaluator::measure(const check::Distance& distance) const {
         point.insert(point.end(), values_[input].begin(), values_[input].end());
     point = check::projected(model_, distance.point, std::move(point));
     return exact_distance(model_, distance, point).value_or(kUnknown);
+}
+
+GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& labelled) {
+    GroundTruth result{model, std::vector<Index>(model.predicates.size(), check::kNone)};
+    for (const Index predicate : labelled) {
+        check::Input label;
+        label.name =
+            "truth." +
+            model.predicates[predicate].name;  // a dot keeps it apart from names of the spec
+        label.type = check::InputType::boolean;
+        label.span = model.predicates[predicate].span;
+        result.inputs[predicate] = static_cast<Index>(result.model.inputs.size());
+        result.model.inputs.push_back(std::move(label));
+    }
+    for (check::Formula& formula : result.model.formulas) {
+        if (formula.kind != check::Formula::Kind::predicate) continue;
+        const Index label = result.inputs[formula.index];
+        if (label == check::kNone) continue;
+        formula.kind = check::Formula::Kind::boolean_input;
+        formula.index = label;
+    }
+    for (check::Monitor& monitor : result.model.monitors) {
+        monitor.calibration.reset();  // the truth needs no shift
+        // It is asked about the positions of the monitor that it judges.
+        if (monitor.restarts == check::Restarts::when_final)
+            monitor.restarts = check::Restarts::on_request;
+    }
+    result.model.truths.clear();
+    return result;
+}
+
+std::vector<Index> labelled_predicates(const GroundTruth& truth) {
+    std::vector<Index> found;
+    for (Index predicate = 0; predicate < truth.inputs.size(); ++predicate)
+        if (truth.inputs[predicate] != check::kNone) found.push_back(predicate);
+    return found;
+}
+
+plan::Sample sample_of(Label label) {
+    if (label == Label::unknown) return {};
+    return {true, {label == Label::yes ? 1.0F : 0.0F}};
 }
 
 }  // namespace etlc::episodes

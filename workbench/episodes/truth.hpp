@@ -1,9 +1,7 @@
-// Ground truth: formulas over recorded inputs, present and past, one frame after the other.
-// Takes: formulas of the model without future operators, and the numbers of one frame a step, as
-// recorded. Gives: yes, no, or unknown where a missing sample leaves it open. Keeps true: computed
-// in double with exact comparisons, literals as written; a `hold` and a range apply as they do to
-// the monitor; the definitions are those of docs/language.md, read as Boolean; the work of a step
-// does not depend on the length of a window.
+// Evaluates truths: formulas over the present and past of recorded inputs, frame by frame, as
+// docs/language.md defines them, read as Boolean. A missing sample may leave a truth unknown.
+// Everything is computed in double with exact comparisons and literals as written; `hold` and
+// ranges apply as in the monitor. The work of a step does not depend on the length of a window.
 #pragma once
 
 #include <cstdint>
@@ -11,38 +9,39 @@
 #include <vector>
 
 #include "check/model/model.hpp"
+#include "plan/evaluate/inputs.hpp"
 
 namespace etlc::episodes {
 
 using check::Index;
 
-/// Ordered: && is the least, || the greatest, unknown in between (Kleene's strong logic).
+/// Ordered: && is the minimum, || the maximum, unknown in between (Kleene's strong logic).
 enum class Label : std::uint8_t { no, unknown, yes };
 
-/// The samples of one frame by index of the model's inputs; empty: missing. An int8 embedding holds
-/// its integers.
+/// The samples of one frame by index of the model's inputs, as recorded; empty where missing. An
+/// int8 embedding holds its integers.
 using Frame = std::vector<std::vector<double>>;
 
 class TruthEvaluator {
 public:
-    /// `formulas`: those whose value is asked for.
+    /// `formulas`: those to evaluate.
     TruthEvaluator(const check::Model& model, const std::vector<Index>& formulas);
 
     void reset();
     void step(const Frame& frame);
-    /// After the last step.
+    /// Returns the label after the last step.
     Label operator[](Index formula) const { return labels_[formula]; }
-    /// The inputs that the formulas read, ascending.
+    /// Returns the inputs that the formulas read, ascending.
     const std::vector<Index>& inputs() const { return inputs_; }
 
 private:
-    /// Of `f S[a,b] g`, and of O, H and Y, which it defines: the last frames that decide. A frame
-    /// is counted from 1.
+    /// The memory of `f S[a,b] g`, and of O, H and Y, which it defines: the last frames that
+    /// decide. Frames count from 1.
     struct Memory {
-        std::deque<Label> delayed;        ///< g of the last a frames
-        std::uint64_t last_yes = 0;       ///< frame, at least a ago, at which g was yes
-        std::uint64_t last_possible = 0;  ///< yes or unknown
-        std::uint64_t f_not_yes = 0;      ///< frame at which f was no or unknown
+        std::deque<Label> delayed;        ///< g in the last a frames
+        std::uint64_t last_yes = 0;       ///< last frame, at least a ago, at which g was yes
+        std::uint64_t last_possible = 0;  ///< the same for yes or unknown
+        std::uint64_t f_not_yes = 0;      ///< last frame at which f was no or unknown
         std::uint64_t f_no = 0;
     };
 
@@ -63,5 +62,23 @@ private:
     std::vector<std::uint32_t> ages_;
     std::uint64_t frame_ = 0;  ///< from 1; 0 before the first
 };
+
+/// The ground-truth monitor: the same formulas, in which bool inputs with the labels replace the
+/// labelled predicates. A predicate without labels counts as its own truth, decided by its
+/// comparison in a plan of truth values (check::Values::boolean). Formulas, monitors and the
+/// original inputs keep their indices.
+struct GroundTruth {
+    check::Model model;
+    /// Per predicate of the original model, the input of its label; kNone without labels.
+    std::vector<Index> inputs;
+};
+
+GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& labelled);
+
+/// Returns the labelled predicates, ascending.
+std::vector<Index> labelled_predicates(const GroundTruth& truth);
+
+/// Returns the label as a sample of such an input; unknown becomes missing.
+plan::Sample sample_of(Label label);
 
 }  // namespace etlc::episodes

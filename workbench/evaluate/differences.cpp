@@ -1,5 +1,3 @@
-#include "evaluate/differences.hpp"
-
 #include <algorithm>
 
 #include "episodes/ranking/auroc.hpp"
@@ -30,7 +28,7 @@ Figure less(const Bootstrap& bootstrap, const auto& second, const auto& first) {
     });
 }
 
-/// Both judgements, at what both have.
+/// Compares what two judgements have in common.
 class Pair {
 public:
     Pair(const Judgement& first, const Judgement& second)
@@ -78,7 +76,7 @@ public:
     }
 
 private:
-    /// Of what the first and the second say. `same_truth(a, b)`, `counts(a)`: of an episode.
+    /// `same_truth(a, b)` compares the truths of an episode; `counts(a)` returns its counts.
     template <class T>
     Difference compared(const data::Spool<T>& first, const data::Spool<T>& second,
                         const auto& same_truth, const auto& counts) const {
@@ -89,7 +87,7 @@ private:
         if (result.other_truths > 0) return result;
         const std::vector<Counts> of_first = first_.each(first, counts);
         const std::vector<Counts> of_second = second_.each(second, counts);
-        const auto figure = [&](std::optional<double> Rates::*rate) {
+        static_cast<ByRate<Figure>&>(result) = by_rate([&](Rate rate) {
             const auto of = [rate](const std::vector<Counts>& each) {
                 return [&each, rate](const Weights& weights) {
                     std::vector<std::optional<double>> values;
@@ -98,11 +96,7 @@ private:
                 };
             };
             return less(bootstrap_, of(of_second), of(of_first));
-        };
-        result.f1 = figure(&Rates::f1);
-        result.precision = figure(&Rates::precision);
-        result.recall = figure(&Rates::recall);
-        result.agreement = figure(&Rates::agreement);
+        });
         return result;
     }
 

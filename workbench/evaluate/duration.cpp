@@ -9,7 +9,7 @@ namespace etlc::evaluate {
 
 namespace {
 
-/// Claims that numbers from the threshold on are true, or those below it.
+/// Claims true for the numbers from the threshold on, or for those below it.
 struct Rule {
     bool from = true;
     double threshold = 0;
@@ -18,7 +18,7 @@ struct Rule {
 constexpr Rule kAlwaysTrue{true, 0};
 constexpr Rule kAlwaysFalse{false, 0};
 
-/// How good a rule is: the later decides where the earlier is equal.
+/// The quality of a rule, compared lexicographically.
 struct Merit {
     double f1 = 0;
     std::uint64_t agreeing = 0;
@@ -37,14 +37,13 @@ Merit merit(std::uint64_t hits, std::uint64_t false_alarms, std::uint64_t positi
     return {f1, hits + negatives - false_alarms};
 }
 
-/// Numbers between two neighbouring ends of runs: how many of them are labelled so, in all
-/// episodes.
+/// Label counts over all episodes of the numbers between two neighbouring ends of runs.
 struct Cell {
     std::uint64_t positives = 0;
     std::uint64_t negatives = 0;
 };
 
-/// The numbers at which the label of some episode changes, and the labels in between.
+/// The numbers at which the label of some episode changes, and the label counts in between.
 class Cells {
 public:
     explicit Cells(const EachEpisode& episodes) {
@@ -57,7 +56,7 @@ public:
         episodes([&](const LabelRuns& episode) { count(episode, true); });
     }
 
-    /// Adds an episode's labels, or takes them away.
+    /// Adds or removes the labels of an episode.
     void count(const LabelRuns& episode, bool adds) {
         for (const LabelRuns::Run& run : episode.runs()) {
             if (run.label == Label::unknown) continue;
@@ -72,7 +71,7 @@ public:
         }
     }
 
-    /// The best rule for what is counted; nothing where nothing is.
+    /// Returns the best rule for the labels counted, or nothing where there are none.
     std::optional<Rule> best() const {
         std::uint64_t positives = 0;
         std::uint64_t negatives = 0;
@@ -92,14 +91,15 @@ public:
     }
 
 private:
-    /// Within a cell F1 and agreement grow or fall all the way, so the borders are enough. Borders
-    /// with the same merit next to each other enclose numbers that nothing counted has.
+    /// Replaces the rule where a better border exists. F1 and agreement are monotonic within a
+    /// cell, so the borders suffice. Neighbouring borders of equal merit enclose numbers without
+    /// labels.
     void improve(Rule& rule, Merit& best, bool from, std::uint64_t positives,
                  std::uint64_t negatives) const {
         std::uint64_t positives_below = 0;
         std::uint64_t negatives_below = 0;
         std::size_t first = 0;
-        std::size_t last = 0;  // of the borders as good as the best; 0: none yet
+        std::size_t last = 0;  // border as good as the best; 0: none yet
         for (std::size_t k = 1; k < cells_.size(); ++k) {
             positives_below += cells_[k - 1].positives;
             negatives_below += cells_[k - 1].negatives;

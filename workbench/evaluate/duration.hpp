@@ -1,8 +1,6 @@
-// What the length of an episode says by itself, or at a step the number of the step.
-// Takes: the true labels of every episode. Gives: what a threshold on that number alone gets right,
-// leaving one out: every episode is judged by the rule that has the greatest F1 on all others.
-// Keeps true: the rule has not seen the episode that it judges; memory is that of the different
-// numbers at which labels change.
+// The duration baseline: a threshold on the length of an episode, or on the number of a step, and
+// nothing else. Each episode is judged by the rule with the greatest F1 on all others. Memory grows
+// with the different numbers at which labels change.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +8,21 @@
 #include <optional>
 #include <vector>
 
-#include "evaluate/counts.hpp"
+#include "evaluate/figures.hpp"
 
 namespace etlc::evaluate {
 
-/// The labels of consecutive numbers, as runs of equal ones.
+/// Labels of consecutive numbers, as runs of equal labels.
 class LabelRuns {
 public:
     struct Run {
         std::uint64_t begin = 0;
-        std::uint64_t end = 0;  ///< the first number behind it
+        std::uint64_t end = 0;  ///< the first number after the run
         Label label = Label::unknown;
         bool operator==(const Run&) const = default;
     };
 
-    /// `first`: the number of the first label.
+    /// `first` is the number of the first label.
     explicit LabelRuns(std::uint64_t first = 0) : next_(first) {}
 
     void add(Label label);
@@ -46,13 +44,13 @@ private:
     std::vector<Run> runs_;
 };
 
-/// Calls its argument with the labels of each episode, in their order, as often as it is called.
+/// Calls its argument with the labels of each episode, in order; may be called repeatedly.
 using EachEpisode = std::function<void(const std::function<void(const LabelRuns&)>&)>;
 
-/// "True from a number on" or "true below a number". Of rules that get the same F1 and then the
-/// same agreement: always true, always false, the first of the former, the first of the latter,
-/// with the threshold halfway between the numbers that it separates. Nothing where no two episodes
-/// have a known label.
+/// Counts what rules of the form "true from a number on" or "true below a number" get right. Ties
+/// in F1, then in agreement, go to: always true, always false, the first rule of the former kind,
+/// the first of the latter. A threshold lies halfway between the numbers that it separates. Returns
+/// nothing where fewer than two episodes have a known label.
 std::optional<Counts> judged_by_duration(const EachEpisode& episodes);
 
 }  // namespace etlc::evaluate

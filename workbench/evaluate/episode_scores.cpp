@@ -110,7 +110,8 @@ void EpisodeScorer::note_frame(const episodes::Recording& recording, std::size_t
     result.scored.push_back({score, 0, is == Label::yes});
 }
 
-/// Both plans delay a sliding monitor alike: by the horizon of its formula as written.
+/// Records the verdicts of a step. Both plans delay a sliding monitor by the horizon of its formula
+/// as written.
 void EpisodeScorer::note_verdicts() {
     for (std::size_t m = 0; m < subject_.monitors.size(); ++m) {
         const MonitorSubject& subject = subject_.monitors[m];
@@ -121,7 +122,7 @@ void EpisodeScorer::note_verdicts() {
     }
 }
 
-/// The truth of a repeating monitor is asked about the same positions.
+/// Restarts the truth of a repeating monitor with it, so that both judge the same positions.
 void EpisodeScorer::follow(std::size_t m) {
     const MonitorSubject& subject = subject_.monitors[m];
     tracks_[m].said_alarm |= monitors_.verdict(subject.monitor).alarm();

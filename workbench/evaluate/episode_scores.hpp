@@ -1,7 +1,6 @@
-// One episode: what the monitors said of it, and what was true.
-// Takes: the plans of the spec and of its ground truth, and an episode. Gives: counts per predicate
-// and monitor, the distances for ranking, and when verdicts turned. Keeps true: both monitors are
-// run by the same evaluator, on the samples that the generated class would get.
+// Compares the monitors with their ground truth on one episode: counts per predicate and monitor,
+// distances for ranking, and the time at which verdicts turned. The same evaluator runs both, on
+// the samples that the generated class would get.
 #pragma once
 
 #include <cstdint>
@@ -11,45 +10,41 @@
 
 #include "episodes/ranking/auroc.hpp"
 #include "episodes/replay.hpp"
-#include "evaluate/counts.hpp"
 #include "evaluate/duration.hpp"
+#include "evaluate/figures.hpp"
 #include "evaluate/subject.hpp"
 
 namespace etlc::evaluate {
 
-/// The first step at which the true verdict is another than at the first step, and when the monitor
-/// said so.
+/// A change of the true verdict from that of the first step, and the monitor's reaction.
 struct Turn {
-    /// Steps from the true turn to the monitor's: negative where it said so before and has held on
-    /// to it since. Nothing: it never did.
+    /// Steps from the true turn to the monitor's; negative where the monitor turned earlier and
+    /// kept its verdict. Nothing where it never turned.
     std::optional<std::int64_t> delay;
 };
 
 struct MonitorEpisode {
-    Counts steps;    ///< of a sliding monitor: positions, all of them
-    Counts episode;  ///< one: the last verdict; of a sliding monitor, whether every position
-                     ///< satisfies it
+    Counts steps;    ///< for a sliding monitor: all positions
+    Counts episode;  ///< one claim: the last verdict, or that a sliding monitor always holds
     std::optional<Turn> turn;
-    /// One: of sequential formulas, where every stage was truly visited.
-    std::optional<Counts> ordering;
-    LabelRuns truth;  ///< what was true of the steps
-    /// The step, or the position of a sliding monitor, at which it first disagrees with a known
-    /// truth.
+    std::optional<Counts> ordering;  ///< one claim: sequential formulas, all stages truly visited
+    LabelRuns truth;                 ///< true labels of the steps
+    /// The first step (sliding monitors: position) that disagrees with a known truth.
     std::optional<std::uint64_t> first_error;
 };
 
 struct PredicateEpisode {
     Counts frames;
-    std::vector<episodes::Scored> scored;  ///< `episode` is not yet set
+    std::vector<episodes::Scored> scored;  ///< their member `episode` is not yet set
     std::uint64_t unmeasured = 0;          ///< labelled frames whose distance is unknown
     bool from_array = false;
-    LabelRuns truth;  ///< of the frames
+    LabelRuns truth;  ///< true labels of the frames
     std::optional<std::uint64_t> first_error;
 };
 
 struct EpisodeResult : episodes::Recorded {
     std::vector<PredicateEpisode> predicates;  ///< per labelled predicate
-    /// Per monitor; of those that cannot be evaluated all is zero.
+    /// Per monitor; all zero for monitors that cannot be evaluated.
     std::vector<MonitorEpisode> monitors;
 };
 
@@ -75,8 +70,7 @@ void fields(Archive& archive, EpisodeResult& result) {
     archive(static_cast<episodes::Recorded&>(result), result.predicates, result.monitors);
 }
 
-/// Scores one episode after the other. Not shared between threads; all that it is given outlives
-/// it.
+/// Scores one episode after the other, on one thread. Its arguments must outlive it.
 class EpisodeScorer {
 public:
     EpisodeScorer(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
@@ -93,7 +87,7 @@ private:
     struct Tracks {
         Track said;
         Track is;
-        bool said_alarm = false;  ///< at some step
+        bool said_alarm = false;  ///< an alarm at some step
         bool is_alarm = false;
     };
 
@@ -108,7 +102,7 @@ private:
     const plan::Plan& plan_;
     const Subject& subject_;
     const data::NamesInFile& names_;
-    plan::Plan measuring_;  ///< of labelled predicates that no monitor uses
+    plan::Plan measuring_;  ///< measures labelled predicates that no monitor uses
     episodes::Follower monitors_;
     episodes::Follower truths_;
     episodes::Follower measured_;

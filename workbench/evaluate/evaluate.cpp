@@ -8,14 +8,14 @@
 
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
-#include "episodes/admission/leak_evidence.hpp"
-#include "episodes/unmarked.hpp"
+#include "episodes/data_warnings.hpp"
 
 namespace etlc::evaluate {
 
 namespace {
 
-/// At distance 0 a frame is easier to tell than any that is not a target.
+/// Warns about episodes with a target among their frames: at distance 0 a frame is easier to tell
+/// than any other.
 void warn_of_leaks(const check::Model& model, const Judgement& judgement, const Request& request,
                    diag::Sink& sink) {
     const episodes::LeakEvidence evidence(judgement.episodes);
@@ -45,7 +45,7 @@ bool refuse_without_truth(const check::Model& model, const Subject& subject, dia
     const std::string shown = name.empty() ? "NAME" : name;
     sink.report(diag::Code::nothing_to_evaluate, model.monitors.front().span,
                 "no predicate of this spec has a truth to compare it with")
-        .note(fmt::format("say when it holds, 'truth {0} = ...;', or record it: an array "
+        .note(fmt::format("add 'truth {0} = ...;' to the spec, or record an array "
                           "'truth.{0}' of 0 and 1 in the episodes, which --map may name",
                           shown));
     return false;
@@ -62,7 +62,7 @@ std::vector<std::pair<std::string, float>> calibrated_in(const check::Model& mod
     return thresholds;
 }
 
-/// Empty, and by name what it will be about.
+/// Returns a judgement without episodes that names the predicates and monitors.
 Judgement judgement_of(const check::Model& model, const Subject& subject, std::size_t episodes,
                        std::size_t folds) {
     Judgement result;
@@ -84,7 +84,7 @@ Judgement judgement_of(const check::Model& model, const Subject& subject, std::s
     return result;
 }
 
-/// Takes an episode of the request, of fold `fold`, into what is said of all.
+/// Adds the result of an episode of the request.
 void add(EpisodeResult result, std::size_t episode, std::size_t fold, Judgement& judgement) {
     judgement.place[episode] = static_cast<std::uint32_t>(judgement.episodes.size());
     judgement.fold_of[episode] = static_cast<std::uint32_t>(fold);
@@ -101,7 +101,7 @@ void add(EpisodeResult result, std::size_t episode, std::size_t fold, Judgement&
         judgement.monitors[m].episodes.add(result.monitors[m]);
 }
 
-/// Scores the episodes of a trial. `own`: what tells them apart. False where not all were scored.
+/// Scores the episodes of a trial and adds their identities to `own`. Returns false after an error.
 bool score(const Trial& trial, std::size_t fold, const Subject& subject, const Request& request,
            Judgement& judgement, episodes::Identities& own, diag::Sink& sink) {
     const auto truth =
@@ -120,6 +120,24 @@ bool score(const Trial& trial, std::size_t fold, const Subject& subject, const R
             if (trial.seen || !trial.fitted.episodes.empty()) own.add(result);
             add(std::move(result), trial.episodes[i], fold, judgement);
         });
+}
+
+/// Fewer episodes give no reliable interval.
+constexpr std::uint64_t kFewEpisodes = 5;
+
+/// Warns where both labels occur and nearly no resample has a gain. Only predicates: a monitor that
+/// must not miss an alarm raises many on purpose.
+void warn_of_no_gain(const std::string& name, const Score& score, source::Span span,
+                     diag::Sink& sink) {
+    const bool both = score.counts.positives() > 0 && score.counts.negatives() > 0;
+    if (!both || !score.gain.interval || score.gain.interval->high > 0) return;
+    episodes::warn_of_data(
+        diag::Code::no_better_than_true,
+        fmt::format("'{}' has an F1 of {:.3f}, no better than the {:.3f} of saying true at every "
+                    "frame",
+                    name, *score.f1.value, *score.f1.value - *score.gain.value),
+        span, sink)
+        .note("check the threshold, which may be too wide, the targets and the labels");
 }
 
 }  // namespace
@@ -155,6 +173,25 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
     episodes::warn_of_unmarked(result.episodes, sink);
     warn_of_leaks(first, result, request, sink);
     return result;
+}
+
+void warn_of_doubts(const check::Model& model, const Evaluation& evaluation, diag::Sink& sink) {
+    const bool enough = evaluation.episodes >= kFewEpisodes;
+    for (const PredicateScore& score : evaluation.predicates) {
+        const auto predicate =
+            std::find_if(model.predicates.begin(), model.predicates.end(),
+                         [&](const check::Predicate& one) { return one.name == score.name; });
+        if (predicate == model.predicates.end()) continue;
+        std::optional<episodes::Auroc> auroc;
+        if (enough && score.auroc.value && score.auroc.interval)
+            auroc = {*score.auroc.value, episodes::Auroc::Interval{score.auroc.interval->low,
+                                                                   score.auroc.interval->high}};
+        const Counts& counts = score.frames.counts;
+        if (!episodes::warn_of_labels(*predicate, {counts.positives(), counts.negatives()}, auroc,
+                                      sink) &&
+            enough)
+            warn_of_no_gain(score.name, score.frames, predicate->threshold.span, sink);
+    }
 }
 
 }  // namespace etlc::evaluate

@@ -1,9 +1,8 @@
-// `etlc evaluate`: the monitors of a spec against ground truth, on recorded episodes.
-// Takes: the compiled spec, or one for every fold, and the episodes. Gives: counts and rates per
-// predicate and monitor, each with its interval and next to the baselines that ignore the data;
-// the same of every episode; and how much specs differ on the same episodes. Keeps true: the
-// result is the same whatever the number of threads; one episode a thread is open at a time;
-// episodes that thresholds were calibrated on are refused.
+// `etlc evaluate`: compares the monitors of a spec with ground truth on recorded episodes. Computes
+// counts and rates per predicate and monitor, with intervals and baselines; the same per episode;
+// and the differences between specs on the same episodes. The result does not depend on the number
+// of threads, each thread has one episode open at a time, and episodes of the calibration are
+// refused.
 #pragma once
 
 #include <functional>
@@ -14,52 +13,46 @@
 #include <utility>
 #include <vector>
 
+#include "artifacts/fitted.hpp"
+#include "artifacts/thresholds.hpp"
 #include "data/spill/spool.hpp"
 #include "diag/diag.hpp"
-#include "episodes/ranking/frames_by_score.hpp"
+#include "episodes/ranking/auroc.hpp"
 #include "episodes/shared/sharing.hpp"
-#include "evaluate/bootstrap.hpp"
-#include "evaluate/by_episode.hpp"
-#include "evaluate/differences.hpp"
 #include "evaluate/episode_scores.hpp"
 #include "evaluate/subject.hpp"
-#include "fitted/fitted.hpp"
 #include "pipeline/compile.hpp"
-#include "thresholds/thresholds.hpp"
 
 namespace etlc::evaluate {
 
-/// A compiled spec and the episodes that it is judged on. Several where episodes are dealt into
-/// folds.
+/// A compiled spec and the episodes that it is judged on; one trial per fold.
 struct Trial {
     const pipeline::Compiled& spec;
-    /// The thresholds that its plan has, where they were calibrated: episodes in it are refused.
-    std::optional<thresholds::File> seen;
-    std::vector<std::size_t> episodes;  ///< which of those of the request
-    fitted::File fitted{};              ///< what is fitted in its model: episodes in it are refused
+    std::optional<thresholds::File>
+        seen;                           ///< its calibrated thresholds, whose episodes are refused
+    std::vector<std::size_t> episodes;  ///< indices into the request's episodes
+    fitted::File fitted{};              ///< its fitted entries, whose episodes are refused
 };
 
 struct Request {
     std::vector<std::string> episodes;  ///< as data::find_episodes gives them
     data::NamesInFile names;
-    std::string allow_overlap;  ///< the reason for which overlaps with the episodes of calibration
-                                ///< are passed over; empty: they are not
+    std::string allow_overlap;  ///< reason to allow overlaps with calibration; empty: refuse them
     unsigned jobs = 0;          ///< threads; 0: as many as the machine has
-    plan::Limits limits;        ///< of the ground truth's plan
-    /// Called now and then, by any thread, never by two at once.
+    plan::Limits limits;        ///< limits on the ground truth's plan
+    /// Called occasionally, by any thread, never by two at once.
     std::function<void(std::size_t done, std::size_t total)> progress;
-    /// One shard of the episodes, or all of them; null: this process reads them all.
+    /// One shard of the episodes, or all shards; null: this process reads all episodes.
     episodes::Sharing* sharing = nullptr;
 };
 
-/// What a spec said of the episodes, and what was true. Little of it is in memory, however many
-/// there are.
+/// Claims and truths of all episodes, most of them in temporary files.
 struct Judgement {
     struct Predicate {
         std::string name;
         bool adaptive = false;
         data::Spool<PredicateEpisode> episodes{};       ///< without their frames
-        std::vector<episodes::FramesByScore> frames{};  ///< of each fold; of one, where none are
+        std::vector<episodes::FramesByScore> frames{};  ///< one per fold, or one for all episodes
     };
     struct Monitor {
         std::string name;
@@ -67,26 +60,25 @@ struct Judgement {
         bool sequential = false;
         data::Spool<MonitorEpisode> episodes{};
     };
-    /// What was held out, and the thresholds of the rest by what they are of; of one fold nothing.
     struct Fold {
-        std::uint64_t episodes = 0;
-        std::vector<std::pair<std::string, float>> thresholds;
+        std::uint64_t episodes = 0;                             ///< held out
+        std::vector<std::pair<std::string, float>> thresholds;  ///< from the others, by name
     };
     std::vector<Predicate> predicates;  ///< those with labels
     std::vector<Monitor> monitors;
-    episodes::Identities episodes;          ///< this, and those of predicates and monitors, by fold
-    std::vector<std::uint32_t> place;       ///< in them, per episode of the request
+    episodes::Identities episodes;          ///< ordered by fold, as those of predicates, monitors
+    std::vector<std::uint32_t> place;       ///< index in that order, per episode of the request
     std::vector<std::uint32_t> fold_of;     ///< per episode of the request
-    std::vector<Fold> folds;                ///< empty: no spec was made for a fold
+    std::vector<Fold> folds;                ///< empty without folds
     double step_seconds = 0;                ///< 0: the spec has no rate
-    std::vector<std::string> reservations;  ///< what was passed over, in words
+    std::vector<std::string> reservations;  ///< allowances that were used, in words
 
     /// Calls `visit(e, item)` for the item of each episode, in the order of the request.
     template <class T, class Visit>
     void for_each(const data::Spool<T>& of, const Visit& visit) const {
         for (std::size_t e = 0; e < place.size(); ++e) visit(e, of[place[e]]);
     }
-    /// `get(item)` of each.
+    /// Returns `get(item)` for each, in the same order.
     template <class T, class Get>
     auto each(const data::Spool<T>& of, const Get& get) const {
         std::vector<std::decay_t<decltype(get(std::declval<const T&>()))>> all;
@@ -97,32 +89,31 @@ struct Judgement {
 };
 
 /// Counts of claims, with intervals over episodes.
-struct Score {
+struct Score : ByRate<Figure> {
     Counts counts;
-    Figure f1;
-    Figure precision;
-    Figure recall;
-    Figure agreement;
-    Figure gain;                     ///< of F1 over that of saying true every time
-    std::optional<Counts> duration;  ///< what the duration alone gets right: evaluate/duration.hpp
+    Figure gain;                     ///< F1 less the F1 of always claiming true
+    std::optional<Counts> duration;  ///< the duration baseline, evaluate/duration.hpp
 };
+
+/// Returns the rates of claims that ignore the data: "always_true", "always_false", "duration".
+std::vector<std::pair<std::string, Rates>> baselines(const Score& score);
 
 struct PredicateScore {
     std::string name;
-    bool adaptive = false;  ///< with the threshold that it starts with: nothing gives labels here
+    bool adaptive = false;  ///< evaluated with its initial threshold, as there is no feedback here
     Score frames;
-    Figure auroc;     ///< of the distance, whatever the threshold
-    Figure coverage;  ///< of the episodes with a positive frame, those of which none is missed
-    std::uint64_t unmeasured = 0;  ///< labelled frames whose distance is unknown: misses
-    std::uint64_t arrays = 0;      ///< episodes whose labels come from an array of theirs
+    Figure auroc;                  ///< of the distance, independent of the threshold
+    Figure coverage;               ///< share of the episodes with a positive frame that miss none
+    std::uint64_t unmeasured = 0;  ///< labelled frames of unknown distance, counted as misses
+    std::uint64_t arrays = 0;      ///< episodes with an array of labels
 };
 
-/// When the true verdict turned away from that of the first step, and the monitor's with it.
+/// Time from a change of the true verdict to the monitor's.
 struct Detection {
-    std::uint64_t turns = 0;  ///< episodes in which it did
+    std::uint64_t turns = 0;  ///< episodes in which the true verdict changed
     std::uint64_t missed = 0;
-    std::uint64_t early = 0;  ///< the monitor turned before
-    Figure mean;              ///< steps from turn to turn, of those that were not missed
+    std::uint64_t early = 0;  ///< the monitor changed first
+    Figure mean;              ///< steps, over the turns that were not missed
     std::optional<double> median;
 };
 
@@ -132,47 +123,82 @@ struct MonitorScore {
     Score steps;
     Score episodes;
     Detection detection;
-    /// Sequential formulas: episodes in which every stage was truly visited.
-    std::optional<Score> ordering;
+    std::optional<Score> ordering;  ///< sequential formulas: episodes with all stages truly visited
+};
+
+struct EpisodeRow {
+    /// The first step at which a predicate, or else a monitor, disagrees with a known truth.
+    struct Error {
+        std::uint64_t step = 0;  ///< for a sliding monitor the position
+        std::string name;
+        bool of_monitor = false;
+    };
+    std::string path;
+    std::optional<std::uint32_t> fold;  ///< from 1, if there are folds
+    std::uint64_t frames = 0;
+    std::vector<std::string> wrong;  ///< monitors with a wrong verdict on the episode
+    Counts claims;  ///< frames of all labelled predicates; without any, steps of all monitors
+    std::optional<Error> first_error;
+    std::vector<std::pair<std::string, Counts>> predicates;  ///< by frames
 };
 
 struct Evaluation {
     std::uint64_t episodes = 0;
     std::uint64_t frames = 0;
-    std::uint64_t repeated = 0;     ///< episodes with the content of an earlier one
+    std::uint64_t repeated = 0;     ///< episodes that repeat an earlier one
     std::uint64_t leaked = 0;       ///< episodes with a frame that is a row of a target
     std::uint64_t overlapping = 0;  ///< episodes that share most of their content with another
-    std::vector<std::string> reservations;  ///< what was passed over, in words
+    std::vector<std::string> reservations;  ///< allowances that were used, in words
     double step_seconds = 0;                ///< 0: the spec has no rate
     std::vector<Judgement::Fold> folds;
     std::vector<PredicateScore> predicates;
     std::vector<MonitorScore> monitors;
-    std::vector<EpisodeRow> by_episode;  ///< empty: not asked for
+    std::vector<EpisodeRow> by_episode;  ///< empty unless requested
 };
 
-/// Predicates are held to the truth that the spec has, or an array in the first episode. Trials are
-/// of one spec and hold each episode once. Nothing where the sink now says why.
+/// Runs the monitors on all episodes. Labels come from the spec's truths, or from the arrays that
+/// the first episode has. The trials are of one spec and hold each episode once. Returns nothing
+/// after an error, which it reports.
 std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& request,
                                diag::Sink& sink);
 
 Evaluation summarise(const Judgement& judgement);
 
-/// Warns of labels that are all alike or the wrong way round, and of predicates that are no better
-/// than saying true every time. `model`: of the spec.
+/// Returns a row per episode, worst first, since figures over all episodes hide a session on which
+/// a monitor fails. An episode is worse with more wrong verdicts of monitors; ties go to the
+/// greater share of wrong frames, then to the earlier episode.
+std::vector<EpisodeRow> by_episode(const Judgement& judgement);
+
+/// Warns about labels that are all alike or inverted, and about predicates that are no better than
+/// always claiming true.
 void warn_of_doubts(const check::Model& model, const Evaluation& evaluation, diag::Sink& sink);
+
+/// Figures of a predicate or monitor: the second spec's less the first's.
+struct Difference : ByRate<Figure> {
+    bool of_monitor = false;
+    std::string name;
+    std::string level;               ///< frames, steps, episodes
+    std::uint64_t other_truths = 0;  ///< episodes whose truth differs; if any, no figures
+    std::optional<Figure> auroc;     ///< predicates only
+};
+
+/// Compares two specs on the same episodes, for each predicate and monitor that both have by name.
+/// Intervals are those of the differences over common resamples, since an episode that is hard for
+/// one spec is mostly hard for the other.
+std::vector<Difference> differences(const Judgement& first, const Judgement& second);
 
 /// Specs on the same episodes.
 struct SideBySide {
     struct Spec {
         std::string path;
         Evaluation evaluation;
-        std::vector<Difference> differences;  ///< from the first spec
+        std::vector<Difference> differences;  ///< to the first spec
     };
     std::vector<Spec> specs;
 };
 
-/// For people: aligned tables. For spreadsheets: a figure a row, or an episode. For programs: JSON.
-/// Of one spec the same as of its evaluation, without its path.
+/// Format evaluations as aligned tables for people, as CSV with a row per figure or episode for
+/// spreadsheets, and as JSON for programs. A single spec is not named.
 std::string table(const SideBySide& specs);
 std::string csv(const SideBySide& specs);
 std::string csv_by_episode(const SideBySide& specs);

@@ -18,7 +18,7 @@ bool is_eventually(const Formula& f) {
     return f.kind == Kind::eventually && f.low == 0 && f.high == check::kUnbounded;
 }
 
-/// The operands of the conjunction that the formula is, each once, or the formula.
+/// Returns the distinct operands of a conjunction, or the formula itself.
 std::vector<Index> conjuncts_of(const check::Model& model, Index formula) {
     std::vector<Index> conjuncts;
     std::vector<bool> seen(model.formulas.size());
@@ -33,8 +33,8 @@ std::vector<Index> conjuncts_of(const check::Model& model, Index formula) {
     return conjuncts;
 }
 
-/// The conjuncts of each of a, b, ... of F (a && F (b && ...)); fewer than two where the formula
-/// has another shape.
+/// Returns the conjuncts of each of a, b, ... in F (a && F (b && ...)); fewer than two for any
+/// other formula.
 std::vector<std::vector<Index>> stages_of(const check::Model& model,
                                           const std::vector<check::Reach>& reaches, Index formula) {
     std::vector<std::vector<Index>> stages;
@@ -60,7 +60,7 @@ Index append(check::Model& model, Kind kind, std::vector<Index> operands) {
     return static_cast<Index>(model.formulas.size() - 1);
 }
 
-/// A monitor of the ground truth that says whether the stage has been visited.
+/// Adds a ground-truth monitor that tells whether the stage has been visited.
 Index append_visit(check::Model& model, const std::string& name,
                    const std::vector<Index>& conjuncts) {
     const Index stage =

@@ -1,8 +1,8 @@
-// From what was said and what was true of every episode to figures with intervals.
+// Turns claims and truths of all episodes into figures with intervals.
 #include <algorithm>
 #include <functional>
 
-#include "episodes/admission/leak_evidence.hpp"
+#include "episodes/admission/admission.hpp"
 #include "episodes/admission/overlaps.hpp"
 #include "episodes/ranking/auroc.hpp"
 #include "evaluate/evaluate.hpp"
@@ -11,7 +11,7 @@ namespace etlc::evaluate {
 
 namespace {
 
-/// `each`: of every episode; `truths`: by the number that is its duration, or its step's.
+/// Computes the rates of `each` episode's counts; `truths` are labels by duration or step.
 Score score(const Bootstrap& bootstrap, const std::vector<Counts>& each,
             const EachEpisode& truths) {
     const Rates whole = rates(each, bootstrap.whole())[0];
@@ -20,7 +20,7 @@ Score score(const Bootstrap& bootstrap, const std::vector<Counts>& each,
         const auto some = rates(each, weights);
         resampled.insert(resampled.end(), some.begin(), some.end());
     });
-    const auto figure = [&](std::optional<double> Rates::*rate) {
+    const auto figure = [&](Rate rate) {
         Figure result{whole.*rate, {}};
         if (!result.value || each.size() < 2) return result;
         std::vector<std::optional<double>> values;
@@ -28,19 +28,13 @@ Score score(const Bootstrap& bootstrap, const std::vector<Counts>& each,
         result.interval = percentile_interval(values);
         return result;
     };
-    Score result{{},
-                 figure(&Rates::f1),
-                 figure(&Rates::precision),
-                 figure(&Rates::recall),
-                 figure(&Rates::agreement),
-                 figure(&Rates::gain),
-                 {}};
+    Score result{by_rate(figure), {}, figure(&Rates::gain), {}};
     for (const Counts& counts : each) result.counts.add(counts);
     result.duration = judged_by_duration(truths);
     return result;
 }
 
-/// What was true of whole episodes, by their lengths.
+/// Returns the labels of whole episodes by their lengths.
 EachEpisode by_length(const Judgement& judgement, const std::vector<Counts>& each) {
     return [&](const std::function<void(const LabelRuns&)>& visit) {
         judgement.for_each(judgement.episodes,
@@ -53,7 +47,7 @@ EachEpisode by_length(const Judgement& judgement, const std::vector<Counts>& eac
     };
 }
 
-/// What was true of frames or steps.
+/// Returns the labels of frames or steps.
 template <class T>
 EachEpisode truths(const Judgement& judgement, const data::Spool<T>& of) {
     return [&](const std::function<void(const LabelRuns&)>& visit) {
@@ -61,13 +55,13 @@ EachEpisode truths(const Judgement& judgement, const data::Spool<T>& of) {
     };
 }
 
-/// What an episode adds to a sum, and to what it is divided by.
+/// An episode's contribution to the numerator and the denominator of a share.
 struct Part {
     std::int64_t part = 0;
     std::uint64_t whole = 0;
 };
 
-/// The part of the whole, in each resample. Nothing where there is no whole.
+/// Returns the share in each resample, or nothing where the denominator is zero.
 std::vector<std::optional<double>> shares(const std::vector<Part>& episodes,
                                           const Weights& weights) {
     std::vector<std::int64_t> parts(weights.resamples());
@@ -113,8 +107,8 @@ Detection detection(const Bootstrap& bootstrap, const std::vector<std::optional<
     return result;
 }
 
-/// Of the episodes with a positive frame, those of which none is missed: what conformal calibration
-/// promises with P >= 1 - alpha.
+/// Returns the share of the episodes with a positive frame that miss none, for which conformal
+/// calibration guarantees P >= 1 - alpha.
 Figure coverage(const Bootstrap& bootstrap, const std::vector<Counts>& each) {
     std::vector<Part> covered;
     covered.reserve(each.size());
@@ -165,7 +159,55 @@ MonitorScore monitor_score(const Bootstrap& bootstrap, const Judgement& judgemen
     return result;
 }
 
+/// Returns the share of the claims with known truth that are wrong.
+double share_wrong(const Counts& claims) {
+    const auto agreement = rates(claims).agreement;
+    return agreement ? 1 - *agreement : 0;
+}
+
+bool is_wrong(const Counts& verdict) {
+    return verdict.total() > 0 && rates(verdict).agreement == 0.0;
+}
+
+/// Keeps the earlier error; ties keep the first.
+void note(std::optional<EpisodeRow::Error>& first, const std::optional<std::uint64_t>& step,
+          const std::string& name, bool of_monitor) {
+    if (step && (!first || *step < first->step)) first = {*step, name, of_monitor};
+}
+
+EpisodeRow row_of(const Judgement& judgement, std::size_t e) {
+    const std::uint32_t place = judgement.place[e];
+    const episodes::Recorded episode = judgement.episodes[place];
+    EpisodeRow row;
+    row.path = episode.path;
+    if (!judgement.folds.empty()) row.fold = judgement.fold_of[e] + 1;
+    row.frames = episode.frames;
+    for (std::size_t i = 0; i < judgement.predicates.size(); ++i) {
+        const PredicateEpisode predicate = judgement.predicates[i].episodes[place];
+        const std::string& name = judgement.predicates[i].name;
+        row.predicates.emplace_back(name, predicate.frames);
+        row.claims.add(predicate.frames);
+        note(row.first_error, predicate.first_error, name, false);
+    }
+    const bool predicates_err = row.first_error.has_value();
+    for (std::size_t m = 0; m < judgement.monitors.size(); ++m) {
+        const MonitorEpisode monitor = judgement.monitors[m].episodes[place];
+        const std::string& name = judgement.monitors[m].name;
+        if (is_wrong(monitor.episode)) row.wrong.push_back(name);
+        if (judgement.predicates.empty()) row.claims.add(monitor.steps);
+        if (!predicates_err) note(row.first_error, monitor.first_error, name, true);
+    }
+    return row;
+}
+
 }  // namespace
+
+std::vector<std::pair<std::string, Rates>> baselines(const Score& score) {
+    const Counts& c = score.counts;
+    return {{"always_true", rates_of_constant(true, c.positives(), c.total())},
+            {"always_false", rates_of_constant(false, c.positives(), c.total())},
+            {"duration", rates(score.duration.value_or(Counts{}))}};
+}
 
 Evaluation summarise(const Judgement& judgement) {
     Evaluation result;
@@ -173,7 +215,7 @@ Evaluation summarise(const Judgement& judgement) {
     result.step_seconds = judgement.step_seconds;
     result.reservations = judgement.reservations;
     result.folds = judgement.folds;
-    episodes::Identities in_order;  // of the request, in which folds do not come
+    episodes::Identities in_order;  // in the order of the request, unlike the folds
     if (!judgement.folds.empty())
         judgement.for_each(judgement.episodes, [&](std::size_t, const episodes::Recorded& episode) {
             in_order.add(episode);
@@ -192,6 +234,16 @@ Evaluation summarise(const Judgement& judgement) {
     for (std::size_t m = 0; m < judgement.monitors.size(); ++m)
         result.monitors.push_back(monitor_score(bootstrap, judgement, m));
     return result;
+}
+
+std::vector<EpisodeRow> by_episode(const Judgement& judgement) {
+    std::vector<EpisodeRow> rows;
+    for (std::size_t e = 0; e < judgement.place.size(); ++e) rows.push_back(row_of(judgement, e));
+    std::stable_sort(rows.begin(), rows.end(), [](const EpisodeRow& a, const EpisodeRow& b) {
+        return std::pair(a.wrong.size(), share_wrong(a.claims)) >
+               std::pair(b.wrong.size(), share_wrong(b.claims));
+    });
+    return rows;
 }
 
 }  // namespace etlc::evaluate

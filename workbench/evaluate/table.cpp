@@ -1,5 +1,4 @@
-// Evaluations for people: aligned columns; every figure with its interval, and beneath it what
-// blind claims get.
+// Evaluations for people: aligned columns, with the baselines below each score.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,16 +12,16 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-constexpr std::size_t kMostEpisodes = 20;  ///< in the table by episode
+constexpr std::size_t kMostEpisodes = 20;  ///< rows of the table by episode
 
-/// Code points, which is what a terminal aligns by.
+/// Returns the number of code points, by which a terminal aligns.
 std::size_t width(const std::string& text) {
     return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
         return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
     }));
 }
 
-/// The first column flush left, the others right, two blanks apart.
+/// Aligns the first column left and the others right, two blanks apart.
 std::string aligned(const std::vector<Row>& rows) {
     std::vector<std::size_t> widths;
     for (const Row& row : rows) {
@@ -69,29 +68,27 @@ Row heading(const std::string& what, const std::string& positive) {
 
 void add(std::vector<Row>& rows, const std::string& name, const Score& score) {
     const Counts& c = score.counts;
-    rows.push_back({name, figure(score.f1), figure(score.precision), figure(score.recall),
-                    figure(score.agreement),
-                    fmt::format("{} of {} ({})", c.positives(), c.total(),
-                                percent(c.positives(), c.total()))});
-    const auto baseline = [&](const char* what, const Rates& blind) {
-        rows.push_back({what, number(blind.f1), number(blind.precision), number(blind.recall),
-                        number(blind.agreement)});
-    };
-    baseline("  always true", rates_of_constant(true, c.positives(), c.total()));
-    baseline("  always false", rates_of_constant(false, c.positives(), c.total()));
-    baseline("  duration", rates(score.duration.value_or(Counts{})));
+    Row row{name};
+    score.for_each([&](const char*, const Figure& rate) { row.push_back(figure(rate)); });
+    row.push_back(
+        fmt::format("{} of {} ({})", c.positives(), c.total(), percent(c.positives(), c.total())));
+    rows.push_back(std::move(row));
+    for (auto [what, blind] : baselines(score)) {
+        std::replace(what.begin(), what.end(), '_', ' ');
+        Row& baseline = rows.emplace_back(Row{"  " + what});
+        blind.for_each([&](const char*, const auto& rate) { baseline.push_back(number(rate)); });
+    }
 }
 
-/// What was left out or could not be said, a line each.
+/// Adds a line each for cases without a known truth and for claims that a missing sample leaves
+/// open.
 void add_remarks(std::string& text, const std::string& name, const Counts& counts,
                  const char* what) {
     if (counts.unlabelled > 0)
-        text += fmt::format("{}: {} {} left out, whose truth is unknown\n", name, counts.unlabelled,
-                            what);
+        text += fmt::format("{}: {} {} of unknown truth left out\n", name, counts.unlabelled, what);
     if (const std::uint64_t unsaid = counts.unsaid_positives + counts.unsaid_negatives; unsaid > 0)
-        text +=
-            fmt::format("{}: {} {} that a missing sample leaves open, counted as not agreeing\n",
-                        name, unsaid, what);
+        text += fmt::format("{}: {} {} left open by a missing sample, counted as disagreeing\n",
+                            name, unsaid, what);
 }
 
 std::string predicates_part(const Evaluation& evaluation) {
@@ -107,10 +104,10 @@ std::string predicates_part(const Evaluation& evaluation) {
         add_remarks(remarks, p.name, p.frames.counts, "frames");
         if (p.adaptive)
             remarks += fmt::format(
-                "{}: with the threshold that it starts with; labels would move it\n", p.name);
+                "{}: evaluated with its initial threshold, which labels would adapt\n", p.name);
         if (p.arrays > 0)
-            remarks += fmt::format("{}: in {} of the episodes labelled by an array of theirs\n",
-                                   p.name, p.arrays);
+            remarks += fmt::format("{}: {} of the episodes have an array of its labels\n", p.name,
+                                   p.arrays);
     }
     return "\n" + aligned(rows) + remarks;
 }
@@ -169,12 +166,12 @@ std::string left_out(const Evaluation& evaluation) {
         if (m.lacking.empty()) continue;
         std::string names;
         for (const std::string& name : m.lacking) names += (names.empty() ? "" : ", ") + name;
-        text += fmt::format("{}: not evaluable without a truth of {}\n", m.name, names);
+        text += fmt::format("{}: not evaluated, no labels for {}\n", m.name, names);
     }
     return text.empty() ? "" : "\n" + text;
 }
 
-/// How much each fold held out, and the thresholds of the rest.
+/// Lists the number of episodes that each fold held out, and the thresholds from the others.
 std::string folds_part(const Evaluation& evaluation) {
     std::vector<Row> rows = {{"fold", "episodes held out"}};
     for (const auto& [name, threshold] : evaluation.folds[0].thresholds)
@@ -247,18 +244,19 @@ std::string differences_part(const SideBySide::Spec& spec, const std::string& fi
     std::string remarks;
     for (const Difference& d : spec.differences) {
         const std::string name = fmt::format("{}, by {}", d.name, d.level);
-        if (d.other_truths == 0)
-            rows.push_back({name, difference(d.f1), difference(d.precision), difference(d.recall),
-                            difference(d.agreement), d.auroc ? difference(*d.auroc) : ""});
-        else
+        if (d.other_truths > 0) {
             remarks +=
-                fmt::format("{}: not compared, {} of the episodes {} another truth in {}\n", name,
-                            d.other_truths, d.other_truths == 1 ? "has" : "have", spec.path);
+                fmt::format("{}: not compared, {} of the episodes {} a different truth in {}\n",
+                            name, d.other_truths, d.other_truths == 1 ? "has" : "have", spec.path);
+            continue;
+        }
+        Row& row = rows.emplace_back(Row{name});
+        d.for_each([&](const char*, const Figure& rate) { row.push_back(difference(rate)); });
+        row.push_back(d.auroc ? difference(*d.auroc) : "");
     }
     if (spec.differences.empty())
         remarks =
-            "nothing to compare: no predicate or monitor of the two has the same name and a "
-            "truth\n";
+            "nothing to compare: the specs have no predicate or monitor with a truth in common\n";
     return "\n" + aligned(rows) + remarks;
 }
 

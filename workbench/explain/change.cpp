@@ -1,6 +1,6 @@
-// The smallest change of one measurement that turns a verdict: where some literal of it changes
-// sides, tried in order of size. That of an order is found by bisection over the floats in between,
-// that of == and != is at the threshold or beside it.
+// Finds the smallest change of one measurement that flips a verdict. Candidates are the points at
+// which a literal changes its truth, tried in order of size: by bisection over the floats for an
+// order comparison, at and beside the threshold for == and !=.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -35,7 +35,7 @@ public:
                          [](const Candidate& a, const Candidate& b) { return a.size < b.size; });
         for (const Candidate& candidate : candidates_) {
             if (!turns(candidate.altered)) continue;
-            const Judged then = judge(subject_, candidate.altered);
+            const Judged then = judge(subject_, &candidate.altered);
             return Change{candidate.sample, candidate.altered.measured, then.status,
                           then.reading == Reading::for_good};
         }
@@ -49,13 +49,13 @@ private:
         Altered altered;
     };
 
-    /// Whether the status is no longer there: so far, or for good, as it was.
+    /// Returns whether the status is lost; of a verdict that is final, whether finality is.
     bool turns(const Altered& altered) {
-        const Sourced root = judged_.values.at_with(altered, subject_.root, subject_.position);
-        return !subject_.supports(status_, root.key);
+        const Bounds root = judged_.values.at_with(altered, subject_.root, subject_.position);
+        return !subject_.supports(status_, judged_.deciding(root).key);
     }
 
-    /// The atoms that one distance or expression, or one bool, decides.
+    /// Returns the atoms that compare the same distance or expression, or read the same bool.
     std::vector<Index> of_same_measurement(Index atom) {
         const Observations& observed = subject_.observations;
         if (expressions_.empty())
@@ -71,8 +71,8 @@ private:
         return result;
     }
 
-    /// Where a literal that supports the status no longer does. One of == or != may begin to on the
-    /// way, so all of its points are tried.
+    /// Adds the points at which a literal stops supporting the status. A literal of == or != may
+    /// start to support it on the way, so all of its points are tried.
     void add_candidates(Sample sample, const std::vector<Index>& atoms, Support& support) {
         const Observations& observed = subject_.observations;
         const float measured = observed.measured(sample);
@@ -98,12 +98,12 @@ private:
         }
     }
 
-    /// The threshold, where == holds alone, and the floats beside it, as far as the expression can
-    /// have them.
+    /// Returns the threshold, where == holds alone, and the floats beside it, as far as the range
+    /// of the expression allows.
     std::vector<float> points_of_equality(Index atom) const {
         constexpr float kEnd = std::numeric_limits<float>::infinity();
         const check::Predicate& predicate = subject_.observations.predicate(atom);
-        const float threshold = predicate.threshold.value + 0.0F;  // 0 in place of -0
+        const float threshold = predicate.threshold.value + 0.0F;  // turns -0 into 0
         std::vector<float> points;
         for (const float point :
              {threshold, std::nextafter(threshold, -kEnd), std::nextafter(threshold, kEnd)})
@@ -111,7 +111,7 @@ private:
         return points;
     }
 
-    /// Unless the status is there without the literals that then no longer support it.
+    /// Adds a candidate, unless the status holds without the literals that it falsifies.
     void add(Candidate candidate, Support& support) {
         std::vector<Evidence> lost;
         for (const Index atom : candidate.altered.atoms)
@@ -126,7 +126,7 @@ private:
         return subject_.supports(status_, subject_.graph[literal].negated ? -value.low : value.low);
     }
 
-    /// The first number above or below at which the literal no longer supports the status.
+    /// Returns the first number above or below at which the literal no longer supports the status.
     std::optional<float> turning_point(NodeId literal, Index atom, float measured, bool up) const {
         const auto still = [&](std::int64_t delta) {
             return supports(literal, atom, etlmon::float_of(static_cast<Key>(delta)));

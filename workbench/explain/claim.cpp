@@ -7,7 +7,7 @@ namespace etlc::explain {
 
 namespace {
 
-/// Positions, given as ranges.
+/// A set of positions, built from ranges.
 class Ranges {
 public:
     explicit Ranges(std::uint64_t length) : changes_(length + 1) {}
@@ -40,7 +40,7 @@ bool is_past(const ir::Node& node) {
     return ir::info(node.op).tense == ir::Tense::past;
 }
 
-/// The position that is seen at this offset.
+/// Returns the position that the operator sees at this offset.
 std::uint64_t at(const ir::Node& node, std::uint64_t position, std::uint64_t offset) {
     return is_past(node) ? position - offset : position + offset;
 }
@@ -58,7 +58,7 @@ bool Statement::goes_on(const ir::Node& node, std::uint64_t at) const {
 
 namespace {
 
-/// What the statement looks at, from the root down.
+/// Finds the positions that the statement reads, from the root down.
 class Reach {
 public:
     explicit Reach(const Statement& statement)
@@ -124,7 +124,7 @@ std::vector<std::vector<bool>> reach(const Statement& statement) {
     return Reach(statement).find();
 }
 
-Claim::Claim(const Statement& statement, const std::vector<std::vector<bool>>& speaks_for_it)
+Claim::Claim(const Statement& statement, const std::vector<std::vector<bool>>& supports)
     : statement_(statement),
       graph_(statement.graph),
       true_(reach(statement)),
@@ -147,7 +147,7 @@ Claim::Claim(const Statement& statement, const std::vector<std::vector<bool>>& s
             continue;
         }
         for (std::uint64_t k = 0; k <= statement.unseen(); ++k)
-            true_[id][k] = true_[id][k] && speaks_for_it[id][k];
+            true_[id][k] = true_[id][k] && supports[id][k];
     }
 }
 
@@ -178,7 +178,7 @@ bool Claim::combination(const ir::Node& node, std::uint64_t position) const {
     return !one;
 }
 
-/// At the position that stands for all that may come: as Values has it.
+/// Evaluates the position that stands for the unseen future, as Values does.
 bool Claim::unseen(const ir::Node& node) const {
     const bool one = statement_.takes_one(node);
     if (one && node.interval.low > 0) return false;
@@ -195,8 +195,8 @@ bool Claim::search(NodeId id, std::uint64_t position, std::uint64_t from) {
                                             : find_release(id, position, from);
 }
 
-/// The first place of the window, at or after `from`, where the last operand is true, and the left
-/// one up to there. Before `from` the left one is.
+/// Finds the first offset of the window, at or after `from`, at which the last operand is true,
+/// with the left one true up to there. Before `from` the left one is known to be true.
 bool Claim::find_witness(NodeId id, std::uint64_t position, std::uint64_t from) {
     const ir::Node& node = graph_[id];
     const Window w = window(node, position);
@@ -214,9 +214,9 @@ bool Claim::find_witness(NodeId id, std::uint64_t position, std::uint64_t from) 
     return false;
 }
 
-/// The first place, at or after `from`, where the left operand is true: up to it the last one has
-/// to be true in the window, and after the prefix if the window goes on and there is no such place.
-/// Before `from` it is.
+/// Finds the first offset, at or after `from`, at which the left operand is true. Up to it the last
+/// one has to be true in the window; without it, in all of the window and after the prefix. Before
+/// `from` the last one is known to be true.
 bool Claim::find_release(NodeId id, std::uint64_t position, std::uint64_t from) {
     const ir::Node& node = graph_[id];
     const Window w = window(node, position);
@@ -269,7 +269,7 @@ void Claim::refute(NodeId id, std::uint64_t position) {
     refuted_.push_back({id, position});
 }
 
-/// The operand is no longer true at this position.
+/// Tells a parent that the operand is no longer true at this position.
 void Claim::tell(const Parent& parent, std::uint64_t position) {
     const ir::Node& node = graph_[parent.node];
     if (!is_temporal(node)) {
@@ -284,7 +284,7 @@ void Claim::tell(const Parent& parent, std::uint64_t position) {
     const std::uint64_t low = parent.is_last ? node.interval.low : 0;
     const std::uint64_t high = std::min<std::uint64_t>(node.interval.high, room);
     if (low > high) return;
-    // The positions that see this one at an offset in [low, high] and are within reach.
+    // the positions within reach that see this one at an offset in [low, high]
     std::uint64_t from = is_past(node) ? position + low : position - high;
     std::uint64_t to = is_past(node) ? position + high : position - low;
     from = std::max(from, first_[parent.node]);
@@ -294,7 +294,7 @@ void Claim::tell(const Parent& parent, std::uint64_t position) {
             reconsider(parent, k, is_past(node) ? k - position : position - k);
 }
 
-/// Nor after the prefix, where windows go on that have not been released before.
+/// Tells a parent that the operand is no longer true after the prefix.
 void Claim::tell_of_unseen(const Parent& parent) {
     const ir::Node& node = graph_[parent.node];
     if (!parent.is_last) return;
@@ -304,7 +304,7 @@ void Claim::tell_of_unseen(const Parent& parent) {
             refute(parent.node, k);
 }
 
-/// The operand is no longer true at this offset from the position.
+/// Searches again, because the operand is no longer true at this offset from the position.
 void Claim::reconsider(const Parent& parent, std::uint64_t position, std::uint64_t offset) {
     const NodeId id = parent.node;
     const std::uint64_t known = offsets_[id][position];

@@ -1,8 +1,6 @@
-// That a verdict is satisfied, or that it is violated, and which samples the claim can do without.
-// Takes: the graph, and of every literal where it speaks for the claim. Gives: after samples are
-// taken away, whether the rest still makes the claim true. Keeps true: a sample that is refused
-// leaves nothing changed; taking all samples away costs about as much as looking at each pair of a
-// position and one in its window once.
+// The claim that a verdict is satisfied, or violated, and which samples it can do without. A sample
+// that the claim needs leaves nothing changed. Withdrawing all samples costs about as much as
+// visiting each pair of a position and one in its window once.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +17,8 @@ struct Evidence {
     std::uint64_t step = 0;
 };
 
-/// That the formula `root` is satisfied, or violated, at a position of the prefix 0..last, so far
-/// or for good.
+/// The statement that the formula `root` is satisfied, or violated, at a position of the prefix
+/// 0..last, so far or for good.
 struct Statement {
     const ir::Graph& graph;
     NodeId root = 0;
@@ -29,40 +27,41 @@ struct Statement {
     bool satisfied = true;
     Reading reading = Reading::so_far;
 
-    /// Whether it takes one operand, or one position of a window, and not all: so with the max of a
-    /// formula that is satisfied, and the min of one that is violated.
+    /// Returns whether one operand, or one position of a window, suffices: so for the max of a
+    /// satisfied formula and the min of a violated one.
     bool takes_one(const ir::Node& node) const;
-    /// Whether the window at this position goes on after the prefix, where it has to hold as well.
+    /// Returns whether the window at this position extends past the prefix, where the formula has
+    /// to hold as well.
     bool goes_on(const ir::Node& node, std::uint64_t position) const;
-    /// The position after the prefix, which stands for all that may come.
+    /// The position after the prefix, which stands for the unseen future.
     std::uint64_t unseen() const { return last + 1; }
 };
 
-/// Per node, the positions, the unseen one included, that the statement looks at.
+/// Returns per node the positions, the unseen one included, that the statement reads.
 std::vector<std::vector<bool>> reach(const Statement& statement);
 
 class Claim {
 public:
-    /// `speaks_for_it`: per node that is a literal or constant, by step, the unseen one included.
-    Claim(const Statement& statement, const std::vector<std::vector<bool>>& speaks_for_it);
+    /// `supports`: per node that is a literal or constant, by step, the unseen one included.
+    Claim(const Statement& statement, const std::vector<std::vector<bool>>& supports);
 
     bool holds() const { return true_[statement_.root][statement_.position]; }
-    /// Whether a literal is within reach, speaks for the claim, and has not been taken away.
+    /// Returns whether a literal is within reach, supports the claim, and has not been withdrawn.
     bool uses(NodeId literal, std::uint64_t step) const { return true_[literal][step]; }
-    /// Whether the claim needs one of these, beside what else is still there.
+    /// Returns whether the claim needs one of these beside the evidence that is left.
     bool needs(const std::vector<Evidence>& evidence);
-    /// Takes them away unless it does.
+    /// Withdraws them unless the claim needs them; returns whether it did.
     bool can_do_without(const std::vector<Evidence>& evidence);
 
 private:
-    /// The positions of a temporal operator, as offsets into the direction that it looks.
+    /// The window of a temporal operator, as offsets in the direction of the operator.
     struct Window {
         std::uint64_t low = 0;
         std::uint64_t high = 0;  ///< cut at the end of the prefix, or at its beginning
         bool empty = false;
-        bool goes_on = false;  ///< after the prefix
+        bool goes_on = false;  ///< extends past the prefix
     };
-    /// What was so before a change that may be taken back.
+    /// A fact that held before a change that may be undone.
     struct Before {
         NodeId node = 0;
         std::uint64_t position = 0;
@@ -70,7 +69,7 @@ private:
     };
     struct Parent {
         NodeId node = 0;
-        bool is_last = true;  ///< the operand of its window, not the left one of an until
+        bool is_last = true;  ///< the operand of the window, not the left one of an until
     };
 
     static constexpr std::uint64_t kNever = UINT64_MAX;
@@ -94,14 +93,14 @@ private:
     const Statement statement_;
     const ir::Graph& graph_;
     std::vector<std::vector<bool>> true_;  ///< [node][position]; false also where out of reach
-    /// [node][position], of temporal operators: the offset of what makes them true. Of an until, of
-    /// its first witness; of a release, of the first left operand, up to which the window holds.
+    /// [node][position] of temporal operators: the offset of the first witness of an until; of a
+    /// release, that of the first true left operand, up to which the window has to hold.
     std::vector<std::vector<std::uint64_t>> offsets_;
     std::vector<std::vector<Parent>> parents_;
     std::vector<std::uint64_t> first_;  ///< per node: the first and last seen position within reach
     std::vector<std::uint64_t> final_;
     std::vector<Before> changes_;
-    std::vector<Evidence> refuted_;  ///< whose parents have not been told
+    std::vector<Evidence> refuted_;  ///< parents not yet notified
 };
 
 }  // namespace etlc::explain

@@ -13,7 +13,7 @@ namespace {
 using check::Formula;
 using Kind = Formula::Kind;
 
-/// Whether a formula holds its operand `n` as it is, or its negation, or both.
+/// Whether a formula contains its operand `n`, its negation, or both.
 struct Polarities {
     bool plain = true;
     bool negated = false;
@@ -29,8 +29,8 @@ Polarities polarities(const Formula& formula, std::size_t n) {
     }
 }
 
-/// The positions at which a formula looks at an operand, in 0..seen - 1; `seen` itself stands for
-/// those that are not seen yet.
+/// The positions at which a formula reads an operand, in 0..seen - 1; `seen` itself stands for the
+/// unseen future.
 struct Span {
     std::uint64_t first = 0;
     std::uint64_t last = 0;
@@ -43,20 +43,22 @@ Span looked_at(const Formula& formula, std::uint64_t position, std::uint64_t see
     return {position - std::min<std::uint64_t>(position, formula.high), position};
 }
 
-/// From the monitor's formula down, always to an operand that has the monitor's value: the sample
-/// is part of the value, so that is the one which the value is taken from.
+/// Builds the chain from the monitor's formula down, always to an operand that has the monitor's
+/// value. The sample is part of the value, so that is the operand which the value comes from.
 class Chain {
 public:
     Chain(const ir::Program& program, const Subject& subject, const Judged& judged)
-        : program_(program), subject_(subject), judged_(judged) {}
+        : program_(program),
+          subject_(subject),
+          judged_(judged),
+          root_(judged.at(subject.root, subject.position)) {}
 
     std::vector<Link> from(Index formula) const {
         std::vector<Link> chain;
         std::optional<Place> place{{formula, false, subject_.position}};
         for (; place; place = below(*place)) {
-            const etlmon::Key key = judged_.root.key;
-            chain.push_back(
-                {place->formula, place->position, etlmon::float_of(place->negated ? -key : key)});
+            chain.push_back({place->formula, place->position,
+                             etlmon::float_of(place->negated ? -root_.key : root_.key)});
         }
         return chain;
     }
@@ -82,8 +84,7 @@ private:
                 if (node == check::kNone || !judged_.values.has(node)) continue;
                 const std::uint64_t last = std::min(span.last, last_position);
                 for (std::uint64_t k = span.first; k <= last; ++k)
-                    if (judged_.values.at(node, k) == judged_.root)
-                        return Place{formula.operands[n], negated, k};
+                    if (judged_.at(node, k) == root_) return Place{formula.operands[n], negated, k};
             }
         }
         return std::nullopt;
@@ -92,9 +93,10 @@ private:
     const ir::Program& program_;
     const Subject& subject_;
     const Judged& judged_;
+    const Sourced root_;
 };
 
-/// Leaves samples out, the last ones first, the critical one at the very end.
+/// Drops the samples that are not needed: the last ones first, the critical one at the very end.
 std::vector<Sample> irreducible(Support& support, const std::optional<Sample>& critical) {
     std::vector<Sample> order = support.samples();
     std::reverse(order.begin(), order.end());
@@ -133,7 +135,7 @@ std::vector<Sample> missing(const Subject& subject) {
     return in_order(std::move(result));
 }
 
-/// The nodes of the formula and of all formulas in it.
+/// Returns the nodes of the formula and of all formulas in it.
 std::vector<bool> nodes_of(const ir::Program& program, Index formula) {
     std::vector<bool> inside(formula + std::size_t{1});
     inside[formula] = true;
@@ -168,10 +170,11 @@ Explanation explain(const ir::Program& program, const Observations& observations
         return result;
     }
     result.for_good = judged.reading == Reading::for_good;
-    result.robustness = etlmon::float_of(etlmon::shifted(judged.root.key, subject.shift));
-    result.critical = judged.values.source(judged.root);
+    const Sourced root = judged.at(subject.root, subject.position);
+    result.robustness = etlmon::float_of(etlmon::shifted(root.key, subject.shift));
+    result.critical = judged.values.source(root);
     result.chain = Chain(program, subject, judged).from(monitor.formula);
-    Support support(subject, judged, judged.root.key);
+    Support support(subject, judged, root.key);
     result.samples = in_order(irreducible(support, result.critical));
     result.change = smallest_change(subject, judged, result.samples);
     return result;

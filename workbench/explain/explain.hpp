@@ -1,9 +1,6 @@
-// Why a verdict is what it is: the critical sample, the samples that it rests on, and what would
-// turn it. docs/explanations.md has the definitions.
-// Takes: formulas as ir::lower gives them, the observations of a trace, and a monitor's position
-// and step. Gives: an explanation in samples and formulas. Keeps true: with every other sample
-// missing the samples give the same verdict, and no fewer of them do; the change was tried, and the
-// verdict turned.
+// Explains a verdict: the critical sample, a minimal set of samples that gives the same verdict,
+// and the smallest change that would flip it. docs/explanations.md has the definitions. With every
+// other sample missing the samples give the same verdict, and no subset of them does.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +12,7 @@
 
 namespace etlc::explain {
 
-/// What a monitor says about a position after a step: rho(f, position, step).
+/// The verdict to explain: rho(f, position, step).
 struct Question {
     Index monitor = 0;  ///< of the model
     std::uint64_t position = 0;
@@ -24,35 +21,36 @@ struct Question {
 
 enum class Status : std::uint8_t { satisfied, violated, unknown };
 
-/// A formula on the way from the monitor's to the critical sample.
+/// A formula between the monitor's and the critical sample.
 struct Link {
     Index formula = 0;           ///< of the model
-    std::uint64_t position = 0;  ///< the one after the step: all that may come
+    std::uint64_t position = 0;  ///< the step after the last one stands for the unseen future
     float robustness = 0;        ///< of the formula as written
 };
 
-/// Another measurement of one step, and what the monitor would then say.
+/// Another measurement at one step, and the verdict that it would give.
 struct Change {
-    Sample sample;       ///< one of those that it concerns
-    float measured = 0;  ///< instead; of a bool, the other value
+    Sample sample;       ///< one of the samples that it changes
+    float measured = 0;  ///< the new value
     Status status = Status::unknown;
     bool for_good = false;
 };
 
 struct Explanation {
     Status status = Status::unknown;
-    /// Whether it stays so whatever follows; then that is what is explained.
+    /// Whether the verdict is final; then its finality is explained too.
     bool for_good = false;
-    /// What decides: for good the lower bound where satisfied, the upper one where violated; so far
-    /// rho where satisfied, its optimistic end where violated. Less the monitor's shift.
+    /// The deciding value, less the monitor's shift: of a final verdict the lower bound where
+    /// satisfied, the upper one where violated; else rho where satisfied, its optimistic end where
+    /// violated.
     float robustness = 0;
-    /// Whose robustness that is; nothing where it is that of an empty window or a constant, and of
-    /// an unknown verdict.
+    /// The sample whose robustness that is; empty for the value of an empty window or of a
+    /// constant, and for an unknown verdict.
     std::optional<Sample> critical;
-    std::vector<Link> chain;      ///< from the monitor's formula down to it
+    std::vector<Link> chain;      ///< from the monitor's formula down to the critical sample
     std::vector<Sample> samples;  ///< by step, then atom
     std::optional<Change> change;
-    /// Of an unknown verdict: the samples within its reach that are missing, by step, then atom.
+    /// For an unknown verdict: the missing samples within reach, by step, then atom.
     std::vector<Sample> missing;
 };
 

@@ -1,4 +1,4 @@
-// The explanation for programs: docs/explanations.md lists the keys. What is infinite is null.
+// Prints an explanation as JSON; docs/explanations.md lists the keys. Infinite numbers are null.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -69,7 +69,7 @@ private:
         return fmt::format("\"name\": {}", source::json_string(name_of(observations_, atom)));
     }
 
-    /// What was measured at a step; null where it is missing.
+    /// Prints a measurement; null where the sample is missing.
     std::string measured(Sample at) const {
         if (observations_.is_missing(at)) return "null";
         if (observations_.atoms()[at.atom].is_predicate) return number(observations_.measured(at));

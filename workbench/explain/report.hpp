@@ -1,8 +1,9 @@
-// An explanation for people, and for programs.
-// Takes: the explanation with what it was asked about. Gives: text, or JSON, whose keys
-// docs/explanations.md lists. Keeps true: samples in a row are one interval.
+// Prints an explanation as text, or as JSON, whose keys docs/explanations.md lists. Samples at
+// consecutive steps are one interval.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,31 @@
 #include "explain/explain.hpp"
 
 namespace etlc::explain {
+/// The verdicts of a monitor at every step of a trace.
+
+struct History {
+    std::vector<etlmon::Verdict> verdicts;
+    std::vector<std::uint64_t> positions;  ///< the positions they judge
+    std::optional<std::uint64_t> first_alarm;
+    std::optional<std::uint64_t> first_final;
+
+    void add(const etlmon::Verdict& verdict, std::uint64_t position) {
+        if (verdict.alarm() && !first_alarm) first_alarm = verdicts.size();
+        if (verdict.final() && !first_final) first_final = verdicts.size();
+        add_after_trace(verdict, position);
+    }
+    void add_after_trace(const etlmon::Verdict& verdict, std::uint64_t position) {
+        verdicts.push_back(verdict);
+        positions.push_back(position);
+    }
+
+    /// Returns the step to explain by default: the first alarm; else the first final verdict of a
+    /// prefix monitor; else the last frame.
+    std::uint64_t usual_step(bool sliding, std::uint64_t last_frame) const {
+        if (first_alarm) return *first_alarm;
+        return first_final && !sliding ? *first_final : last_frame;
+    }
+};
 
 struct Report {
     const Observations& observations;
@@ -18,8 +44,7 @@ struct Report {
     Explanation explanation;
 };
 
-/// Of the monitor's verdict, which is `verdict`. Throws std::logic_error where the explanation is
-/// of another one.
+/// Explains `verdict`. Throws std::logic_error where the explanation is of another one.
 Report report(const Observations& observations, const ir::Program& program,
               const Question& question, const etlmon::Verdict& verdict);
 
@@ -28,26 +53,26 @@ std::string json(const Report& report);
 
 // ---- what both are made of ----------------------------------------------------------------------
 
-/// Samples of one atom at steps in a row, at which it holds, or fails.
+/// Samples of one atom at consecutive steps, all true or all false.
 struct Interval {
     Index atom = 0;
     std::uint64_t first = 0;
     std::uint64_t last = 0;
     bool holds = false;
-    bool is_missing = false;    ///< the spec says what they count as
+    bool is_missing = false;    ///< counted as the spec's `missing` says
     std::uint64_t closest = 0;  ///< the step of the least margin
 };
 
-/// By atom, then step.
+/// Groups samples, sorted by atom, then step.
 std::vector<Interval> intervals(const Observations& observations,
                                 const std::vector<Sample>& samples);
 
 std::string name_of(const Observations& observations, Index atom);
 const char* word(Status status);
-/// How far from its threshold a predicate was measured.
+/// Returns the distance of a measurement from its threshold.
 float margin(const Observations& observations, Sample sample);
 
-/// The row that was nearest then by a distance of the predicate that takes the minimum.
+/// The nearest row of a distance that takes the minimum.
 struct Nearest {
     const check::Distance* distance = nullptr;
     std::uint32_t row = 0;

@@ -14,7 +14,7 @@ Index atom_of(const Subject& subject, const ir::Node& literal) {
     return subject.observations.atom(literal.op == ir::Op::predicate, literal.index);
 }
 
-/// Whether the literal supports the status whatever the sample is.
+/// Returns whether the literal supports the status whatever the sample is.
 bool always(const Subject& subject, Status status, const ir::Node& literal) {
     const etlmon::Value range = subject.observations.range(atom_of(subject, literal));
     const etlmon::Value value = literal.negated ? etlmon::negate(range) : range;
@@ -25,7 +25,7 @@ etlmon::Key constant(const ir::Node& node) {
     return node.op == ir::Op::constant_true ? etlmon::kTop : etlmon::kBottom;
 }
 
-/// Per atom, the literals that it has to speak for.
+/// Returns per atom the literals that depend on its samples.
 std::vector<std::vector<NodeId>> literals_of(const Subject& subject, Status status) {
     std::vector<std::vector<NodeId>> result(subject.observations.atoms().size());
     const std::vector<bool> wanted = closure(subject.graph, {subject.root});
@@ -37,11 +37,11 @@ std::vector<std::vector<NodeId>> literals_of(const Subject& subject, Status stat
     return result;
 }
 
-/// Per literal and constant, the steps at which it supports the status, given only samples of
-/// which some literal does so as far as `least`.
-std::vector<std::vector<bool>> speaking(const Subject& subject, const Judged& judged,
-                                        const std::vector<std::vector<NodeId>>& literals,
-                                        etlmon::Key least) {
+/// Returns per literal and constant the steps at which it supports the status, given only the
+/// samples of which some literal reaches `least`.
+std::vector<std::vector<bool>> supporting_steps(const Subject& subject, const Judged& judged,
+                                                const std::vector<std::vector<NodeId>>& literals,
+                                                etlmon::Key least) {
     const Status status = judged.status;
     std::vector<std::vector<bool>> result(subject.root + std::size_t{1});
     for (NodeId id = 0; id <= subject.root; ++id) {
@@ -53,7 +53,7 @@ std::vector<std::vector<bool>> speaking(const Subject& subject, const Judged& ju
     }
     for (const std::vector<NodeId>& of_atom : literals)
         for (std::uint64_t step = 0; step <= subject.last && !of_atom.empty(); ++step) {
-            const auto key = [&](NodeId literal) { return judged.values.at(literal, step).key; };
+            const auto key = [&](NodeId literal) { return judged.at(literal, step).key; };
             const auto supports = [&](NodeId literal) {
                 return subject.supports(status, key(literal));
             };
@@ -74,7 +74,7 @@ Support::Support(const Subject& subject, const Judged& judged, etlmon::Key least
     : literals_(literals_of(subject, judged.status)),
       claim_({subject.graph, subject.root, subject.position, subject.last,
               judged.status == Status::satisfied, judged.reading},
-             speaking(subject, judged, literals_, least)) {
+             supporting_steps(subject, judged, literals_, least)) {
     for (std::uint64_t step = 0; step <= subject.last; ++step)
         for (Index atom = 0; atom < literals_.size(); ++atom)
             if (!literals({atom, step}).empty()) samples_.push_back({atom, step});

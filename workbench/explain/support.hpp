@@ -1,34 +1,40 @@
-// The samples that speak for a status, and which of them it needs.
+// The samples that support a verdict, which of them it needs, and the smallest change that would
+// flip it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "explain/claim.hpp"
-#include "explain/subject.hpp"
+#include "explain/values.hpp"
 
 namespace etlc::explain {
 
 class Support {
 public:
-    /// Of the samples that support the judged status: those whose value is at least as far on its
-    /// side as `least`.
+    /// Considers the samples whose value is at least as far on the side of the status as `least`.
     Support(const Subject& subject, const Judged& judged, etlmon::Key least);
 
-    /// By step, then atom.
+    /// Returns the samples by step, then atom.
     const std::vector<Sample>& samples() const { return samples_; }
-    /// The literals of a sample that speak for the status.
+    /// Returns the literals of a sample that support the status.
     std::vector<NodeId> literals(Sample sample) const;
-    /// Whether the status needs one of these literals, beside what else is still there.
+    /// Returns whether the status needs one of these literals beside the evidence that is left.
     bool needs(const std::vector<Evidence>& literals) { return claim_.needs(literals); }
-    /// Takes the sample away unless it does.
+    /// Withdraws the sample unless the status needs it; returns whether it did.
     bool can_do_without(Sample sample) { return claim_.can_do_without(evidence(sample)); }
 
 private:
     std::vector<Evidence> evidence(Sample sample) const;
 
-    std::vector<std::vector<NodeId>> literals_;  ///< per atom, those that it has to speak for
+    std::vector<std::vector<NodeId>> literals_;  ///< per atom, those that depend on its samples
     Claim claim_;
     std::vector<Sample> samples_;
 };
+
+/// Returns the smallest change of one measurement behind the samples that flips the verdict; a bool
+/// only where no other measurement does. Alters the values meanwhile and restores them.
+std::optional<Change> smallest_change(const Subject& subject, Judged& judged,
+                                      const std::vector<Sample>& samples);
 
 }  // namespace etlc::explain

@@ -1,4 +1,4 @@
-// The explanation for people.
+// Prints an explanation as text.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,20 +20,20 @@ public:
     std::string write() {
         head();
         if (explained_.status == Status::unknown) {
-            section("missing within its reach");
+            section("missing samples within reach");
             for (const Interval& i : intervals(observations_, explained_.missing))
                 line("{} at {}", name_of(observations_, i.atom), steps(i.first, i.last));
             return std::move(text_);
         }
-        section("it takes");
+        section("samples that decide it");
         if (explained_.samples.empty()) line("no sample");
         for (const Interval& i : intervals(observations_, explained_.samples)) interval(i);
-        section(*bound() != 0 ? "the bound is the robustness of" : "its robustness is that of");
+        section(*bound() != 0 ? "the bound comes from" : "its robustness comes from");
         critical();
         for (const Link& link : explained_.chain)
             line("{:>10.6g}  {} at {}", link.robustness, check::shown(model_, link.formula),
                  link.position > report_.question.step ? "any later step" : when(link.position));
-        section("the smallest change that turns it");
+        section("smallest change that flips it");
         change();
         return std::move(text_);
     }
@@ -56,7 +56,7 @@ private:
         text_ += "\n";
     }
 
-    /// Of a verdict that may have another robustness later on.
+    /// Qualifies the robustness of a verdict whose value may still change.
     const char* bound() const {
         if (model_.monitors[report_.question.monitor].sliding || !explained_.for_good) return "";
         return explained_.status == Status::satisfied ? "at least " : "at most ";
@@ -104,7 +104,7 @@ private:
         return text + nearest(i);
     }
 
-    /// ", nearest row 3 then"; of more than a distance ", nearest row 3 of people, 0 of walls".
+    /// ", nearest row 3 then"; for several distances ", nearest row 3 of people, 0 of walls".
     std::string nearest(const Interval& i) const {
         const std::vector<Nearest> rows = explain::nearest(observations_, {i.atom, i.closest});
         std::string text;
@@ -127,7 +127,7 @@ private:
     }
 
     void change() {
-        if (!explained_.change) return line("no other measurement at one step does");
+        if (!explained_.change) return line("no other measurement at a single step does");
         const Change& change = *explained_.change;
         const Index atom = change.sample.atom;
         const std::string then =

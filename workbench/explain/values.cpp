@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <deque>
+#include <utility>
+
+#include "etlmon/temporal/pending.hpp"
+#include "etlmon/temporal/shift.hpp"
 
 namespace etlc::explain {
 
 namespace {
-
-using Column = std::vector<Sourced>;
 
 constexpr std::int64_t kFirst = std::int64_t{1} << 62;
 
@@ -17,55 +18,10 @@ Sourced sourced(etlmon::Key key, std::uint64_t sample) {
     return {key, key < 0 ? -rank : rank};
 }
 
-/// Max, or min in its place.
-struct Choice {
-    bool max = true;
+using Lattice = etlmon::Lattice<Bounds>;
 
-    Sourced operator()(Sourced a, Sourced b) const { return max == (a < b) ? b : a; }
-    Sourced of_nothing() const { return max ? kFalseItself : kTrueItself; }
-    Choice dual() const { return {!max}; }
-};
-
-/// At t the choice among [t + low, t + high], cut at the end. `endless`: the last element stands
-/// for all that come after it, too.
-Column window(const Column& operand, std::uint64_t low, std::uint64_t high, Choice choose,
-              bool endless) {
-    const std::size_t n = operand.size();
-    Column result(n, choose.of_nothing());
-    std::deque<std::size_t> chosen;  // from the last position to the first, each beating the next
-    for (std::size_t t = n; t-- > 0;) {
-        if (low >= n - t && !endless) continue;
-        const std::size_t entering = std::min<std::uint64_t>(t + low, n - 1);
-        while (!chosen.empty() &&
-               choose(operand[chosen.back()], operand[entering]) == operand[entering])
-            chosen.pop_back();
-        chosen.push_back(entering);
-        while (chosen.front() - t > high) chosen.pop_front();
-        result[t] = operand[chosen.front()];
-    }
-    return result;
-}
-
-/// f U[low, high] g for a max, f R[low, high] g for a min. As on every trace, f U[0,w] g is
-/// f U g && F[0,w] g, and f U[a,b] g asks f for a steps and then f U[0,b-a] g. `endless`: of g.
-Column until(Column f, const Column& g, std::uint64_t low, std::uint64_t high, Choice choose,
-             bool endless) {
-    const std::size_t n = g.size();
-    const Choice join = choose.dual();
-    Column inner = window(g, 0, high == check::kUnbounded ? high : high - low, choose, endless);
-    Sourced unbounded = choose.of_nothing();
-    for (std::size_t t = n; t-- > 0;) {
-        unbounded = choose(g[t], join(f[t], unbounded));
-        inner[t] = join(inner[t], unbounded);
-    }
-    if (low == 0) return inner;
-    if (endless) f.back() = join.of_nothing();  // f is asked for where it has been seen
-    const Column before = window(f, 0, low - 1, join, false);
-    Column result(n, choose.of_nothing());
-    for (std::size_t t = 0; t < n; ++t)
-        if (low < n - t || endless)
-            result[t] = join(before[t], inner[std::min<std::uint64_t>(t + low, n - 1)]);
-    return result;
+Bounds best_of(bool max, Bounds a, Bounds b) {
+    return max ? max_of(a, b) : min_of(a, b);
 }
 
 }  // namespace
@@ -81,24 +37,25 @@ std::vector<bool> closure(const ir::Graph& graph, const std::vector<NodeId>& roo
 }
 
 Values::Values(const ir::Graph& graph, const std::vector<bool>& nodes,
-               const Observations& observations, std::uint64_t last, End end, Reading reading,
-               const std::optional<Altered>& altered)
+               const Observations& observations, std::uint64_t last, Reading reading,
+               const Altered* altered)
     : graph_(&graph),
       observations_(&observations),
       atoms_(observations.atoms().size()),
       seen_(last + 1),
-      end_(end),
       reading_(reading),
       values_(nodes.size()) {
     for (NodeId id = 0; id < nodes.size(); ++id) {
         if (!nodes[id]) continue;
         const ir::Node& node = graph[id];
-        switch (ir::info(node.op).arity) {
-            case ir::Arity::atom: values_[id] = leaf(node, altered); break;
-            case ir::Arity::many: values_[id] = combination(node); break;
-            case ir::Arity::unary:
-            case ir::Arity::binary: values_[id] = temporal(node); break;
+        if (ir::info(node.op).tense != ir::Tense::now) {
+            values_[id] = temporal(node);
+            continue;
         }
+        values_[id].resize(seen_ + (reading == Reading::for_good ? 1 : 0));
+        for (std::size_t t = 0; t < values_[id].size(); ++t)
+            values_[id][t] =
+                node.operands.empty() ? constant_or_literal(node, t, altered) : combined(node, t);
     }
 }
 
@@ -110,83 +67,78 @@ std::optional<Sample> Values::source(Sourced value) const {
     return Sample{static_cast<Index>(sample % atoms_), sample / atoms_};
 }
 
-Sourced Values::constant_or_literal(const ir::Node& node, std::size_t step,
-                                    const std::optional<Altered>& altered) const {
-    if (node.op == ir::Op::constant_true) return kTrueItself;
-    if (node.op == ir::Op::constant_false) return kFalseItself;
+Bounds Values::constant_or_literal(const ir::Node& node, std::size_t step,
+                                   const Altered* altered) const {
+    if (node.op == ir::Op::constant_true) return Lattice::top();
+    if (node.op == ir::Op::constant_false) return Lattice::bottom();
     const Index atom = observations_->atom(node.op == ir::Op::predicate, node.index);
-    const bool is_altered = altered && altered->step == step && altered->is_of(atom);
+    const bool is_altered = altered != nullptr && altered->step == step && altered->is_of(atom);
     const etlmon::Value value = step == seen_ ? observations_->range(atom)
                                 : is_altered  ? observations_->value(atom, altered->measured)
                                               : observations_->value({atom, step});
-    const bool low = (end_ == End::low) != node.negated;
-    const Sourced found = sourced(low ? value.low : value.high, step * atoms_ + atom);
-    return node.negated ? -found : found;
+    const std::uint64_t sample = step * atoms_ + atom;
+    const Bounds found{sourced(value.low, sample), sourced(value.high, sample)};
+    return node.negated ? Bounds{-found.upper, -found.lower} : found;
 }
 
-Column Values::leaf(const ir::Node& node, const std::optional<Altered>& altered) const {
-    Column result(seen_ + (is_for_good() ? 1 : 0));
-    for (std::size_t step = 0; step < result.size(); ++step)
-        result[step] = constant_or_literal(node, step, altered);
+Bounds Values::combined(const ir::Node& node, std::size_t position) const {
+    Bounds result = values_[node.operands.front()][position];
+    for (const NodeId operand : node.operands)
+        result = best_of(node.op == ir::Op::disjunction, result, values_[operand][position]);
     return result;
 }
 
-Sourced Values::combined(const ir::Node& node, std::size_t position) const {
-    const Choice choose{node.op == ir::Op::disjunction};
-    Sourced result = values_[node.operands.front()][position];
-    for (const NodeId operand : node.operands) result = choose(result, values_[operand][position]);
-    return result;
-}
-
-Column Values::combination(const ir::Node& node) const {
-    Column result(values_[node.operands.front()].size());
-    for (std::size_t t = 0; t < result.size(); ++t) result[t] = combined(node, t);
-    return result;
-}
-
-Column Values::temporal(const ir::Node& node) const {
-    const Choice choose{ir::takes_max(node.op)};
+Values::Column Values::temporal(const ir::Node& node) const {
     const bool past = ir::info(node.op).tense == ir::Tense::past;
-    // What may come counts where it may turn the bound: a max may grow, a min may fall.
-    const bool endless = is_for_good() && !past && choose.max == (end_ == End::high);
     // The past is the future of the trace backwards.
     const auto in_order = [&](Column column) {
-        column.resize(endless ? seen_ + 1 : seen_);
+        column.resize(seen_);
         if (past) std::reverse(column.begin(), column.end());
         return column;
     };
     const Column last = in_order(values_[node.operands.back()]);
-    const auto [low, high] = node.interval;
-    Column result =
-        in_order(node.operands.size() == 1 ? window(last, low, high, choose, endless)
-                                           : until(in_order(values_[node.operands.front()]), last,
-                                                   low, high, choose, endless));
-    result.resize(seen_);
-    if (is_for_good()) result.push_back(unseen(node));
+    const Column left =
+        node.operands.size() == 2 ? in_order(values_[node.operands.front()]) : Column{};
+    const bool is_open = !past && reading_ == Reading::for_good;
+    const Bounds to_come = is_open ? values_[node.operands.back()].back() : Bounds{};
+    Column result(seen_);
+    const auto evaluate = [&](auto sense, Sourced unseen) {
+        etlmon::pending_at_each<decltype(sense)>(left.empty() ? nullptr : left.data(), last.data(),
+                                                 result.data(), static_cast<std::uint32_t>(seen_),
+                                                 node.interval.low, node.interval.high, unseen);
+    };
+    if (ir::takes_max(node.op))
+        evaluate(etlmon::Seeking(), is_open ? to_come.upper : kFalseItself);
+    else
+        evaluate(etlmon::Guarding(), is_open ? to_come.lower : kTrueItself);
+    result = in_order(std::move(result));
+    if (reading_ == Reading::for_good) result.push_back(unseen(node));
     return result;
 }
 
-/// The lowest or highest unseen value of a temporal operator, as docs/semantics.md has them.
-Sourced Values::unseen(const ir::Node& node) const {
-    const Choice choose{ir::takes_max(node.op)};
-    const bool past = ir::info(node.op).tense == ir::Tense::past;
-    const bool moves = choose.max == (end_ == End::high);
+/// Returns the lowest and highest unseen value of a temporal operator, as docs/semantics.md defines
+/// them.
+Bounds Values::unseen(const ir::Node& node) const {
+    const bool max = ir::takes_max(node.op);
     const Column& operand = values_[node.operands.back()];
-    if (!moves && node.interval.low > 0) return choose.of_nothing();
+    const Bounds next = operand.back();
+    Bounds ever = next;
+    if (ir::info(node.op).tense == ir::Tense::past)
+        for (const Bounds& known : operand) ever = best_of(max, ever, known);
     const bool never_forgets = node.operands.size() == 1 && !node.interval.bounded();
-    Sourced result = operand.back();
-    if (past && (moves || never_forgets))
-        for (const Sourced& known : operand) result = choose(result, known);
-    return result;
+    const Bounds kept = node.interval.low > 0 ? (max ? Lattice::bottom() : Lattice::top())
+                        : never_forgets       ? ever
+                                              : next;
+    return max ? Bounds{kept.lower, ever.upper} : Bounds{ever.lower, kept.upper};
 }
 
 // ---- with other measurements --------------------------------------------------------------------
 
-Sourced Values::at_with(const Altered& altered, NodeId node, std::uint64_t position) {
+Bounds Values::at_with(const Altered& altered, NodeId node, std::uint64_t position) {
     changed_.resize(node + std::size_t{1});
     for (NodeId id = 0; id <= node; ++id)
         if (has(id)) alter(id, altered);
-    const Sourced result = at(node, position);
+    const Bounds result = at(node, position);
     for (; !before_.empty(); before_.pop_back()) {
         const Before& was = before_.back();
         values_[was.node][was.position] = was.value;
@@ -195,33 +147,53 @@ Sourced Values::at_with(const Altered& altered, NodeId node, std::uint64_t posit
     return result;
 }
 
-void Values::set(NodeId node, std::size_t position, Sourced value) {
-    Sourced& now = values_[node][position];
+void Values::set(NodeId node, std::size_t position, Bounds value) {
+    Bounds& now = values_[node][position];
     if (now == value) return;
     before_.push_back({node, position, now});
     changed_[node].push_back(position);
     now = value;
 }
 
-/// Its operands are altered.
-void Values::alter(NodeId id, const std::optional<Altered>& altered) {
+/// Evaluates a node again whose operands are altered.
+void Values::alter(NodeId id, const Altered& altered) {
     const ir::Node& node = (*graph_)[id];
-    switch (ir::info(node.op).arity) {
-        case ir::Arity::atom:
-            return set(id, altered->step, constant_or_literal(node, altered->step, altered));
-        case ir::Arity::many:
-            for (const NodeId operand : node.operands)
-                for (const std::size_t position : changed_[operand])
-                    set(id, position, combined(node, position));
-            return;
-        case ir::Arity::unary:
-        case ir::Arity::binary: break;
+    if (node.operands.empty())
+        return set(id, altered.step, constant_or_literal(node, altered.step, &altered));
+    if (ir::info(node.op).tense == ir::Tense::now) {
+        for (const NodeId operand : node.operands)
+            for (const std::size_t position : changed_[operand])
+                set(id, position, combined(node, position));
+        return;
     }
     if (std::all_of(node.operands.begin(), node.operands.end(),
                     [&](NodeId operand) { return changed_[operand].empty(); }))
         return;
     const Column column = temporal(node);
     for (std::size_t t = 0; t < column.size(); ++t) set(id, t, column[t]);
+}
+
+// ---- the verdict --------------------------------------------------------------------------------
+
+bool Subject::supports(Status status, etlmon::Key key) const {
+    return (etlmon::shifted(key, shift) >= 0) == (status == Status::satisfied);
+}
+
+/// A verdict that is final holds so far as well.
+Judged judge(const Subject& subject, const Altered* altered) {
+    const auto judged = [&](Reading reading) {
+        Values values(subject.graph, subject.nodes, subject.observations, subject.last, reading,
+                      altered);
+        const Bounds root = values.at(subject.root, subject.position);
+        const Status status =
+            subject.supports(Status::satisfied, root.lower.key)  ? Status::satisfied
+            : subject.supports(Status::violated, root.upper.key) ? Status::violated
+                                                                 : Status::unknown;
+        return Judged{status, reading, std::move(values)};
+    };
+    if (Judged for_good = judged(Reading::for_good); for_good.status != Status::unknown)
+        return for_good;
+    return judged(Reading::so_far);
 }
 
 }  // namespace etlc::explain

@@ -1,8 +1,7 @@
-// What formulas come to at every position of a prefix, with the sample that each value is that of.
-// Takes: the graph, which nodes, the observations, and which end of what missing samples leave
-// open. Gives: a value per node and position. Keeps true: the work is proportional to nodes times
-// steps, whatever the windows; equal formulas have equal values, sample included, however they are
-// written, since values are totally ordered and a min or a max is one of its operands.
+// Evaluates formulas at every position of a prefix, in values that carry the sample they come from,
+// and derives the verdict. The work is proportional to nodes times steps, whatever the windows.
+// Equal formulas have equal values, sample included, however they are written: values are totally
+// ordered, and a min or a max is one of its operands.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +10,8 @@
 #include <optional>
 #include <vector>
 
+#include "etlmon/temporal/monoid.hpp"
+#include "explain/explain.hpp"
 #include "explain/observations.hpp"
 #include "ir/graph.hpp"
 
@@ -18,8 +19,8 @@ namespace etlc::explain {
 
 using ir::NodeId;
 
-/// A robustness and the sample that it is that of. Of equal ones, the earlier sample counts as
-/// farther from 0; true and false themselves are farthest.
+/// A robustness with its sample. Of equal ones, that of the earlier sample counts as farther from
+/// 0; true and false themselves are farthest.
 struct Sourced {
     etlmon::Key key = 0;
     std::int64_t rank = 0;
@@ -30,14 +31,24 @@ struct Sourced {
 inline constexpr Sourced kTrueItself{etlmon::kTop, INT64_MAX};
 inline constexpr Sourced kFalseItself{etlmon::kBottom, -INT64_MAX};
 
-/// Pessimistic or optimistic about what is missing.
-enum class End : std::uint8_t { low, high };
+/// The pessimistic and the optimistic end where samples are missing.
+struct Bounds {
+    Sourced lower;
+    Sourced upper;
 
-/// Of what values are: of the prefix as it ends, or bounds over every continuation of it, which
-/// docs/semantics.md defines.
+    bool operator==(const Bounds&) const = default;
+};
+constexpr Bounds min_of(Bounds a, Bounds b) {
+    return {std::min(a.lower, b.lower), std::min(a.upper, b.upper)};
+}
+constexpr Bounds max_of(Bounds a, Bounds b) {
+    return {std::max(a.lower, b.lower), std::max(a.upper, b.upper)};
+}
+
+/// Values of the prefix as it ends, or bounds over every continuation of it (docs/semantics.md).
 enum class Reading : std::uint8_t { so_far, for_good };
 
-/// Measurements of one step that are other than observed.
+/// Changed measurements of one step.
 struct Altered {
     std::uint64_t step = 0;
     std::vector<Index> atoms;
@@ -50,53 +61,89 @@ struct Altered {
 
 class Values {
 public:
-    /// On the prefix 0..last. `nodes`: which to evaluate, with each also its operands.
+    /// Evaluates `nodes`, which include their operands, on the prefix 0..last.
     Values(const ir::Graph& graph, const std::vector<bool>& nodes, const Observations& observations,
-           std::uint64_t last, End end, Reading reading,
-           const std::optional<Altered>& altered = std::nullopt);
+           std::uint64_t last, Reading reading, const Altered* altered = nullptr);
 
     bool has(NodeId node) const { return node < values_.size() && !values_[node].empty(); }
-    Sourced at(NodeId node, std::uint64_t position) const { return values_[node][position]; }
-    /// Nothing where a value is that of an empty window, of a constant, or of what is not yet seen.
+    Bounds at(NodeId node, std::uint64_t position) const { return values_[node][position]; }
+    /// Returns the sample of a value; nothing for that of an empty window, a constant, or an unseen
+    /// step.
     std::optional<Sample> source(Sourced value) const;
 
-    /// What the node would be with other measurements. Only what these change is evaluated again.
-    Sourced at_with(const Altered& altered, NodeId node, std::uint64_t position);
+    /// Returns the value of the node with other measurements; evaluates only what these change.
+    Bounds at_with(const Altered& altered, NodeId node, std::uint64_t position);
 
 private:
-    /// What a value was before a change that is taken back.
+    using Column = std::vector<Bounds>;
+    /// A value before a change that is undone.
     struct Before {
         NodeId node = 0;
         std::size_t position = 0;
-        Sourced value;
+        Bounds value;
     };
 
-    Sourced constant_or_literal(const ir::Node& node, std::size_t step,
-                                const std::optional<Altered>& altered) const;
-    std::vector<Sourced> leaf(const ir::Node& node, const std::optional<Altered>& altered) const;
-    Sourced combined(const ir::Node& node, std::size_t position) const;
-    std::vector<Sourced> combination(const ir::Node& node) const;
-    std::vector<Sourced> temporal(const ir::Node& node) const;
-    Sourced unseen(const ir::Node& node) const;
-    bool is_for_good() const { return reading_ == Reading::for_good; }
+    Bounds constant_or_literal(const ir::Node& node, std::size_t step,
+                               const Altered* altered) const;
+    Bounds combined(const ir::Node& node, std::size_t position) const;
+    Column temporal(const ir::Node& node) const;
+    Bounds unseen(const ir::Node& node) const;
 
-    void set(NodeId node, std::size_t position, Sourced value);
-    void alter(NodeId node, const std::optional<Altered>& altered);
+    void set(NodeId node, std::size_t position, Bounds value);
+    void alter(NodeId node, const Altered& altered);
 
     const ir::Graph* graph_;
     const Observations* observations_;
     std::size_t atoms_;
     std::size_t seen_;  ///< positions of the prefix
-    End end_;
     Reading reading_;
-    /// [node][position]; empty: not evaluated. For good, the position after the prefix stands for
-    /// all that may come: its values are the lowest, or highest, unseen ones.
-    std::vector<std::vector<Sourced>> values_;
+    /// [node][position]; empty: not evaluated. With bounds, the position after the prefix stands
+    /// for the unseen future and has the lowest and the highest unseen value.
+    std::vector<Column> values_;
     std::vector<std::vector<std::size_t>> changed_;  ///< [node]: the positions, while altered
     std::vector<Before> before_;
 };
 
-/// These nodes and all below them.
+/// Returns these nodes and all below them.
 std::vector<bool> closure(const ir::Graph& graph, const std::vector<NodeId>& roots);
 
+/// A monitor's formula at a position of a prefix.
+struct Subject {
+    const ir::Graph& graph;
+    const Observations& observations;
+    NodeId root = 0;
+    std::vector<bool> nodes;  ///< below the root and of all formulas in the monitor's
+    std::uint64_t position = 0;
+    std::uint64_t last = 0;  ///< of the prefix
+    float shift = 0;         ///< subtracted from the verdict
+
+    /// Returns whether a key supports the status.
+    bool supports(Status status, etlmon::Key key) const;
+};
+
+struct Judged {
+    Status status = Status::unknown;
+    Reading reading = Reading::so_far;  ///< whether the verdict is final
+    Values values;
+
+    /// Returns the deciding end: the pessimistic one where satisfied, else the optimistic one.
+    Sourced deciding(Bounds value) const {
+        return status == Status::satisfied ? value.lower : value.upper;
+    }
+    Sourced at(NodeId node, std::uint64_t position) const {
+        return deciding(values.at(node, position));
+    }
+};
+Judged judge(const Subject& subject, const Altered* altered = nullptr);
+
 }  // namespace etlc::explain
+
+template <>
+struct etlmon::Lattice<etlc::explain::Bounds> {
+    static constexpr etlc::explain::Bounds bottom() {
+        return {etlc::explain::kFalseItself, etlc::explain::kFalseItself};
+    }
+    static constexpr etlc::explain::Bounds top() {
+        return {etlc::explain::kTrueItself, etlc::explain::kTrueItself};
+    }
+};

@@ -26,7 +26,7 @@ std::vector<Moments> Blocks::take() {
 }
 
 void Blocks::flush() {
-    std::map<std::vector<bool>, std::shared_ptr<Scatter>> scatters;  // by the frames they are of
+    std::map<std::vector<bool>, std::shared_ptr<Scatter>> scatters;  // by the frames in them
     std::vector<Moments> block;
     for (std::size_t i = 0; i < classes_.size(); ++i) {
         std::shared_ptr<Scatter> shared;
@@ -39,7 +39,7 @@ void Blocks::flush() {
         }
         block.emplace_back(Moments::Means{mean(i, 0), mean(i, 1)}, std::move(shared));
     }
-    scatters.clear();  // so that nobody else has them
+    scatters.clear();  // drops the other references
     std::vector<Moments*> all;
     std::vector<const Moments*> more;
     for (std::size_t i = 0; i < block.size(); ++i) {
@@ -65,7 +65,7 @@ std::shared_ptr<Scatter> Blocks::scatter(const std::vector<bool>& selected) {
 std::shared_ptr<Scatter> Blocks::unused_scatter() {
     for (const std::shared_ptr<Scatter>& one : scatters_) {
         if (one.use_count() > 1) continue;
-        std::atomic_thread_fence(std::memory_order_acquire);  // who had it may be another thread
+        std::atomic_thread_fence(std::memory_order_acquire);  // another thread may have held it
         return one;
     }
     scatters_.push_back(std::make_shared<Scatter>());

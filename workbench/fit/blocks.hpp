@@ -1,7 +1,5 @@
-// Frames of an episode, a block at a time, made into moments.
-// Takes: a point at every frame, and the class that each need puts the frame in. Gives: the moments
-// of each need. Keeps true: frames that several needs ask about are scattered once; memory is that
-// of a block.
+// Collects frames in blocks and turns them into moments. Frames that several needs share are
+// scattered once; memory is that of a block.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +12,7 @@ namespace etlc::fit {
 
 class Blocks {
 public:
-    /// Of a frame that is in no class of the need.
+    /// The class of a frame that counts in none.
     static constexpr std::int8_t kNone = -1;
 
     /// `with_scatter`: per need.
@@ -22,7 +20,7 @@ public:
 
     /// `classes`: per need.
     void add(const std::vector<float>& point, const std::vector<std::int8_t>& classes);
-    /// Of all since the last call, per need.
+    /// Returns the moments of all frames since the last call, per need.
     std::vector<Moments> take();
 
 private:
@@ -33,14 +31,14 @@ private:
 
     static constexpr Eigen::Index kFrames = 512;
 
-    Eigen::MatrixXf frames_;  ///< as columns
+    Eigen::MatrixXf frames_;  ///< frames, as columns
     Eigen::Index filled_ = 0;
     std::vector<bool> with_scatter_;
     std::vector<std::vector<std::int8_t>> classes_;  ///< per need, then per frame of the block
     std::vector<Moments> moments_;
-    // Large, and so made once.
+    // These are large, so they are allocated once.
     Matrix selected_;                                 ///< frames
-    std::vector<std::shared_ptr<Scatter>> scatters_;  ///< some of them in use
+    std::vector<std::shared_ptr<Scatter>> scatters_;  ///< may be in use by moments
 };
 
 }  // namespace etlc::fit

@@ -9,8 +9,8 @@
 
 #include "check/guarantees/guarantees.hpp"
 #include "check/guarantees/provenance.hpp"
-#include "episodes/ground_truth.hpp"
 #include "episodes/parallel.hpp"
+#include "episodes/truth.hpp"
 #include "fit/blocks.hpp"
 
 namespace etlc::fit {
@@ -20,13 +20,13 @@ namespace {
 using check::kNone;
 using episodes::Label;
 
-/// What a need counts and takes of the frames of an episode.
+/// Counts and takes the frames of an episode for a need.
 class Collector {
 public:
     Collector(const Need& need, std::size_t most_frames)
         : need_(need), taken_(most_frames, need.away) {}
 
-    /// `point`: empty where it is missing. Gives: the class that the frame is in.
+    /// Adds a frame; `point` is empty where missing. Returns the class of the frame.
     std::int8_t add(std::uint64_t step, Label holds, const std::vector<float>& point) {
         const bool yes = holds == Label::yes;
         if (need_.kind == Need::Kind::frames) yes ? taken_.add(step, point) : taken_.add_other();
@@ -57,11 +57,11 @@ private:
     Counts counts_;
 };
 
-/// A point, and the needs that ask about it.
+/// A point, and the needs for it.
 struct PointNeeds {
     Index point = 0;
     std::vector<std::size_t> all;
-    std::vector<std::size_t> with_moments;  ///< of these
+    std::vector<std::size_t> with_moments;  ///< those of `all` with moments
 };
 
 std::vector<PointNeeds> by_point(const std::vector<Need>& needs) {
@@ -76,8 +76,8 @@ std::vector<PointNeeds> by_point(const std::vector<Need>& needs) {
     return result;
 }
 
-/// The predicates in these needs whose labels are wanted: those with a truth, and those that would
-/// need an array.
+/// Returns the predicates whose labels these needs read: those with a truth or with an array of
+/// labels, and those that lack both, so that reading reports them.
 std::set<Index> labelled_predicates(const check::Model& model, const std::vector<Need>& needs,
                                     const std::vector<Index>& have_labels) {
     std::set<Index> found;
@@ -99,7 +99,7 @@ std::vector<Index> formulas_of(const std::vector<Need>& needs) {
     return formulas;
 }
 
-/// What is read of an episode, for these needs and to measure.
+/// Returns what to read of an episode, for these needs and to measure.
 episodes::Wanted wanted_for(const check::Model& model, const std::vector<Need>& needs,
                             const std::vector<Measured>& measured,
                             const std::vector<Index>& have_labels) {
@@ -125,20 +125,20 @@ episodes::Wanted wanted_for(const check::Model& model, const std::vector<Need>& 
     return result;
 }
 
-/// How frames are shared out among the episodes.
+/// How the frames to take are shared among the episodes.
 struct Shares {
-    std::size_t most = 0;   ///< frames of an episode that gives some
-    std::size_t every = 1;  ///< of so many episodes one gives some
+    std::size_t most = 0;   ///< frames of an episode that gives any
+    std::size_t every = 1;  ///< one of so many episodes gives frames
 };
 
-/// Episodes of one fold that are collected together: a scatter is D squared numbers, to be made and
-/// merged, however few frames it is of.
+/// Episodes of one fold that are collected together, because a scatter costs D squared numbers to
+/// make and merge, however few frames are in it.
 struct Batch {
     std::vector<std::size_t> episodes;
     std::uint64_t frames = 0;
 };
 
-/// By their first episodes.
+/// Returns the batches in the order of their first episodes.
 std::vector<Batch> batches_of(const Collection& collection) {
     constexpr std::uint64_t kFrames = 1024;
     std::vector<Batch> result;
@@ -156,9 +156,9 @@ std::vector<Batch> batches_of(const Collection& collection) {
     return result;
 }
 
-/// What a batch gives.
+/// The result of a batch.
 struct Gathered {
-    std::vector<Collected> needs;  ///< the sources know their episodes
+    std::vector<Collected> needs;  ///< sources name their episodes
     std::optional<episodes::Fault> fault;
 };
 
@@ -177,7 +177,7 @@ public:
         for (const PointNeeds& one : points_) blocks_.push_back(blocks_of(one));
     }
 
-    /// The batch whose first episode this is.
+    /// Reads the batch whose first episode this is.
     diag::Result<Gathered> score(const std::string& first) {
         Gathered result{std::vector<Collected>(needs_.size()), {}};
         for (const std::size_t episode : batches_.at(first).episodes) {
@@ -227,7 +227,7 @@ private:
         return {model_.points[one.point].dimension, std::move(with_scatter)};
     }
 
-    /// Of one frame.
+    /// Adds the point of one frame.
     void take_point(const episodes::Frames& frames, const PointNeeds& one,
                     std::vector<Collector>& collectors, Blocks& blocks) {
         if (!read_point(model_, one.point, frames.samples(), point_)) point_.clear();
@@ -275,7 +275,7 @@ private:
     std::vector<std::int8_t> classes_;
 };
 
-/// Of one more batch, per need.
+/// Merges one more batch into a fold, per need.
 void merge(std::vector<Collected>& fold, std::vector<Collected>&& batch) {
     std::vector<Moments*> all;
     std::vector<const Moments*> more;
@@ -314,7 +314,7 @@ bool read_point(const check::Model& model, Index point, const std::vector<plan::
         const plan::Sample& sample = samples[input];
         if (!sample.present) return false;
         const check::Range& range = model.inputs[input].range;
-        bool sound = true;  // without branches, several at a time
+        bool sound = true;  // without branches, so that it vectorises
         for (const float x : sample.values) sound &= std::isfinite(x) && range.contains(x);
         if (!sound) return false;
         values.insert(values.end(), sample.values.begin(), sample.values.end());
@@ -338,7 +338,7 @@ std::optional<Collection> collect(const check::Model& model, const std::vector<N
     const Shares shares{std::max<std::size_t>(1, kMostFrames / count),
                         (count + kMostFrames - 1) / kMostFrames};
     std::vector<std::string> firsts;
-    std::map<std::string, Batch> batches;  // by these
+    std::map<std::string, Batch> batches;  // by their first paths
     for (Batch& batch : batches_of(all)) {
         firsts.push_back(all.readings.episodes()[batch.episodes.front()].path);
         batches.emplace(firsts.back(), std::move(batch));

@@ -1,7 +1,6 @@
-// Some frames of each episode, taken evenly, and away from where a truth changes.
-// Takes: the frames of an episode with their labels. Gives: up to `most` of them. Keeps true: what
-// is taken depends on this episode alone, and memory on `most` and `away`, not on the episode's
-// length. Its first and last frame are no change of the truth: nobody knows what was before.
+// Takes up to `most` frames of an episode, evenly spaced and away from changes of the label. The
+// choice depends on this episode alone, and memory on `most` and `away`. The ends of an episode are
+// no changes: the label before and after is unknown.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +16,15 @@ struct TakenFrame {
 
 class EvenFrames {
 public:
-    /// `away`: least number of steps to a frame at which `where` does not hold, less one.
+    /// `away`: the least distance in steps to a frame at which `where` does not hold, less one.
     EvenFrames(std::size_t most, std::uint64_t away)
         : most_(most), away_(away), since_change_(away) {}
 
-    /// A frame at which it holds; no values: it is missing, and is not taken.
+    /// Adds a frame at which `where` holds; without values it is missing, and is not taken.
     void add(std::uint64_t step, const std::vector<float>& values);
-    /// One at which it does not, or may not.
+    /// Adds a frame at which `where` does not hold, or may not.
     void add_other();
-    /// At the end of the episode.
+    /// Returns the taken frames at the end of the episode.
     std::vector<TakenFrame> take();
 
 private:
@@ -33,10 +32,10 @@ private:
 
     std::size_t most_;
     std::uint64_t away_;
-    std::uint64_t since_change_;      ///< frames since then at which it has held; at most `away`
-    std::deque<TakenFrame> pending_;  ///< the last `away` of them, which a change would void
-    std::uint64_t sound_ = 0;         ///< frames that could be taken so far
-    std::uint64_t stride_ = 1;        ///< every so many of them are kept
+    std::uint64_t since_change_;  ///< frames at which it held since the last change; at most `away`
+    std::deque<TakenFrame> pending_;  ///< the last `away` frames, dropped when the label changes
+    std::uint64_t sound_ = 0;         ///< frames eligible so far
+    std::uint64_t stride_ = 1;        ///< one of so many is kept
     std::vector<TakenFrame> kept_;
 };
 

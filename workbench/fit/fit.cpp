@@ -7,8 +7,7 @@
 
 #include "check/guarantees/provenance.hpp"
 #include "episodes/admission/admission.hpp"
-#include "episodes/label_doubts.hpp"
-#include "episodes/unmarked.hpp"
+#include "episodes/data_warnings.hpp"
 
 namespace etlc::fit {
 
@@ -35,11 +34,11 @@ void warn_of_constants(const check::Model& model, const Fitted& fitted, const So
                     solution.constant, counted(all, "element"), model.points[fitted.point].text,
                     solution.constant == 1 ? "is" : "are", fitted.name),
         fitted.span, sink)
-        .note("what they would be elsewhere, nobody knows: look at how the embedding is made");
+        .note("their values elsewhere are unknown: check how the embedding is made");
 }
 
-/// Whether `a` is less than `b` by more than the intervals of both explain. They are of the same
-/// episodes, so their errors mostly go together, and the difference is surer than this says.
+/// Returns whether `a` is less than `b` by more than the intervals of both. They are of the same
+/// episodes, so their errors mostly agree, and the true confidence is higher.
 bool surely_less(const std::optional<episodes::Auroc>& a, const std::optional<episodes::Auroc>& b) {
     if (!a || !b || !a->interval || !b->interval) return false;
     return b->value - a->value >
@@ -48,7 +47,7 @@ bool surely_less(const std::optional<episodes::Auroc>& a, const std::optional<ep
 
 void warn_of_doubts(const check::Predicate& predicate, const Separation& separation,
                     diag::Sink& sink) {
-    // On frames that were left out, what was fitted to noise is below 0.5 too.
+    // On held-out frames, what was fitted to noise is below 0.5 too.
     constexpr double kBelowNoise = 0.25;
     const std::optional<episodes::Auroc>& plain = separation.before;
     const std::optional<episodes::Auroc>& fitted = separation.after;
@@ -59,7 +58,7 @@ void warn_of_doubts(const check::Predicate& predicate, const Separation& separat
         return;
     episodes::warn_of_data(
         Code::fit_makes_worse,
-        fmt::format("'{}' tells frames apart worse by what was fitted than by the plain distance: "
+        fmt::format("'{}' separates frames worse with the fit than by the plain distance: "
                     "the area under the ROC curve is {:.2f}, and {:.2f} without a fit",
                     predicate.name, fitted->value, plain->value),
         predicate.threshold.span, sink)
@@ -68,7 +67,7 @@ void warn_of_doubts(const check::Predicate& predicate, const Separation& separat
             "fitted; or measure from the plain point");
 }
 
-/// False where something is refused.
+/// Reports warnings, and returns false where a fit is refused.
 bool report(const Filled& all, diag::Sink& sink) {
     const auto first = all.refusals.begin();
     const std::size_t fitted = first == all.refusals.end() ? all.solutions.size() : first->first;

@@ -1,20 +1,18 @@
-// `etlc fit`: projections, targets and metrics from labelled demonstrations.
-// Takes: a spec that may lack what it declares fitted(...), and the episodes. Gives: the file of
-// fitted things and what a person should know about it. Keeps true: the result is the same whatever
-// the number of threads; memory does not grow with the length of episodes; what cannot be fitted is
-// refused, and nothing is regularised in silence.
+// Fits projections, targets and metrics to labelled demonstrations: `etlc fit`. The result does not
+// depend on the number of threads, memory not on the length of episodes. A fit that is degenerate
+// is refused, never regularised silently.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "artifacts/fitted.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
-#include "fit/request.hpp"
+#include "fit/readings.hpp"
 #include "fit/separation.hpp"
 #include "fit/solve.hpp"
-#include "fitted/fitted.hpp"
 
 namespace etlc::fit {
 
@@ -23,10 +21,11 @@ struct Fit {
     std::string report;
 };
 
-/// Nothing where the sink now says why.
+/// Returns nothing after an error.
 std::optional<Fit> fit(const check::Model& model, const Request& request, diag::Sink& sink);
 
-/// What was fitted, to what, and how well it separates. `solutions`: per fitted thing.
+/// Reports what was fitted, on which frames, and how well it separates. `solutions`: per fitted
+/// thing.
 std::string report(const check::Model& model, const Collection& collection,
                    const std::vector<Solution>& solutions, const Separations& separations);
 

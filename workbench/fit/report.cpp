@@ -1,4 +1,4 @@
-// What `etlc fit` says when it is done.
+// Prints the report of `etlc fit`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -80,12 +80,12 @@ std::string worst_frames(const check::Model& model, const Collection& collection
                          const Separation& separation) {
     if (separation.worst.empty()) return "";
     const std::string& name = model.predicates[separation.predicate].name;
-    std::string text = fmt::format("Worst frames of '{}', one of an episode:\n", name);
+    std::string text = fmt::format("Worst frames of '{}', one per episode:\n", name);
     for (const WorstFrame& frame : separation.worst)
-        text += fmt::format("  {} step {}: it {}, and ranks beyond {:.0f} % of those where it {}\n",
-                            collection.readings.episodes()[frame.episode].path, frame.step,
-                            frame.positive ? "holds" : "does not hold", 100 * (1 - frame.ordered),
-                            frame.positive ? "does not" : "does");
+        text += fmt::format(
+            "  {} step {}: labelled {}, but ranks {} {:.0f} % of those labelled {}\n",
+            collection.readings.episodes()[frame.episode].path, frame.step, frame.positive,
+            frame.positive ? "below" : "above", 100 * (1 - frame.ordered), !frame.positive);
     return text;
 }
 
@@ -103,13 +103,11 @@ std::string report(const check::Model& model, const Collection& collection,
         text += fitted_report(model.fitted[i], solutions[i]);
     if (!separations.why_not.empty())
         return text + fmt::format(
-                          "\nHow well it separates is not known, for it cannot be fitted "
-                          "on a part of the episodes: {}\n",
+                          "\nIts separation is unknown, because it cannot be fitted on a part of "
+                          "the episodes: {}\n",
                           separations.why_not);
     if (separations.all.empty())
-        return text +
-               "\nHow well it separates is not known: no predicate that uses it has a "
-               "truth\n";
+        return text + "\nIts separation is unknown: no predicate that uses it has a truth\n";
     text += fmt::format(
         "\nArea under the ROC curve by frame, on episodes that were not fitted on ({}),\n"
         "with the 95 % interval over episodes; 0.5 is chance:\n{}"

@@ -1,55 +1,71 @@
-// How well predicates tell frames apart on episodes that nothing was fitted on.
-// Takes: what was collected. Gives: per predicate the area under the ROC curve of its distance, of
-// the plain distance, and the frames that rank worst. Keeps true: each episode is measured with
-// what was fitted on the folds without it, by the kernels of the monitor; scores are compared
-// within a fold alone.
+// Measures how well predicates separate frames of episodes that were not fitted on: the AUROC of
+// their distance and of the plain distance, and the frames that rank worst. Each episode is
+// measured with what was fitted on the other folds, by the kernels of the monitor; scores are
+// compared within a fold only.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "episodes/label_doubts.hpp"
+#include "episodes/data_warnings.hpp"
 #include "episodes/ranking/auroc.hpp"
 #include "fit/collect.hpp"
-#include "fit/fill.hpp"
+#include "fit/solve.hpp"
 
 namespace etlc::fit {
+
+/// A model with everything fitted, in order. A thing that cannot be fitted, or depends on such a
+/// thing, is refused and has no values.
+struct Filled {
+    check::Model model;
+    std::vector<Solution> solutions;    ///< per fitted thing
+    std::map<Index, Refusal> refusals;  ///< by fitted thing
+};
+Filled fill(const check::Model& model, Solver& solver, std::optional<std::size_t> left_out);
+
+/// Fits in threads: on all folds if `all`, and without each fold if `without`.
+struct FilledAll {
+    std::optional<Filled> all;
+    std::vector<Filled> without;  ///< per fold
+};
+FilledAll fill_all(const check::Model& model, Solver& solver, bool all, bool without,
+                   unsigned jobs);
 
 struct WorstFrame {
     std::size_t episode = 0;
     std::size_t step = 0;
     bool positive = false;
-    double ordered =
-        0;  ///< part of the frames of the other class that it ranks on the right side of
+    double ordered = 0;  ///< share of the frames of the other class that it ranks correctly against
 };
 
 struct Separation {
-    Index predicate = 0;  ///< that is measured
-    /// Of l2 to the mean of the frames at which it holds, in the space of the input; nothing where
-    /// it measures from several inputs, or where there are no such frames.
+    Index predicate = 0;  ///< the predicate that is measured
+    /// The AUROC of l2 to the mean of the positive frames, in the space of the input; nothing for
+    /// several inputs, or without such frames.
     std::optional<episodes::Auroc> before;
     std::optional<episodes::Auroc> after;
-    std::vector<WorstFrame> worst;  ///< worst first, one of an episode
-    episodes::Labels labels;        ///< of the frames that are measured after the fit
+    std::vector<WorstFrame> worst;  ///< worst first, one per episode
+    episodes::Labels labels;        ///< of the frames measured after the fit
 };
 
-/// The predicates to ask about: their distance rests on something fitted, and they have labels.
+/// Returns the labelled predicates whose distance depends on something fitted.
 std::vector<Index> separating_predicates(const check::Model& model,
                                          const std::vector<Index>& labelled);
 
-/// The mean that the plain distance is measured from; nothing where there is none.
+/// Returns the mean from which the plain distance is measured; nothing where there is none.
 std::optional<Need> plain_need(const check::Model& model, Index predicate);
 
-/// The first fitted thing that its distances rest on and that is refused.
+/// Returns the first refused fit that the predicate depends on.
 std::optional<Index> refused_for(const Filled& filled, Index predicate);
 
-/// `why_not`: set where some fold cannot be fitted. Nothing where the sink now says why.
+/// `why_not`: why some fold cannot be fitted; else empty.
 struct Separations {
     std::vector<Separation> all;
     std::string why_not;
 };
-/// `folds`: filled without each fold.
+/// `folds`: fitted without each fold. Returns nothing after an error.
 std::optional<Separations> separate(const std::vector<Filled>& folds, const Solver& solver,
                                     const std::vector<Measured>& predicates, const Request& request,
                                     diag::Sink& sink);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "fit/algebra/cholesky.hpp"
+#include "fit/algebra/dense.hpp"
 #include "fit/algebra/linear.hpp"
 
 namespace etlc::fit {
@@ -19,7 +19,7 @@ using Outcome = std::variant<Solution, Refusal>;
 
 namespace {
 
-/// The maps of a point, from the innermost.
+/// Returns the maps of a point, innermost first.
 std::vector<Affine> maps_of(const check::Model& model, Index point) {
     std::vector<Affine> maps;
     for (; model.points[point].is_projected(); point = model.points[point].inner) {
@@ -38,7 +38,7 @@ std::vector<Affine> maps_of(const check::Model& model, Index point) {
     return maps;
 }
 
-/// Row-major, rounded.
+/// Converts to float32, row-major.
 std::vector<float> floats(const Matrix& matrix) {
     std::vector<float> result;
     result.reserve(static_cast<std::size_t>(matrix.size()));
@@ -54,7 +54,7 @@ check::Filling filling(const Affine& map) {
 
 }  // namespace
 
-/// One fitted thing.
+/// Solves one fit.
 class Solving {
 public:
     Solving(Solver& solver, const check::Model& model, Index fitted,
@@ -73,8 +73,9 @@ public:
         if (solution_.counts.holds == 0)
             return Refusal{
                 Code::too_few_frames,
-                fmt::format("of {}, there is none at which 'where' holds and the point is there",
-                            counted(solution_.counts.frames(), "frame"))};
+                fmt::format(
+                    "there is none among {} at which 'where' holds and the point is present",
+                    counted(solution_.counts.frames(), "frame"))};
         switch (fitted_.method) {
             case FittedMethod::mean: return mean();
             case FittedMethod::kmeans:
@@ -94,7 +95,7 @@ private:
         return result;
     }
 
-    /// Of all folds together.
+    /// Returns the moments of all folds together.
     Moments moments() const {
         Moments result = solver_.moments(part_);
         for (const Affine& map : maps_) result = result.mapped(map);
@@ -105,7 +106,7 @@ private:
         const auto is_number = [](float x) { return std::isfinite(x); };
         if (!std::all_of(numbers.matrix.begin(), numbers.matrix.end(), is_number) ||
             !std::all_of(numbers.offset.begin(), numbers.offset.end(), is_number))
-            return Refusal{Code::fit_out_of_range, "its numbers are beyond those of float32"};
+            return Refusal{Code::fit_out_of_range, "its numbers exceed float32"};
         solution_.filling = std::move(numbers);
         return std::move(solution_);
     }
@@ -132,7 +133,7 @@ private:
         if (found.rank < fitted_.rows)
             return Refusal{
                 Code::degenerate_frames,
-                fmt::format("r = {}, and the frames vary in {} only", fitted_.rows,
+                fmt::format("r = {}, but the frames vary in only {}", fitted_.rows,
                             counted(static_cast<std::uint64_t>(found.rank), "direction"))};
         solution_.explained = found.explained;
         return finished(filling(found.map));
@@ -176,9 +177,9 @@ private:
                        "classes have the same mean"};
     }
 
-    /// Each fold tested with what is fitted on others: without it and the one that is left out. If
-    /// none is, each of them is in turn, where enough are left: the same trials are those of fits
-    /// without a fold.
+    /// Tests each fold with the fit on the other folds, without the one that is left out. If none
+    /// is left out, leaves each out in turn where enough remain: these are the trials of the fits
+    /// without a fold, which are cached.
     std::vector<Trial> trials() const {
         constexpr std::size_t kEnough = 4;
         const std::size_t folds = solver_.collection_.folds.size();
@@ -206,7 +207,7 @@ private:
         return fit::trials(training, {&folds[test]}).front();
     }
 
-    /// As it is once it is rounded.
+    /// Checks the matrix as rounded to float32.
     static bool is_definite(const Matrix& metric) {
         return Cholesky::of(metric.cast<float>().cast<double>()).has_value();
     }
@@ -226,7 +227,7 @@ private:
         return clusters(all, Points(mapped(all.frames(members))), numbers, members);
     }
 
-    /// `members`: of the points; `taken`: what they are of all that was taken.
+    /// `members`: indices of points; `taken`: their indices among all frames taken.
     Outcome clusters(const TakenPoints& all, const Points& points, const Members& members,
                      const Members& taken) {
         const auto centres = k_means(points, members, static_cast<Eigen::Index>(fitted_.rows));

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "plan/recorder.hpp"
+#include "plan/recorder_plan.hpp"
 
 namespace etlc::library {
 

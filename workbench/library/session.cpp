@@ -7,7 +7,7 @@
 #include "diag/render.hpp"
 #include "explain/report.hpp"
 #include "ir/lower.hpp"
-#include "plan/recorder.hpp"
+#include "plan/recorder_plan.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::library {

@@ -1,13 +1,15 @@
 #include "report/blob.hpp"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <new>
 #include <utility>
 
-#include "report/packing/pack.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::report {
@@ -19,9 +21,101 @@ constexpr std::uint64_t kBuckets = 1000;
 /// An eighth of a pixel of a timeline, which is 64 pixels high.
 constexpr int kFewestParts = 500;
 
+// Codes of numbers that cannot be rounded, in two bytes.
+constexpr std::int32_t kMissing = -32768;
+constexpr std::int32_t kBelowAll = -32767;
+constexpr std::int32_t kAboveAll = 32767;
+
+struct Span {
+    float low = std::numeric_limits<float>::infinity();
+    float high = -std::numeric_limits<float>::infinity();
+};
+
+Span span_of(const std::vector<float>& numbers) {
+    Span span;
+    for (const float x : numbers) {
+        if (!std::isfinite(x)) continue;
+        span.low = std::min(span.low, x);
+        span.high = std::max(span.high, x);
+    }
+    return span.low <= span.high ? span : Span{0, 0};
+}
+
+/// Packs series of numbers into a short text: base64 of deflated bytes. These are the length of a
+/// JSON head in 4 bytes, the head, and the series in the order of their addition, each byte by byte
+/// of all its numbers, which deflates better than number by number. Rounded numbers are off by at
+/// most half a part of the span; infinite and missing numbers stay so. Each function returns the
+/// JSON that describes the series in the head.
+class Packing {
+public:
+    /// Adds the exact float32.
+    std::string exact(const std::vector<float>& numbers);
+    /// Adds numbers rounded to `parts` of the span (even, at most 32,000), as successive
+    /// differences.
+    std::string rounded(const std::vector<float>& numbers, int parts);
+    /// Adds whole numbers, in as many bytes as the greatest takes.
+    std::string whole(const std::vector<std::uint32_t>& numbers);
+
+    std::string packed(std::string_view head) const;
+
+private:
+    void add_bytes(const std::vector<std::uint32_t>& words, std::size_t bytes);
+
+    std::string body_;
+};
+
+void Packing::add_bytes(const std::vector<std::uint32_t>& words, std::size_t bytes) {
+    for (std::size_t byte = 0; byte < bytes; ++byte)
+        for (const std::uint32_t word : words)
+            body_ += static_cast<char>(word >> (8 * byte) & 0xFFU);
+}
+
+std::string Packing::exact(const std::vector<float>& numbers) {
+    std::vector<std::uint32_t> words(numbers.size());
+    std::memcpy(words.data(), numbers.data(), numbers.size() * sizeof(float));
+    add_bytes(words, 4);
+    return fmt::format("\"type\":\"exact\",\"count\":{}", numbers.size());
+}
+
+std::string Packing::rounded(const std::vector<float>& numbers, int parts) {
+    const Span span = span_of(numbers);
+    const double part = (static_cast<double>(span.high) - span.low) / parts;
+    std::vector<std::uint32_t> words;
+    std::uint32_t before = 0;
+    for (const float x : numbers) {
+        std::int32_t value = std::isnan(x) ? kMissing : x < 0 ? kBelowAll : kAboveAll;
+        if (std::isfinite(x))
+            value = part == 0
+                        ? 0
+                        : static_cast<std::int32_t>(std::lround((x - span.low) / part)) - parts / 2;
+        words.push_back((static_cast<std::uint32_t>(value) - before) & 0xFFFFU);
+        before = static_cast<std::uint32_t>(value);
+    }
+    add_bytes(words, 2);
+    return fmt::format("\"type\":\"rounded\",\"count\":{},\"parts\":{},\"low\":{},\"high\":{}",
+                       numbers.size(), parts, span.low, span.high);
+}
+
+std::string Packing::whole(const std::vector<std::uint32_t>& numbers) {
+    const std::uint32_t greatest =
+        numbers.empty() ? 0 : *std::max_element(numbers.begin(), numbers.end());
+    const std::size_t bytes = greatest < 1U << 8U ? 1 : greatest < 1U << 16U ? 2 : 4;
+    add_bytes(numbers, bytes);
+    return fmt::format("\"type\":\"whole\",\"count\":{},\"bytes\":{}", numbers.size(), bytes);
+}
+
+std::string Packing::packed(std::string_view head) const {
+    std::string bytes;
+    for (std::size_t byte = 0; byte < 4; ++byte)
+        bytes += static_cast<char>(head.size() >> (8 * byte) & 0xFFU);
+    bytes += head;
+    bytes += body_;
+    return base64(deflated(bytes));
+}
+
 class Writer {
 public:
-    /// `parts`: 0 for numbers that are exact.
+    /// `parts` is 0 for exact numbers.
     Writer(const Tracks& tracks, int parts, std::uint64_t buckets)
         : tracks_(tracks), parts_(parts), buckets_(buckets) {}
 
@@ -48,7 +142,7 @@ private:
         return "{" + part + "}";
     }
 
-    /// The first step of a bucket; of the one behind the last, the number of steps.
+    /// Returns the first step of a bucket, or the number of steps after the last bucket.
     std::size_t begin_of(std::uint64_t bucket) const {
         return static_cast<std::size_t>(bucket * tracks_.frames / buckets_);
     }
@@ -108,6 +202,33 @@ private:
 };
 
 }  // namespace
+
+std::string base64(std::string_view bytes) {
+    constexpr std::string_view kDigits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t here = std::min<std::size_t>(3, bytes.size() - i);
+        std::uint32_t bits = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            bits = bits << 8U | (k < here ? static_cast<std::uint8_t>(bytes[i + k]) : 0U);
+        for (std::size_t k = 0; k < 4; ++k)
+            text += k <= here ? kDigits[bits >> (18 - 6 * k) & 63U] : '=';
+    }
+    return text;
+}
+
+std::string deflated(std::string_view bytes) {
+    uLongf size = compressBound(bytes.size());
+    std::string out(size, '\0');
+    if (compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+                  reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(),
+                  Z_BEST_COMPRESSION) != Z_OK)
+        throw std::bad_alloc();  // the only way in which it can fail here
+    out.resize(size);
+    return out;
+}
 
 Blob blob_of(const Tracks& tracks, std::uint64_t most) {
     const bool is_long = tracks.frames > kMostSteps;

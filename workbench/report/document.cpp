@@ -7,22 +7,24 @@
 #include <nlohmann/json.hpp>
 
 #include "check/guarantees/guarantees.hpp"
-#include "report/distributions.hpp"
 
 namespace etlc::report {
 
 namespace {
 
+using episodes::Scored;
 using Json = nlohmann::ordered_json;
 
+constexpr std::size_t kBins = 60;
+constexpr double kPicture = 256;  ///< parts of a side of the curves' drawing
 constexpr std::size_t kMostScores = 400;
-constexpr std::uint32_t kMostRows = 400;  ///< of a target that are drawn
+constexpr std::uint32_t kMostRows = 400;  ///< drawn of a target
 
 Json number(double value) {
     return std::isfinite(value) ? Json(value) : Json();
 }
 
-/// As short as float32 allows: 0.243, not 0.24300000071525574.
+/// Returns the shortest number for a float32: 0.243, not 0.24300000071525574.
 Json number(float value) {
     return std::isfinite(value) ? Json(std::stod(fmt::format("{}", value))) : Json();
 }
@@ -32,7 +34,7 @@ Index declared(const check::Model& model, Index target) {
     return source == check::kNone ? target : source;
 }
 
-/// Where a threshold comes from and what is known of it, in words.
+/// Describes the origin of a threshold.
 std::string provenance(const check::Predicate& predicate) {
     const check::Threshold& threshold = predicate.threshold;
     if (threshold.origin == check::ThresholdOrigin::literal) return "written in the spec";
@@ -40,7 +42,7 @@ std::string provenance(const check::Predicate& predicate) {
         return fmt::format("{}, chosen on {}; no guarantee", threshold.text,
                            diag::counted(threshold.n, "labelled frame"));
     const bool of_frames = threshold.origin == check::ThresholdOrigin::class_conditional;
-    return fmt::format("{}: beyond score {} of {}, one of each {}", threshold.text, threshold.k,
+    return fmt::format("{}: just beyond score {} of {}, one per {}", threshold.text, threshold.k,
                        threshold.n, of_frames ? "positive frame" : "demonstration");
 }
 
@@ -64,25 +66,109 @@ Json scores_of(const Material& material, const check::Predicate& predicate) {
             {"scores", scores}};
 }
 
-Json curve_point(const Operating& at) {
+/// Rates at one threshold.
+struct Operating {
+    double false_positive_rate = 0;
+    double recall = 0;     ///< the true positive rate
+    double precision = 1;  ///< 1 without claims
+};
+
+Json json_of(const Operating& at) {
     return Json::array({at.false_positive_rate, at.recall, at.precision});
+}
+
+/// Returns the labelled frames with finite scores, greatest scores first.
+std::vector<Scored> finite_frames(const evaluate::Judgement& judgement, std::size_t i) {
+    std::vector<Scored> frames;
+    for (const episodes::FramesByScore& fold : judgement.predicates[i].frames)
+        fold.for_each([&](const Scored& frame) {
+            if (std::isfinite(frame.score)) frames.push_back(frame);
+        });
+    std::stable_sort(frames.begin(), frames.end(),
+                     [](const Scored& a, const Scored& b) { return a.score > b.score; });
+    return frames;
+}
+
+/// Counts the frames of either truth in bins of distance.
+Json histogram(const std::vector<Scored>& frames, bool upper_bound) {
+    const auto distance = [&](const Scored& frame) {
+        return static_cast<double>(upper_bound ? -frame.score : frame.score);
+    };
+    const auto [first, last] = std::minmax({distance(frames.front()), distance(frames.back())});
+    const double width = last > first ? (last - first) / kBins : 1;
+    std::vector<double> edges;
+    for (std::size_t bin = 0; bin <= kBins; ++bin)
+        edges.push_back(first + width * static_cast<double>(bin));
+    std::vector<std::uint64_t> inside(kBins);
+    std::vector<std::uint64_t> outside(kBins);
+    for (const Scored& frame : frames) {
+        const auto bin = static_cast<std::size_t>((distance(frame) - first) / width);
+        ++(frame.positive ? inside : outside)[std::min(bin, kBins - 1)];
+    }
+    return {{"edges", edges}, {"inside", inside}, {"outside", outside}};
+}
+
+bool is_drawn_apart(const Operating& a, const Operating& b) {
+    const auto apart = [](double x, double y) {
+        return std::lround(x * kPicture) != std::lround(y * kPicture);
+    };
+    return apart(a.false_positive_rate, b.false_positive_rate) || apart(a.recall, b.recall) ||
+           apart(a.precision, b.precision);
+}
+
+/// Returns the histogram of the i-th labelled predicate's distances, its ROC and precision-recall
+/// curve, from the strictest threshold to the widest, and the point of its own threshold. Curves go
+/// through every threshold and are thinned to what the drawing shows; frames of unknown distance
+/// are left out. Null for an equality, and without a labelled frame of finite distance.
+Json distribution(const evaluate::Judgement& judgement, std::size_t i,
+                  const check::Predicate& predicate) {
+    if (predicate.equality()) return nullptr;
+    const std::vector<Scored> frames = finite_frames(judgement, i);
+    if (frames.empty()) return nullptr;
+    Json result = histogram(frames, predicate.upper_bound());
+    Json curve = Json::array();
+    Json operating;
+    const auto with_curve = [&] {
+        result["curve"] = curve;
+        result["operating"] = operating;
+        return result;
+    };
+    const auto positives = static_cast<double>(
+        std::count_if(frames.begin(), frames.end(), [](const Scored& f) { return f.positive; }));
+    const double negatives = static_cast<double>(frames.size()) - positives;
+    if (positives == 0 || negatives == 0) return with_curve();
+    double hits = 0;
+    double false_alarms = 0;
+    const auto here = [&] {
+        const double claims = hits + false_alarms;
+        return Operating{false_alarms / negatives, hits / positives,
+                         claims == 0 ? 1 : hits / claims};
+    };
+    Operating drawn = here();
+    curve.push_back(json_of(drawn));
+    operating = json_of(drawn);
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+        (frames[k].positive ? hits : false_alarms) += 1;
+        const float score = frames[k].score;
+        if (k + 1 < frames.size() && frames[k + 1].score == score) continue;
+        const bool is_last = k + 1 == frames.size();
+        if (is_last || is_drawn_apart(drawn, here())) {
+            drawn = here();
+            curve.push_back(json_of(drawn));
+        }
+        const float delta = predicate.upper_bound() ? -score : score;
+        if (check::holds(predicate.comparison, delta, predicate.threshold.value))
+            operating = json_of(here());
+    }
+    return with_curve();
 }
 
 Json distribution_of(const Material& material, const check::Predicate& predicate) {
     if (material.judgement == nullptr) return nullptr;
     const auto& labelled = material.judgement->predicates;
-    for (std::size_t i = 0; i < labelled.size(); ++i) {
-        if (labelled[i].name != predicate.name) continue;
-        const auto found = distribution(*material.judgement, i, predicate);
-        if (!found) return nullptr;
-        Json curve = Json::array();
-        for (const Operating& at : found->curve) curve.push_back(curve_point(at));
-        return {{"edges", found->edges},
-                {"inside", found->inside},
-                {"outside", found->outside},
-                {"curve", curve},
-                {"operating", found->operating ? curve_point(*found->operating) : Json()}};
-    }
+    for (std::size_t i = 0; i < labelled.size(); ++i)
+        if (labelled[i].name == predicate.name)
+            return distribution(*material.judgement, i, predicate);
     return nullptr;
 }
 
@@ -160,8 +246,8 @@ Json pictures_json(const Pictures& pictures) {
             {"height", pictures.height}};
 }
 
-/// A row is [path, frames, outcomes, missing, judged, parts, buckets, series, pictures]; judged is
-/// [wrong monitors, f1, agreement, first error], or null.
+/// Returns [path, frames, outcomes, missing, judged, parts, buckets, series, pictures], where
+/// judged is [wrong monitors, f1, agreement, first error] or null.
 Json row_json(const Row& row, const evaluate::EpisodeRow* judged) {
     Json of_truth;
     if (judged != nullptr) {

@@ -23,7 +23,7 @@ if(D3)
   add_file(d3.js "${text}")
 endif()
 
-file(WRITE "${OUTPUT}" "#include \"report/page_files.hpp\"
+file(WRITE "${OUTPUT}" "#include \"report/page.hpp\"
 
 // C++ compilers need not support strings as long as these.
 #pragma GCC diagnostic ignored \"-Woverlength-strings\"

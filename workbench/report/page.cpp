@@ -5,12 +5,18 @@
 #include <map>
 #include <string_view>
 
-#include "report/packing/pack.hpp"
-#include "report/page_files.hpp"
+#include "report/blob.hpp"
 
 namespace etlc::report {
 
 namespace {
+
+/// Returns the file of that name, which exists.
+const PageFile& page_file(std::string_view name) {
+    const auto& files = page_files();
+    return *std::find_if(files.begin(), files.end(),
+                         [&](const PageFile& file) { return file.name == name; });
+}
 
 std::string hash_source(const PageFile& file) {
     std::string bytes;
@@ -19,7 +25,7 @@ std::string hash_source(const PageFile& file) {
     return "'sha256-" + base64(bytes) + "'";
 }
 
-/// The page's frame names what goes into it: {{style}}, say.
+/// Fills the placeholders of page.html, such as {{style}}.
 std::string filled(const std::map<std::string, std::string, std::less<>>& parts) {
     const std::string_view frame = page_file("page.html").text;
     std::string text;
@@ -56,12 +62,6 @@ std::string what_is_missing() {
     return draws ? ""
                  : "this etlc was built without the library that draws its pages: install "
                    "libjs-d3 and build it again";
-}
-
-const PageFile& page_file(std::string_view name) {
-    const auto& files = page_files();
-    return *std::find_if(files.begin(), files.end(),
-                         [&](const PageFile& file) { return file.name == name; });
 }
 
 }  // namespace etlc::report

@@ -1,17 +1,27 @@
-// The page: its own files, the chart library, and the data, in one text.
-// Takes: JSON texts that cannot end a script element. Gives: HTML. Keeps true: a browser runs the
-// two programs that etlc was built with and nothing else, and asks no network for anything: the
-// page's Content-Security-Policy names their hashes, and no address.
+// The page: its own files, the chart library and the data in one HTML text. A browser runs only the
+// two programs that etlc was built with and requests nothing from a network: the page's
+// Content-Security-Policy lists their hashes, and no address.
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace etlc::report {
 
-/// `figures`: what `etlc evaluate --json` writes, or null.
+/// A file of the page, or the chart library, embedded when etlc was built.
+struct PageFile {
+    std::string_view name;    ///< "page.html"
+    std::string_view sha256;  ///< in hexadecimal digits
+    std::string_view text;
+};
+const std::vector<PageFile>& page_files();
+
+/// Returns the page. `figures` is the output of `etlc evaluate --json`, or null. Neither text may
+/// be able to end a script element.
 std::string page_of(const std::string& data, const std::string& figures);
 
-/// Empty, or why this etlc cannot make pages.
+/// Returns why this etlc cannot make pages, or an empty text.
 std::string what_is_missing();
 
 }  // namespace etlc::report

@@ -1,18 +1,23 @@
-#include "report/picture_of_trace.hpp"
-
+// Draws the timelines of one trace as an SVG picture, for papers and slides (`etlc run --svg`): a
+// lane for each predicate and monitor, with its chart and the strips of its claims and truths, as
+// the page shows them. The size does not depend on the number of steps: with more steps than
+// pixels, a line goes through the least and the greatest number of each pixel.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "data/files/file.hpp"
+#include "report/report.hpp"
+#include "report/tracks.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::report {
 
 namespace {
 
-// Pixels.
+// Lengths in pixels.
 constexpr double kWidth = 900;
 constexpr double kLeft = 70;
 constexpr double kRight = 14;
@@ -22,7 +27,7 @@ constexpr double kChart = 66;
 constexpr double kStrip = 7;
 constexpr double kGap = 14;
 
-// As report/page/page.css has them.
+// The colours of report/page/page.css.
 constexpr const char* kStyle =
     "text{font:11px sans-serif;fill:#5d6b7c}.name{font-weight:600;font-size:12px;fill:#1b2330}"
     ".line{fill:none;stroke:#0b4f7c;stroke-width:1.4}.bounds{fill:#0072b2;fill-opacity:.11}"
@@ -77,7 +82,7 @@ std::vector<Lane> lanes_of(const Scene& scene, const Tracks& tracks) {
     return lanes;
 }
 
-/// XML text: source/escape.hpp leaves nothing that XML may not hold but these.
+/// Escapes text for XML. source::visible leaves no other characters that XML forbids.
 std::string xml(const std::string& text) {
     std::string result;
     for (const char c : source::visible(text)) switch (c) {
@@ -199,8 +204,8 @@ private:
         top_ += kStrip + 2;
     }
 
-    /// Through the numbers, with gaps; through the least and greatest of each pixel, where there
-    /// are more.
+    /// Returns a path through the numbers, with gaps, or through the least and greatest of each
+    /// pixel.
     std::string line(const std::vector<float>& values, const Scale& y) const {
         std::string path;
         bool drawn = false;
@@ -241,7 +246,7 @@ private:
         body_ += fmt::format("<path class=\"bounds\" d=\"{}{}Z\"/>\n", above, below);
     }
 
-    /// The samples that the first alarm's verdict rests on, else the first monitor's.
+    /// Marks the samples that explain the first alarm, or else the first monitor's verdict.
     void draw_marks(const Lane& lane, const Scale& y) {
         if (why_ == nullptr) return;
         for (const Mark& mark : why_->samples)
@@ -277,8 +282,13 @@ private:
 
 }  // namespace
 
-std::string picture_of_trace(const Scene& scene, const Tracks& tracks) {
-    return Drawing(scene, tracks).text();
+std::optional<std::string> picture(const pipeline::Compiled& spec, const std::string& trace,
+                                   const data::NamesInFile& names, diag::Sink& sink) {
+    const Scene scene{spec.plan, spec.plan.predicates, nullptr, nullptr, names, {}, {}};
+    const auto tracks = TrackReader(scene).score(trace);
+    if (tracks) return Drawing(scene, *tracks).text();
+    sink.report(data::in_trace(tracks.failure(), trace));
+    return std::nullopt;
 }
 
 }  // namespace etlc::report

@@ -1,12 +1,11 @@
-#include "report/plane.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "episodes/replay.hpp"
-#include "fit/algebra/eigenvectors.hpp"
+#include "fit/algebra/dense.hpp"
 #include "plan/plan.hpp"
+#include "report/tracks.hpp"
 
 namespace etlc::report {
 
@@ -18,7 +17,7 @@ using fit::Matrix;
 using fit::Vector;
 using Frames = std::vector<std::vector<float>>;
 
-/// Frames of one point, taken evenly: every n-th, with n doubled where they are too many.
+/// Keeps every n-th frame of a point, and doubles n when there are too many.
 class EvenFrames {
 public:
     explicit EvenFrames(std::size_t most) : most_(most) {}
@@ -32,7 +31,7 @@ public:
             if (i > 0) frames_[i] = std::move(frames_[2 * i]);
         frames_.resize((frames_.size() + 1) / 2);
     }
-    /// At most `most` of them.
+    /// Appends at most `most` of the frames.
     void move_to(Frames& all) {
         const std::size_t stride = frames_.size() > most_ ? 2 : 1;
         for (std::size_t i = 0; i < frames_.size(); i += stride)
@@ -70,7 +69,8 @@ Matrix columns(const Frames& frames, bool by_direction) {
     return all;
 }
 
-/// Of the smaller of the two products of the frames with themselves, whose values are the same.
+/// Computes the axes from the smaller of the two products of the frames with their transpose, which
+/// have the same eigenvalues.
 void take_axes(Matrix frames, Plane& plane) {
     const Vector mean = frames.rowwise().mean();
     frames.colwise() -= mean;
@@ -93,7 +93,7 @@ void take_axes(Matrix frames, Plane& plane) {
     }
 }
 
-/// Of two numbers nothing has to be left out.
+/// A point of two numbers is its own plane.
 void take_numbers(Plane& plane) {
     plane.mean = {0, 0};
     plane.axes = {std::vector<double>{1, 0}, {0, 1}};

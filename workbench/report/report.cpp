@@ -13,19 +13,18 @@
 #include "episodes/parallel.hpp"
 #include "report/document.hpp"
 #include "report/page.hpp"
-#include "report/picture_of_trace.hpp"
-#include "report/target_pictures.hpp"
+#include "report/pictures.hpp"
 
 namespace etlc::report {
 
 namespace {
 
-/// What a row of the list takes beside its series, at most a quarter of the page.
+/// Bytes of a row without its series; rows take at most a quarter of the page.
 constexpr std::uint64_t kBytesPerRow = 240;
 constexpr std::uint64_t kLeastForSeries = 2048;
 constexpr std::uint64_t kLeastForPictures = 20'000;
 
-/// How bad an episode is without truths: what raised an alarm first, then the least robustness.
+/// Orders episodes without truths: alarms first, then by the least robustness.
 std::tuple<bool, float> badness(const Row& row) {
     bool alarm = false;
     float least = std::numeric_limits<float>::infinity();
@@ -46,16 +45,16 @@ Row row_of(const Tracks& tracks) {
     return row;
 }
 
-/// The rows of the page, the worst first, and their series and pictures as far as there is room.
+/// The rows of the page, worst first, with the series and pictures that fit.
 class Shelf {
 public:
-    /// `ranked`: rows have a rank from the evaluation.
+    /// `ranked` rows have a rank from the evaluation.
     Shelf(bool ranked, bool pictured, std::size_t episodes, std::uint64_t bytes)
         : ranked_(ranked),
           most_rows_(std::min<std::uint64_t>(episodes, bytes / 4 / kBytesPerRow)),
           room_((bytes - most_rows_ * kBytesPerRow) / (pictured ? 2 : 1)) {}
 
-    /// What an episode may take of the series, and of the pictures.
+    /// Return the bytes available for the series, and for the pictures, of an episode.
     std::uint64_t share() const {
         return std::max(room_ / std::max<std::uint64_t>(1, most_rows_), kLeastForSeries);
     }
@@ -75,7 +74,7 @@ public:
             take_from(rows_.back(), true, true);
             rows_.pop_back();
         }
-        // The least bad ones lose theirs.
+        // The best episodes lose theirs first.
         for (std::size_t i = rows_.size(); (series_ > room_ || pictures_ > room_) && i-- > 0;)
             take_from(rows_[i], series_ > room_, pictures_ > room_);
     }
@@ -95,7 +94,7 @@ private:
 
     bool ranked_;
     std::uint64_t most_rows_;
-    std::uint64_t room_;  ///< of the series, and as much again of pictures
+    std::uint64_t room_;  ///< bytes for series, and as many again for pictures
     std::uint64_t series_ = 0;
     std::uint64_t pictures_ = 0;
     std::vector<Row> rows_;
@@ -110,7 +109,7 @@ std::vector<Index> shown_predicates(const Material& material) {
     return shown;
 }
 
-/// Reads an episode and packs it, in its thread.
+/// Reads and packs episodes, on one thread.
 class Packer {
 public:
     Packer(const Scene& scene, const Request& request, const Shelf& shelf)
@@ -142,7 +141,7 @@ private:
     const Shelf& shelf_;
 };
 
-/// Adds up what the episodes give, in their order.
+/// Collects the packed episodes, in order.
 class Gathering {
 public:
     Gathering(const plan::Plan& plan, const std::vector<evaluate::EpisodeRow>& judged, Shelf& shelf)
@@ -167,7 +166,7 @@ public:
     }
 
     Totals totals;
-    std::uint64_t unpictured = 0;  ///< episodes that lack pictures
+    std::uint64_t unpictured = 0;  ///< episodes without pictures
     diag::Diagnostic first_unpictured{};
 
 private:
@@ -176,7 +175,7 @@ private:
     std::map<std::string, std::size_t> rank_;
 };
 
-/// False where no episode has pictures.
+/// Reports episodes without pictures. Returns false if none has any.
 bool report_unpictured(const Gathering& gathered, diag::Sink& sink) {
     if (gathered.unpictured == 0) return true;
     const bool none = gathered.unpictured == gathered.totals.episodes;
@@ -189,7 +188,7 @@ bool report_unpictured(const Gathering& gathered, diag::Sink& sink) {
     return !none;
 }
 
-/// A pattern says where the pictures of each episode lie.
+/// Checks that a pattern names different pictures for each episode.
 bool check_pattern(const Request& request, diag::Sink& sink) {
     const FramesOption& frames = request.frames;
     if (!frames.is_pattern() || request.episodes.size() == 1 ||
@@ -251,15 +250,6 @@ std::optional<std::string> page(const Material& material, const Request& request
         [&](std::size_t, Packer::Packed packed) { gathered.add(std::move(packed)); });
     if (!read || !report_unpictured(gathered, sink)) return std::nullopt;
     return page_of(document(material, scene, gathered.totals, judged, shelf.take()), figures);
-}
-
-std::optional<std::string> picture(const pipeline::Compiled& spec, const std::string& trace,
-                                   const data::NamesInFile& names, diag::Sink& sink) {
-    const Scene scene{spec.plan, spec.plan.predicates, nullptr, nullptr, names, {}, {}};
-    const auto tracks = TrackReader(scene).score(trace);
-    if (tracks) return picture_of_trace(scene, *tracks);
-    sink.report(data::in_trace(tracks.failure(), trace));
-    return std::nullopt;
 }
 
 }  // namespace etlc::report

@@ -1,8 +1,6 @@
-// `etlc report`: what a spec makes of recorded episodes, as one web page to look at.
-// Takes: a compiled spec, its judgement where truths are known, and the episodes. Gives: the page's
-// text. Keeps true: the same data give the same bytes; the figures are those of `etlc evaluate
-// --json`, letter for letter; the page has no more bytes than asked for where that is possible, and
-// says what was left out for it.
+// `etlc report`: shows what a spec says of recorded episodes on one web page. The same data give
+// the same bytes, and the figures are the text of `etlc evaluate --json`. The page keeps to the
+// requested size if possible, and lists what it left out.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "artifacts/thresholds.hpp"
 #include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
 #include "evaluate/evaluate.hpp"
 #include "pipeline/compile.hpp"
-#include "report/pictures/pictures.hpp"
-#include "thresholds/thresholds.hpp"
+#include "report/pictures.hpp"
 
 namespace etlc::report {
 
@@ -26,28 +24,28 @@ struct Request {
     std::vector<std::string> episodes;  ///< as data::find_episodes gives them
     data::NamesInFile names;
     unsigned jobs = 0;                          ///< threads; 0: as many as the machine has
-    std::uint64_t megabytes = kUsualMegabytes;  ///< the size of the page
+    std::uint64_t megabytes = kUsualMegabytes;  ///< requested size of the page
     FramesOption frames;
-    plan::Limits limits;  ///< of the ground truth's plan
-    /// Called now and then, by any thread, never by two at once.
+    plan::Limits limits;  ///< limits on the ground truth's plan
+    /// Called occasionally, by any thread, never by two at once.
     std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
-/// A spec, and what is known about it.
+/// The inputs of a report.
 struct Material {
     const source::File& file;
     const pipeline::Compiled& spec;
-    /// What it is held to, and what came of that; null: no truths are known.
+    /// The ground truth, and the comparison with it; null without truths.
     const evaluate::Subject* truth = nullptr;
     const evaluate::Judgement* judgement = nullptr;
     std::string why_no_truth;
-    std::optional<thresholds::File> thresholds;  ///< where they were calibrated
+    std::optional<thresholds::File> thresholds;  ///< if calibrated
 };
 
-/// Nothing where the sink now says why.
+/// Returns the page, or nothing after an error, which it reports.
 std::optional<std::string> page(const Material& material, const Request& request, diag::Sink& sink);
 
-/// The timelines of one trace, without truths, as an SVG picture.
+/// Returns the timelines of one trace, without truths, as an SVG picture.
 std::optional<std::string> picture(const pipeline::Compiled& spec, const std::string& trace,
                                    const data::NamesInFile& names, diag::Sink& sink);
 

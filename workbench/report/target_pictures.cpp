@@ -1,5 +1,3 @@
-#include "report/target_pictures.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,19 +8,19 @@
 #include "data/files/paths.hpp"
 #include "data/frames/frames.hpp"
 #include "report/document.hpp"
-#include "report/pictures/png.hpp"
+#include "report/pictures.hpp"
 
 namespace etlc::report {
 
 namespace {
 
-/// Decodes the images that one target is made of.
+/// Decodes the images of one target.
 class Rows {
 public:
     Rows(const check::Model& model, const check::Target& target, diag::Sink& sink)
         : model_(model), target_(target), sink_(sink) {}
 
-    /// Nothing where one cannot be decoded, which is reported.
+    /// Returns nothing, after a report, if an image cannot be decoded.
     std::optional<std::vector<Picture>> pictures() {
         std::vector<Picture> rows(target_.rows);
         for (const check::EncodedRows& part : target_.encoded) {
@@ -50,7 +48,7 @@ private:
         return all_of(**source, paths);
     }
 
-    /// In the order in which the spec lists them.
+    /// Returns the frames in the order of the spec.
     std::optional<std::vector<Picture>> frames_of(const std::string& path,
                                                   const std::vector<std::uint64_t>& frames) {
         std::vector<std::uint64_t> wanted = frames;

@@ -31,7 +31,7 @@ Outcome outcome_of(const explain::History& history, bool sliding) {
         const Verdict& verdict = history.verdicts[step];
         if (!verdict.decided()) continue;
         const std::uint32_t status = code_of(verdict) % kFinal;
-        // Of a sliding monitor every position has a verdict, and one that is violated counts.
+        // Every position of a sliding monitor has a verdict, and a violated one counts.
         const bool worse = sliding && outcome.status == kNo;
         if (!worse) outcome.status = status;
         outcome.robustness =
@@ -141,7 +141,7 @@ void TrackReader::note_frame(const episodes::Recording& recording, Tracks& track
     }
 }
 
-/// The truth of a repeating monitor is asked about the same positions.
+/// Records a true verdict, and restarts the truth of a repeating monitor with it.
 void TrackReader::note_truth(std::size_t monitor) {
     const plan::Monitor& of = scene_.plan.monitors[monitor];
     const Verdict& is = truths_->verdict(truth_of_[monitor]);
@@ -198,8 +198,8 @@ void TrackReader::add_verdicts(Tracks& tracks) const {
             upper.values.push_back(verdict.upper);
             status.values.push_back(code_of(verdict));
         }
-        // A bound that equals the robustness is left out, and drawn from it. A sliding monitor has
-        // no others.
+        // A bound that equals the robustness is left out and drawn from it, as always for a sliding
+        // monitor.
         for (Numbers* bound : {&lower, &upper})
             if (!scene_.plan.monitors[m].sliding && !same_numbers(*bound, robustness))
                 tracks.numbers.push_back(std::move(*bound));

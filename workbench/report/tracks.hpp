@@ -1,9 +1,9 @@
-// One episode as the page shows it: what was measured, said and true at every step.
-// Takes: the compiled spec, which truths to read, and an episode. Gives: its series, what they came
-// to, and why each monitor's verdict is what it is. Keeps true: the monitors are run by the
-// evaluator of `etlc run`, on the samples that the generated class would get.
+// One episode as the page shows it: what was measured, claimed and true at every step, and
+// explanations of the verdicts. The evaluator of `etlc run` runs the monitors, on the samples that
+// the generated class would get.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -12,73 +12,94 @@
 
 #include "episodes/replay.hpp"
 #include "evaluate/subject.hpp"
-#include "explain/history.hpp"
 #include "explain/report.hpp"
 #include "ir/lower.hpp"
-#include "report/plane.hpp"
-#include "report/target_pictures.hpp"
+#include "report/pictures.hpp"
 
 namespace etlc::report {
 
 using check::Index;
 
-/// What the page knows of the spec beside the spec itself.
+/// The plane of greatest variance of a point of the spec, from some of its frames. Frames count by
+/// their direction if only angles are measured from the point. The same frames give the same bits.
+struct Plane {
+    Index point = 0;  ///< in the model
+    bool by_direction = false;
+    std::vector<double> mean;
+    std::array<std::vector<double>, 2> axes;
+    std::array<double, 2> explained{};  ///< shares of the variance, 0 to 1
+
+    std::array<float, 2> operator()(const float* z) const;
+};
+
+/// Returns the points of several numbers from which the predicates measure, in the model's order.
+std::vector<Index> points_to_draw(const check::Model& model, const std::vector<Index>& predicates);
+
+/// Returns the planes of these points, from evenly chosen frames of at most kPlaneEpisodes
+/// episodes. A point with fewer than two known frames has none. Failures do not name the path.
+inline constexpr std::size_t kPlaneEpisodes = 24;
+diag::Result<std::vector<Plane>> planes(const check::Model& model,
+                                        const std::vector<Index>& predicates,
+                                        const std::vector<std::string>& paths,
+                                        const data::NamesInFile& names);
+
+/// The parts of a spec that the page shows.
 struct Scene {
     const plan::Plan& plan;
-    std::vector<Index> predicates;   ///< that are shown
-    const evaluate::Subject* truth;  ///< null: no truths are known
-    const plan::Plan* truth_plan;    ///< of the ground truth; null with it
+    std::vector<Index> predicates;   ///< shown on the page
+    const evaluate::Subject* truth;  ///< null without truths
+    const plan::Plan* truth_plan;    ///< of the ground truth; null without truths
     const data::NamesInFile& names;
-    std::vector<Plane> planes;  ///< of the points that are drawn
+    std::vector<Plane> planes;  ///< of the points drawn
     TargetPictures target_pictures;
 };
 
-/// A number a step. `of`: distance, robustness, lower, upper, x, y.
+/// A series of numbers, one per step. `of`: distance, robustness, lower, upper, x, y.
 struct Numbers {
     std::string of;
-    std::size_t index = 0;  ///< of the scene's predicates, the plan's monitors, or the planes
+    std::size_t index = 0;  ///< in the scene's predicates, the plan's monitors or the planes
     std::vector<float> values;
 };
 
-/// A code a step. `of`: holds, nearest, truth, input, status, monitor_truth.
+/// A series of codes, one per step. `of`: holds, nearest, truth, input, status, monitor_truth.
 struct Codes {
     std::string of;
     std::size_t index = 0;
     std::vector<std::uint32_t> values;
 };
 
-// Codes of truths and bools, and of what monitors say.
+// Codes of truths, bools and verdicts.
 inline constexpr std::uint32_t kNo = 0;
 inline constexpr std::uint32_t kYes = 1;
 inline constexpr std::uint32_t kUnknown = 2;
 inline constexpr std::uint32_t kUndecided = 3;
-inline constexpr std::uint32_t kFinal = 4;  ///< added, where the verdict is for good
+inline constexpr std::uint32_t kFinal = 4;  ///< added to a final verdict
 
-/// What a monitor came to.
+/// The outcome of a monitor.
 struct Outcome {
-    std::uint32_t status = kUndecided;      ///< of its last verdict
-    float robustness = 0;                   ///< of it; a sliding monitor's least one
-    std::optional<std::uint64_t> alarm;     ///< the first step that says violated for good
-    std::optional<std::uint64_t> final_at;  ///< the first step that says anything for good
+    std::uint32_t status = kUndecided;      ///< code of its last verdict
+    float robustness = 0;                   ///< of that verdict; the least of a sliding monitor
+    std::optional<std::uint64_t> alarm;     ///< first step with a final violation
+    std::optional<std::uint64_t> final_at;  ///< first step with a final verdict
 };
 
-/// Samples in a row of a predicate, or of a bool, on which a verdict rests.
+/// Successive samples of a predicate or a bool that explain a verdict.
 struct Mark {
     bool is_predicate = true;
-    std::size_t index = 0;  ///< of the scene's predicates, or of the plan's inputs
+    std::size_t index = 0;  ///< in the scene's predicates or the plan's inputs
     std::uint64_t first = 0;
     std::uint64_t last = 0;
     bool holds = false;
 };
 
-/// Why a monitor says what it says after a step.
+/// The explanation of a verdict.
 struct Why {
-    std::size_t monitor = 0;  ///< of the plan
+    std::size_t monitor = 0;  ///< in the plan
     std::uint64_t step = 0;
     std::uint64_t position = 0;
     std::string status;
     bool for_good = false;
-    std::string text;  ///< of `etlc explain`
+    std::string text;  ///< text of `etlc explain`
     std::vector<Mark> samples;
     std::optional<Mark> critical;  ///< one step
 };
@@ -93,7 +114,7 @@ struct Tracks {
     std::vector<Why> reasons;
 };
 
-/// Reads one episode after the other. Not shared between threads; the scene outlives it.
+/// Reads one episode after the other, on one thread. The scene must outlive it.
 class TrackReader {
 public:
     explicit TrackReader(const Scene& scene);
@@ -127,7 +148,7 @@ private:
     std::unique_ptr<explain::Observations> observations_;
     std::optional<episodes::Follower> atoms_;
     std::vector<Said> said_;       ///< per monitor of the plan
-    std::vector<Index> truth_of_;  ///< per monitor of the plan: of the ground truth's model
+    std::vector<Index> truth_of_;  ///< per monitor of the plan: monitor of the ground truth
 };
 
 }  // namespace etlc::report

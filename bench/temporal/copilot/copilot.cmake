@@ -1,5 +1,5 @@
-# Copilot's monitors, where GHC and libghc-copilot-dev are there. Each of its C files has functions
-# of the same names: of each object only the step is kept visible.
+# Copilot's monitors, if GHC and libghc-copilot-dev are installed. Its C files define functions with
+# the same names, so only the step of each object stays visible.
 find_program(ETLC_RUNGHC runghc)
 mark_as_advanced(ETLC_RUNGHC)
 set(has_copilot FALSE)

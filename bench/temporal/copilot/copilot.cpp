@@ -3,7 +3,7 @@
 #ifdef ETLC_HAS_COPILOT
 
 namespace {
-float now = 0;  ///< what the trigger of the last step was called with
+float now = 0;  ///< the arguments of the last step's trigger
 }
 
 extern "C" {

@@ -1,6 +1,6 @@
-// Some of the formulas as Copilot has them (copilot/Monitors.hs), where Copilot was there when this
-// was built. Takes: a formula's title. Gives: its monitor, which Copilot keeps in global variables.
-// Keeps true: robustness alone, of this step, in floats.
+// Some of the formulas in Copilot (copilot/Monitors.hs), if Copilot was installed for this build.
+// Takes: a formula's title. Gives: its monitor, which Copilot keeps in global variables. Keeps
+// true: robustness only, of this step, in floats.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace bench {
 
-/// One step on the samples i of the signals; its robustness.
+/// Takes one step on the samples i of the signals; returns its robustness.
 using CopilotStep = float (*)(const Signals& signals, std::size_t i);
 
 std::optional<CopilotStep> copilot_step(const std::string& title);

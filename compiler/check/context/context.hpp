@@ -14,6 +14,8 @@
 #include <variant>
 #include <vector>
 
+#include "artifacts/embedded.hpp"
+#include "artifacts/fitted.hpp"
 #include "ast/ast.hpp"
 #include "check/context/matrix.hpp"
 #include "check/context/options.hpp"
@@ -21,8 +23,6 @@
 #include "check/model/model.hpp"
 #include "data/files/file.hpp"
 #include "diag/diag.hpp"
-#include "embedded/embedded.hpp"
-#include "fitted/fitted.hpp"
 
 namespace etlc::check {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "fitted/fitted.hpp"
-#include "thresholds/thresholds.hpp"
+#include "artifacts/fitted.hpp"
+#include "artifacts/thresholds.hpp"
 
 namespace etlc::check {
 

@@ -7,20 +7,20 @@
 #include <filesystem>
 #include <set>
 
+#include "artifacts/json.hpp"
 #include "check/context/context.hpp"
 #include "check/numbers/decimal.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/text/quote.hpp"
-#include "thresholds/json.hpp"
 
 namespace etlc::check {
 
 namespace {
 
+using artifacts::Json;
 using diag::Code;
 using diag::Failure;
-using thresholds::Json;
 
 constexpr std::uint64_t kMaxExtent = 1U << 14U;  ///< of an image, rows or columns
 constexpr std::uint64_t kMaxSettingsBytes = 1U << 20U;
@@ -131,8 +131,7 @@ std::optional<Failure> take_settings_file(Encoder& encoder, const std::string& m
     if (path == model_path || !std::filesystem::exists(path, error)) return std::nullopt;
     const auto text = data::read_file(path, kMaxSettingsBytes, Code::encoder_form);
     if (!text) return text.failure();
-    const auto root =
-        thresholds::parse_json(*text, kMaxSettingsValues, Code::encoder_form, Code::encoder_form);
+    const auto root = artifacts::parse_json(*text, kMaxSettingsValues, Code::encoder_form);
     if (!root) return root.failure();
     if (root->kind != Json::Kind::object)
         return wrong(fmt::format("the file is {}, expected an object with {}", describe(*root),

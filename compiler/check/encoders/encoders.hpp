@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "artifacts/embedded.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
-#include "embedded/embedded.hpp"
 
 namespace etlc::check {
 

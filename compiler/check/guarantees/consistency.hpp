@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "thresholds/thresholds.hpp"
+#include "artifacts/thresholds.hpp"
 
 namespace etlc::check {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "artifacts/thresholds.hpp"
 #include "check/context/context.hpp"
 #include "check/context/options.hpp"
 #include "check/guarantees/adaptation.hpp"
@@ -14,7 +15,6 @@
 #include "check/numbers/decimal.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "thresholds/thresholds.hpp"
 
 namespace etlc::check {
 

@@ -1,4 +1,4 @@
-// Adaptive thresholds in the class: the one number that each keeps, and the calls that move it.
+// Prints adaptive thresholds: their members, and the calls that change them.
 #include "emit/context.hpp"
 #include "plan/program/predicate_values.hpp"
 
@@ -28,21 +28,20 @@ const char* comparison_name(const check::Predicate& predicate) {
 std::vector<Member> threshold_members(const Context& context) {
     std::vector<Member> result;
     for (const auto& [p, name] : context.names.threshold_member)
-        result.push_back({"float", name, "adaptive; reset() leaves it", "",
+        result.push_back({"float", name, "adaptive threshold; reset() keeps it", "",
                           float_literal(context.model.predicates[p].threshold.value)});
     return result;
 }
 
 void print_adaptive_interface(Printer& out, const Context& context) {
     if (context.names.threshold_member.empty()) return;
-    print_doc(
-        out,
-        "Adaptive thresholds. observe_P takes the label of a step when it comes, at any later "
-        "time: the distance_P() of that step, and whether P was true. Of steps where it was, "
-        "the threshold of the steps to come learns: a miss widens it, a hit tightens it. A "
-        "NaN distance changes nothing. reset() keeps what was learnt; after a reboot "
-        "set_threshold_P goes on from a threshold_P() that was kept, and NaN changes nothing; "
-        "set_threshold_P(initial_threshold_P()) goes back to the calibrated one.");
+    print_doc(out,
+              "Adaptive thresholds. Call observe_P when the label of a step arrives, at any later "
+              "time, with the distance_P() of that step and whether P was true. If it was, the "
+              "threshold of later steps changes: a miss widens it, a hit tightens it. A NaN "
+              "distance changes nothing. reset() keeps the threshold. After a reboot, "
+              "set_threshold_P restores a saved threshold_P(), and ignores NaN; "
+              "set_threshold_P(initial_threshold_P()) returns to the calibrated one.");
     for (const auto& [p, member] : context.names.threshold_member) {
         const check::Predicate& predicate = context.model.predicates[p];
         out.open(fmt::format("void observe_{}(const float& distance, bool truth) noexcept {{",
@@ -66,8 +65,8 @@ void print_adaptive_interface(Printer& out, const Context& context) {
 void print_adaptation_constants(Printer& out, const Context& context) {
     if (context.names.threshold_member.empty()) return;
     print_doc(out,
-              "Adaptive thresholds: least, greatest, what a miss adds, what a hit adds, and what "
-              "all are multiples of.");
+              "Adaptive thresholds: lowest, highest, step on a miss, step on a hit, and the grid "
+              "of all of them.");
     for (const auto& [p, member] : context.names.threshold_member)
         print_wrapped(out, constant(context, p));
     out.line();

@@ -1,4 +1,4 @@
-// The kernels' calls in measure().
+// Prints the kernel calls in measure().
 #include "emit/measure/measurements.hpp"
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
@@ -22,7 +22,7 @@ std::string aggregation(const check::Distance& distance) {
     return fmt::format("etlmon::Kth<{}>", distance.kth);
 }
 
-/// "etlmon::L2, etlmon::Min, 64, 384": what the kernels are told about a distance, beside its rows.
+/// Returns the template arguments of a kernel but for its rows: "etlmon::L2, etlmon::Min, 64, 384".
 std::string kernel_parameters(const Context& context, Index d) {
     const check::Distance& distance = context.model.distances[d];
     const check::Target& target = context.model.targets[distance.target];
@@ -37,7 +37,7 @@ std::string weights_argument(const Context& context, Index d) {
     return ", targets::" + weights->second;
 }
 
-/// The kernel's call on the point that `z` names, for float32 rows.
+/// Returns the kernel call on the point named `z`, for float32 rows.
 std::string wide_call(const Context& context, Index d, const std::string& z) {
     if (context.retargetable())
         return fmt::format("etlmon::measure_rows<{}>({}, {}{})", kernel_parameters(context, d), z,
@@ -45,18 +45,18 @@ std::string wide_call(const Context& context, Index d, const std::string& z) {
                            weights_argument(context, d));
     const auto search = context.names.search_member.find(d);
     if (search != context.names.search_member.end())
-        return fmt::format("{}.nearest<etlmon::{}>({}, rows + targets::{})", search->second,
+        return fmt::format("{}.nearest<etlmon::{}>({}, rows_ + targets::{})", search->second,
                            plan::metric_name(context.model.distances[d]), z,
                            context.names.target_array.at(d));
     if (plan::stored_set(context.plan, d) != nullptr)
-        return fmt::format("etlmon::measure_stored<{}>({}, rows + targets::{}{})",
+        return fmt::format("etlmon::measure_stored<{}>({}, rows_ + targets::{}{})",
                            kernel_parameters(context, d), z, context.names.target_array.at(d),
                            weights_argument(context, d));
     return fmt::format("etlmon::measure<{}, targets::{}>({}{})", kernel_parameters(context, d),
                        context.names.target_array.at(d), z, weights_argument(context, d));
 }
 
-/// The same for its narrow rows.
+/// Returns the kernel call for narrow rows.
 std::string narrow_call(const Context& context, const plan::NarrowSet& set, const std::string& z) {
     const std::string parameters =
         fmt::format("{}, targets::{}", kernel_parameters(context, set.distance),
@@ -68,13 +68,13 @@ std::string narrow_call(const Context& context, const plan::NarrowSet& set, cons
                        float_literal(set.scale), weights);
 }
 
-/// The kernel's call on the only rows that the distance has.
+/// Returns the kernel call on the rows of a distance that has only one kind of them.
 std::string only_call(const Context& context, Index d, const std::string& z) {
     const plan::NarrowSet* set = plan::narrow_set(context.plan, d);
     return set != nullptr ? narrow_call(context, *set, z) : wide_call(context, d, z);
 }
 
-/// What its narrow rows say of the distance: the call that gives the interval.
+/// Returns the call that encloses the distance, from its narrow rows.
 std::string enclosing_call(const Context& context, const plan::NarrowSet& set,
                            const std::string& z) {
     const check::Distance& distance = context.model.distances[set.distance];
@@ -85,8 +85,7 @@ std::string enclosing_call(const Context& context, const plan::NarrowSet& set,
                        averaged);
 }
 
-/// The conditions under which all of some scalars are there: "!etlmon::is_nan(x) &&
-/// !etlmon::is_nan(y)".
+/// Returns the condition that all scalars are present: "!etlmon::is_nan(x) && !etlmon::is_nan(y)".
 std::string all_present(const Context& context, const std::vector<Index>& scalars) {
     std::string text;
     for (Index i : scalars)
@@ -95,29 +94,29 @@ std::string all_present(const Context& context, const std::vector<Index>& scalar
     return text;
 }
 
-/// The elements of a point that is made of scalars.
+/// Returns the elements of a point that consists of scalars.
 std::string scalars_of(const Context& context, const check::Point& point) {
     std::string text;
     for (Index i : point.inputs) text += (text.empty() ? "" : ", ") + sample(context, i);
     return text;
 }
 
-/// Where the elements lie of an embedding, or of a projected point.
+/// Returns the pointer to the elements of an embedding or a projected point.
 std::string elements_of(const Context& context, Index index) {
     const check::Point& point = context.model.points[index];
     if (!point.is_projected()) return sample(context, point.inputs[0]);
     return context.names.point_local.at(index) + (context.on_demand ? "()" : "");
 }
 
-/// `into = ...`, the distance from the point that `z` names.
+/// Prints `into = ...`, the distance from the point named `z`.
 void print_measurement(Printer& out, const Context& context, Index d, const std::string& z,
                        const std::string& into) {
     if (!context.enclosed(d))
         return print_wrapped(out, fmt::format("{} = {};", into, only_call(context, d, z)));
     const plan::NarrowSet& set = *plan::narrow_set(context.plan, d);
     print_wrapped(out, fmt::format("{} = {};", into, enclosing_call(context, set, z)));
-    if (set.cuts.empty()) return;  // of contrasts alone
-    print_comment(out, "//", "too near to a threshold to say: measured on float32 rows");
+    if (set.cuts.empty()) return;  // used by contrasts only
+    print_comment(out, "//", "too close to a threshold to decide: measured on float32 rows");
     print_wrapped(out, fmt::format("if ({}.doubtful({})) {{", into, cuts(context, set)));
     out.indent();
     print_wrapped(out, fmt::format("{} = etlmon::exactly({});", into, wide_call(context, d, z)));
@@ -143,15 +142,15 @@ std::optional<std::string> measured_at_once(const Context& context, Index d) {
 
 namespace {
 
-/// The matrix, and the offset where there is one.
+/// Returns the matrix, and the offset if there is one.
 std::string numbers_of(const Context& context, Index projection, bool stored) {
-    using Kind = plan::Parameter::Kind;
     const auto offset = context.names.offset_array.find(projection);
     const bool has_offset = offset != context.names.offset_array.end();
     if (context.retargetable())
-        return context.parameter(Kind::matrix, projection) +
-               (has_offset ? ", " + context.parameter(Kind::offset, projection) : "");
-    return fmt::format("{}projections::{}{}", stored ? "rows + " : "",
+        return context.parameter(plan::Parameter::Kind::matrix, projection) +
+               (has_offset ? ", " + context.parameter(plan::Parameter::Kind::offset, projection)
+                           : "");
+    return fmt::format("{}projections::{}{}", stored ? "rows_ + " : "",
                        context.names.matrix_array.at(projection),
                        has_offset ? ", projections::" + offset->second : "");
 }
@@ -174,7 +173,7 @@ void print_projected(Printer& out, const Context& context, Index index) {
         fmt::format("{}etlmon::project<{}, {}>({}, {}, {}){}", stored ? "ready() ? " : "", map.rows,
                     map.dimension, z, numbers, buffer, stored ? " : nullptr" : "");
     out.gap();
-    print_comment(out, "//", fmt::format("{}, once for all distances from it", point.text), 4);
+    print_comment(out, "//", fmt::format("{}, shared by all distances from it", point.text), 4);
     out.line("float {}[{}];", buffer, point.dimension);
     print_wrapped(out, context.on_demand
                            ? fmt::format("const etlmon::Lazy {}([&]() noexcept {{ return {}; }});",
@@ -184,8 +183,8 @@ void print_projected(Printer& out, const Context& context, Index index) {
 
 namespace {
 
-/// A statement that measures, made by `measure` of what the point is called, where the inputs are
-/// there.
+/// Prints the statement that `measure` prints for the name of the point, under the condition that
+/// the inputs are present.
 template <class Measure>
 void print_where_there(Printer& out, const Context& context, Index d, const Measure& measure) {
     const Index index = context.model.distances[d].point;

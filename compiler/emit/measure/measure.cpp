@@ -1,5 +1,5 @@
-// measure(): from the samples of a step to the robustness of every predicate. In a Boolean monitor
-// the same samples and predicates, each found out when a verdict first depends on it
+// Prints measure(): from the samples of a step to the robustness of every predicate. A Boolean
+// monitor evaluates samples and predicates when a verdict first depends on them
 // (etlmon/temporal/demand.hpp).
 #include <algorithm>
 
@@ -15,7 +15,7 @@ namespace {
 using check::Expr;
 using check::Index;
 
-/// What the kernel gave, for expressions.
+/// Returns the result of the kernel, for expressions.
 std::string distance(const Context& context, Index d) {
     return context.names.distance_local.at(d) + (context.on_demand ? "()" : "");
 }
@@ -47,7 +47,7 @@ std::string expression(const Context& context, const Expr& e) {
     return "";
 }
 
-/// The function of the runtime that gives the robustness.
+/// Returns the runtime function that computes the robustness.
 const char* robustness_name(const check::Predicate& predicate) {
     switch (predicate.comparison) {
         case check::Comparison::less_equal:
@@ -58,8 +58,8 @@ const char* robustness_name(const check::Predicate& predicate) {
     }
 }
 
-/// Distances that an expression or more than one predicate reads get a local; the others go
-/// straight into telemetry.
+/// Prints the body of measure(). A distance that an expression or several predicates read gets a
+/// local; others are stored in telemetry directly.
 std::map<Index, int> uses_of_distances(const Context& context) {
     std::map<Index, int> uses;
     for (Index p : context.plan.predicates) {
@@ -85,8 +85,8 @@ public:
     }
 
 private:
-    /// Distances that an expression or more than one predicate reads, and those known within
-    /// bounds.
+    /// Returns the distances that get a local: read by an expression or several predicates, or
+    /// known within bounds only.
     bool has_local(Index d) { return uses_[d] > 1 || context_.enclosed(d); }
 
     void print_shared(Index d) {
@@ -162,7 +162,7 @@ private:
         if (is_contrast) out_.close();
     }
 
-    /// What stands for a predicate whose sample is not there.
+    /// Returns the value of a predicate whose sample is missing.
     std::string missing_value(Index p) const {
         const check::Predicate& predicate = context_.model.predicates[p];
         if (!predicate.missing && context_.retargetable()) return "unseen()";
@@ -170,7 +170,7 @@ private:
         return context_.atom_literal(plan::missing_value(predicate, context_.plan.values));
     }
 
-    /// AGG DIST(point, target): kept with its nearest row.
+    /// Prints AGG DIST(point, target), stored with its nearest row.
     std::string plain(const check::Predicate& predicate, const std::string& variable, bool kept) {
         const Index d = predicate.expression.index;
         if (has_local(d)) {
@@ -186,14 +186,14 @@ private:
                                             variable, *call));
             return variable + ".delta";
         }
-        // What step() of a Boolean class keeps, it has called unmeasured.
+        // step() of a Boolean class has already set telemetry to unmeasured.
         if (!kept || !context_.on_demand)
             out_.line("{}{} = etlmon::kUnmeasured;", kept ? "" : "etlmon::Measured ", variable);
         print_distance(out_, context_, d, variable);
         return variable + ".delta";
     }
 
-    /// EXPR: what is not there is NaN, and stays NaN in all arithmetic.
+    /// Prints an EXPR. A missing operand is NaN, and so is the result.
     std::string general(Index p, const std::string& variable, bool kept) {
         const check::Predicate& predicate = context_.model.predicates[p];
         print_wrapped(out_, fmt::format("{}{} = {};", kept ? "" : "const float ", variable,
@@ -204,7 +204,7 @@ private:
         return variable;
     }
 
-    /// Two distances of which narrow rows leave something open.
+    /// Prints the difference of two distances whose narrow rows give bounds only.
     std::string contrast(Index p, const std::string& variable) {
         const check::Predicate& predicate = context_.model.predicates[p];
         const auto both = *plan::contrast(predicate);
@@ -215,7 +215,7 @@ private:
         out_.line("etlmon::Enclosed left = {};", enclosed(both.first));
         out_.line("etlmon::Enclosed right = {};", enclosed(both.second));
         out_.line("etlmon::Enclosed apart = etlmon::difference(left, right);");
-        print_comment(out_, "//", "too near to a threshold to say: measured on float32 rows");
+        print_comment(out_, "//", "too close to a threshold to decide: measured on float32 rows");
         print_wrapped(out_,
                       fmt::format("if (apart.doubtful({})) {{",
                                   cuts(plan::contrast_cuts(context_.plan, predicate), predicate)));
@@ -232,7 +232,7 @@ private:
         return variable;
     }
 
-    /// Some contrast asks what narrow rows leave open about the distance.
+    /// Returns whether some contrast depends on the exact distance.
     bool is_contrasted(Index d) const {
         return std::any_of(context_.plan.predicates.begin(), context_.plan.predicates.end(),
                            [&](Index p) {
@@ -259,7 +259,7 @@ void print_measure(Printer& out, const Context& context) {
     MeasurePrinter(out, context).print();
     out.line();
     print_step_measured(out, context);
-    print_wrapped(out, "if (missing && incomplete != UINT32_MAX) ++incomplete;");
+    print_wrapped(out, "if (missing && incomplete_ != UINT32_MAX) ++incomplete_;");
     out.line("return now;");
     out.close();
 }

@@ -1,6 +1,5 @@
-// What measure() is made of: samples, and the kernels' calls on them.
-// Takes: the context. Gives: expressions that stand for this step's samples and distances, and the
-// statements that they need. Keeps true: what is missing has no distance: NaN, and row 0.
+// The parts of measure(): code for the samples and distances of a step, and the statements before
+// them. The distance of a missing sample is NaN, with row 0.
 #pragma once
 
 #include <optional>
@@ -10,33 +9,32 @@
 
 namespace etlc::emit {
 
-/// This step's sample: a scalar, NaN where it is missing; of an embedding a pointer, null where it
-/// is missing, or the view itself, where the kernels look whether it is there.
+/// Returns code for this step's sample: a scalar, NaN if missing; a pointer to an embedding, null
+/// if missing; or the view itself, if the kernels check it.
 std::string sample(const Context& context, check::Index input);
 
-/// The statement that takes note of a sample that is missing, or of something that is not known.
+/// Returns the statement that marks the step as incomplete under a condition.
 std::string missed(const std::string& condition);
 
-/// What has to be said before sample() of this input can be.
+/// Prints the declarations that sample() of this input needs.
 void print_input(Printer& out, const Context& context, check::Index input);
 
-/// The call that measures a distance where there is one for whatever the sample is; else
-/// print_distance has more to say.
+/// Returns the call that measures a distance and also handles missing samples; nothing if it takes
+/// the statements of print_distance.
 std::optional<std::string> measured_at_once(const Context& context, check::Index distance);
 
-/// A projected point, by the name of names.point_local: where its elements lie, null where it is
-/// unknown.
+/// Declares names.point_local, the pointer to a projected point; null if it is unknown.
 void print_projected(Printer& out, const Context& context, check::Index point);
-/// `into = ...` where the inputs are there, on float32 rows: an Enclosed that is exact.
+/// Prints `into = ...` on float32 rows if the inputs are present: an exact Enclosed.
 void print_exact_distance(Printer& out, const Context& context, check::Index distance,
                           const std::string& into);
 
-/// "{threshold_near(), 0.5f}": where comparisons turn. The threshold of a predicate that compares
-/// the distance, or of this one, by name.
+/// Returns the numbers at which comparisons change, "{threshold_near(), 0.5f}". Thresholds of named
+/// predicates are called by name.
 std::string cuts(const Context& context, const plan::NarrowSet& set);
 std::string cuts(const std::vector<plan::Cut>& cuts, const check::Predicate& of);
 
-/// `into = ...` where the inputs are there: a Measured that was unmeasured, or an Enclosed.
+/// Prints `into = ...` if the inputs are present: a Measured, so far unmeasured, or an Enclosed.
 void print_distance(Printer& out, const Context& context, check::Index distance,
                     const std::string& into);
 

@@ -1,4 +1,5 @@
-// The samples of a step in measure(): what of an input counts as there, and what stands for it.
+// Prints the samples of a step in measure(): checks that they are present, and declares their
+// locals.
 #include "emit/measure/measurements.hpp"
 #include "plan/program/predicate_values.hpp"
 #include "plan/targets/point_checks.hpp"
@@ -10,7 +11,7 @@ using check::InputType;
 
 namespace {
 
-/// An input that is looked at on demand; one that is held is looked at on every step.
+/// Returns whether an input is read on demand. One with `hold` is read at every step.
 bool on_demand(const Context& context, Index i) {
     return context.on_demand && context.model.inputs[i].hold == 0;
 }
@@ -21,7 +22,7 @@ std::string accepted(const check::Input& input) {
                        float_literal(input.range.high));
 }
 
-/// Whether the embedding is there, as far as its kernels do not find out.
+/// Returns the condition that the embedding is present, as far as its kernels do not check it.
 std::string present(const Context& context, Index i) {
     const std::string& name = context.model.inputs[i].name;
     return plan::left_to_kernels(context.plan, i) ? fmt::format("in.{}.present()", name)
@@ -54,12 +55,12 @@ void print_widened(Printer& out, const Context& context, Index i) {
     out.close();
 }
 
-/// A bool that is held, as a Flag.
+/// Returns a bool with `hold` as a Flag.
 std::string held_flag(const std::string& word) {
     return fmt::format("{0} != nullptr ? etlmon::Flag(*{0} != 0) : etlmon::Flag()", word);
 }
 
-/// What else truth_of and value_of take: what a bool counts as where it is missing.
+/// Returns the last argument of truth_of and value_of: the value of a missing bool.
 std::string missing_flag(const Context& context, Index i) {
     const check::Input& input = context.model.inputs[i];
     return input.missing ? ", " + context.atom_literal(plan::missing_value(input)) : "";
@@ -122,7 +123,7 @@ void print_scalar(Printer& out, const Context& context, Index i) {
         print_wrapped(out, fmt::format("const float {} = {};", local, accepted(input)));
 }
 
-/// The elements as float32, null where they are missing.
+/// Returns a pointer to the elements as float32, null if they are missing.
 std::string elements(const Context& context, Index i) {
     return fmt::format("{} ? in.{}.data() : nullptr", present(context, i),
                        context.model.inputs[i].name);
@@ -175,7 +176,7 @@ void print_input(Printer& out, const Context& context, Index i) {
     const auto direction = context.names.direction_local.find(i);
     if (direction != context.names.direction_local.end()) {
         const std::string& name = context.model.inputs[i].name;
-        print_comment(out, "//", fmt::format("|{}|, once for all distances that need it", name));
+        print_comment(out, "//", fmt::format("|{}|, shared by all distances that need it", name));
         out.line("const auto {} = etlmon::direction_of(in.{});", direction->second, name);
     }
     if (context.names.input_local.count(i) == 0) return;  // read in place

@@ -1,4 +1,4 @@
-// Telemetry of lets: what each says of the present step, for those who log it or show it.
+// Prints the telemetry of lets: the verdict of each at the last step.
 #include "emit/context.hpp"
 
 namespace etlc::emit {
@@ -18,8 +18,8 @@ std::vector<Member> let_members(const Context& context) {
 
 void print_let_interface(Printer& out, const Context& context) {
     if (context.plan.lets.empty()) return;
-    print_doc(out, fmt::format("What each let says of the last step{}.",
-                               context.on_demand ? "" : ", and how robustly"));
+    print_doc(out, fmt::format("The verdict of each let at the last step{}.",
+                               context.on_demand ? "" : ", and its robustness"));
     for (std::size_t l = 0; l < context.plan.lets.size(); ++l) {
         const std::string& name = context.model.lets[context.plan.lets[l].index].name;
         const std::string& member = context.names.let_member[l];
@@ -34,7 +34,7 @@ void print_let_interface(Printer& out, const Context& context) {
 
 namespace {
 
-/// Of a let: its verdict has no sample.
+/// Returns the value of a let, without its sample.
 std::string value_of(const Context& context, const plan::Let& let) {
     const std::string value = context.value(let.stream);
     return context.explains ? fmt::format("etlmon::unsourced({})", value) : value;
@@ -42,12 +42,12 @@ std::string value_of(const Context& context, const plan::Let& let) {
 
 }  // namespace
 
-/// After the trace they stay: there is no step that they would be about.
+/// Lets keep their last verdict during finish().
 void print_lets(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
     if (plan.lets.empty()) return;
     out.gap();
-    if (plan.has_sliding) out.open("if (finishes == 0) {");
+    if (plan.has_sliding) out.open("if (finishes_ == 0) {");
     for (std::size_t l = 0; l < plan.lets.size(); ++l)
         print_with_comment(
             out,

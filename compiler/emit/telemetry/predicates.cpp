@@ -1,5 +1,4 @@
-// What the last step measured of each predicate: the members that keep it, and the calls that give
-// it.
+// Prints the telemetry of predicates: its members, and the functions that return it.
 #include "emit/context.hpp"
 
 namespace etlc::emit {
@@ -8,7 +7,7 @@ namespace {
 
 using check::Index;
 
-/// Of a predicate that is not adaptive.
+/// Prints threshold_P() of a predicate that is not adaptive.
 void print_threshold(Printer& out, const Context& context, Index p) {
     const check::Predicate& predicate = context.model.predicates[p];
     if (!context.retargetable())
@@ -32,10 +31,9 @@ std::vector<Member> telemetry_members(const Context& context) {
                           ""});
     }
     for (const auto& [of, nearest] : context.names.nearest)
-        result.push_back(
-            {"uint32_t", nearest.member,
-             fmt::format("the row nearest by {}", context.model.distances[of.second].text),
-             nearest.member + " = 0;", ""});
+        result.push_back({"uint32_t", nearest.member,
+                          fmt::format("nearest row by {}", context.model.distances[of.second].text),
+                          nearest.member + " = 0;", ""});
     return result;
 }
 

@@ -1,4 +1,4 @@
-// The flight recorder in the class: its type, its calls, and what a step puts into it.
+// Prints the flight recorder: its type, its functions, and the recording of a step.
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -11,12 +11,12 @@ namespace {
 
 using check::Index;
 
-/// The row that this step fills.
+/// Returns the row of this step.
 const char* row_of(const Context& context) {
     return context.on_demand ? "row" : "now.row_";
 }
 
-/// By a distance of an expression.
+/// Returns the row nearest by a distance in an expression.
 std::string nearest_row(const Context& context, Index predicate, Index distance) {
     const auto member = context.names.nearest.find({predicate, distance});
     if (member != context.names.nearest.end()) return member->second.member;
@@ -39,12 +39,12 @@ void print_recorder_type(Printer& out, const Context& context) {
     if (!context.plan.recorder) return;
     const plan::Recorder& recorder = *context.plan.recorder;
     out.line();
-    print_doc(out, fmt::format("Of each step {}, {}, {}; {} before an alarm, {} after it, {}.",
-                               diag::counted(context.recorded.figures, "figure"),
-                               diag::counted(context.recorded.bools.size(), "bool"),
-                               diag::counted(context.recorded.monitors, "verdict"),
-                               steps(recorder.before), steps(recorder.after),
-                               diag::counted(recorder.incidents, "incident")));
+    print_doc(out, fmt::format(
+                       "Keeps {}, {} and {} of each step: {} before an alarm, {} after it, for {}.",
+                       diag::counted(context.recorded.figures, "figure"),
+                       diag::counted(context.recorded.bools.size(), "bool"),
+                       diag::counted(context.recorded.monitors, "verdict"), steps(recorder.before),
+                       steps(recorder.after), diag::counted(recorder.incidents, "incident")));
     print_wrapped(out, fmt::format("using Recorder = etlmon::Recorder<{}, {}, {}, {}>;",
                                    recorder_row(context), recorder.before, recorder.after,
                                    recorder.incidents));
@@ -52,7 +52,7 @@ void print_recorder_type(Printer& out, const Context& context) {
 
 void print_recorder_constants(Printer& out, const Context& context) {
     if (!context.plan.recorder) return;
-    print_doc(out, "Incidents: what their rows hold, as XXH64, and the most bytes of one.");
+    print_doc(out, "Incidents: XXH64 of their columns, and the greatest size of one in bytes.");
     out.line("static constexpr uint64_t kColumnsHash = 0x{:016x}u;",
              plan::columns_hash(context.plan));
     out.line("static constexpr size_t kIncidentBytes = {};", plan::incident_bytes(context.plan));
@@ -61,25 +61,25 @@ void print_recorder_constants(Printer& out, const Context& context) {
 void print_recorder_interface(Printer& out, const Context& context) {
     if (!context.plan.recorder) return;
     const plan::Recorder& recorder = *context.plan.recorder;
-    print_doc(out, fmt::format("Incidents that are complete: an alarm that began, the {} before it "
-                               "and the {} after it. One is complete {} after its alarm, and does "
-                               "not change from then on.",
+    print_doc(out, fmt::format("Returns the number of complete incidents. An incident is an alarm "
+                               "with the {} before it and the {} after it; it is complete {} after "
+                               "its alarm, and does not change from then on.",
                                steps(recorder.before), steps(recorder.after),
                                steps(recorder.before + 1 + recorder.after)));
-    out.line("uint32_t incidents() const noexcept { return recorder.complete(); }");
-    print_doc(out, "Alarms that began while there was no room for another incident; saturates.");
-    out.line("uint32_t lost_incidents() const noexcept { return recorder.lost(); }");
-    print_doc(out, "Completes those that wait for steps, with the steps that there are.");
-    out.line("void close_incidents() noexcept { recorder.close(); }");
-    print_doc(out, "Makes room for new ones.");
-    out.line("void forget_incidents() noexcept { recorder.forget(); }");
+    out.line("uint32_t incidents() const noexcept { return recorder_.complete(); }");
+    print_doc(out, "Returns the number of alarms for which there was no room; saturates.");
+    out.line("uint32_t lost_incidents() const noexcept { return recorder_.lost(); }");
+    print_doc(out, "Completes incidents that wait for steps, with the steps recorded so far.");
+    out.line("void close_incidents() noexcept { recorder_.close(); }");
+    print_doc(out, "Removes all complete incidents, to make room for new ones.");
+    out.line("void forget_incidents() noexcept { recorder_.forget(); }");
     print_doc(out,
-              "Calls sink(const uint8_t* bytes, size_t size) for all bytes of incident n, for "
-              "a file that `etlc incident` reads; false where there is no such incident.");
+              "Writes incident n in the format of `etlc incident`, by calls of sink(const uint8_t* "
+              "bytes, size_t size). Returns false if there is no such incident.");
     out.line("template <class Sink>");
     out.open("bool write_incident(uint32_t n, Sink&& sink) const {");
     print_wrapped(out,
-                  "return recorder.write(n, {kSpecHash, kDataHash, kThresholdsHash, "
+                  "return recorder_.write(n, {kSpecHash, kDataHash, kThresholdsHash, "
                   "kColumnsHash}, sink);");
     out.close();
     out.line();
@@ -125,7 +125,7 @@ void print_record(Printer& out, const Context& context, const std::string& verdi
         statuses.push_back(fmt::format("{}.{}.status", verdicts, monitor.name));
     print_wrapped(out,
                   fmt::format("const uint32_t statuses[] = {{{}}};", fmt::join(statuses, ", ")));
-    out.line("recorder.record({}, statuses);", row_of(context));
+    out.line("recorder_.record({}, statuses);", row_of(context));
 }
 
 }  // namespace etlc::emit

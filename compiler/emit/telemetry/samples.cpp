@@ -1,4 +1,4 @@
-// Why a verdict is what it is, in the class: values that know their sample, and why_NAME().
+// Prints explanations: values that carry their sample, and why_NAME().
 #include "emit/context.hpp"
 #include "source/escape.hpp"
 
@@ -39,14 +39,15 @@ std::string threshold(const Context& context, const Place& place) {
 
 void print_rank(Printer& out, const Context& context) {
     if (!is_used(context)) return;
-    print_comment(out, "//",
-                  "of this step's samples; of equal values the earlier one is farther from 0");
-    print_wrapped(out, fmt::format("const uint32_t rank = etlmon::Ranks<{}>::first(measured);",
+    print_comment(
+        out, "//",
+        "rank of this step's samples: of equal values, the earlier one is farther from 0");
+    print_wrapped(out, fmt::format("const uint32_t rank = etlmon::Ranks<{}>::first(measured_);",
                                    context.sampled.codes));
 }
 
 void print_step_measured(Printer& out, const Context& context) {
-    if (is_used(context)) print_wrapped(out, counted("measured"));
+    if (is_used(context)) print_wrapped(out, counted("measured_"));
 }
 
 std::string sourced(const Context& context, Index predicate, const std::string& value,
@@ -72,8 +73,8 @@ std::string sourced_flag(const Context& context, Index input, const std::string&
 void print_why(Printer& out, const Context& context) {
     if (!context.explains) return;
     print_doc(out,
-              "The sample whose value decides the last verdict; none where that is unknown or "
-              "undecided, or its value is that of no sample.");
+              "Returns the sample that decides the last verdict; none if the verdict is unknown or "
+              "undecided, or no sample has its value.");
     for (std::size_t m = 0; m < context.plan.monitors.size(); ++m)
         print_wrapped(
             out, fmt::format("etlmon::Sample why_{}() const noexcept {{ return {}; }}",
@@ -85,17 +86,17 @@ void print_why(Printer& out, const Context& context) {
 void print_why_of(Printer& out, const Context& context) {
     if (!is_used(context)) return;
     const std::vector<Place>& places = context.sampled.places;
-    print_doc(out, "Of monitor m.");
+    print_doc(out, "Returns the sample that decides the verdict of monitor m.");
     out.open("etlmon::Sample why(uint32_t m) const noexcept {");
     out.line("using Kind = etlmon::Place::Kind;");
-    out.line("// name, comparison, threshold, first of its codes, rows that they tell apart");
+    out.line("// name, comparison, threshold, first code, number of rows that codes distinguish");
     out.open("static constexpr etlmon::Place places[] = {");
     for (std::size_t i = 0; i < places.size(); ++i)
         out.line("{{{}, Kind::{}, {}, {}, {}}}{}", source::json_string(shown(context, places[i])),
                  kind(context, places[i]), threshold(context, places[i]), places[i].first,
                  places[i].rows, i + 1 < places.size() ? "," : "");
     out.close("};");
-    out.line("return etlmon::sample_of<{}>(deciding[m], places);", context.sampled.codes);
+    out.line("return etlmon::sample_of<{}>(deciding_[m], places);", context.sampled.codes);
     out.close();
     out.line();
 }

@@ -10,7 +10,7 @@ namespace etlc::emit {
 
 namespace {
 
-/// Words for the symbols of formulas and expressions.
+/// Returns the word for a symbol of formulas and expressions.
 std::string_view word_for(char symbol) {
     switch (symbol) {
         case '!': return "not";
@@ -45,8 +45,8 @@ void append_word(std::string& name, std::string_view word) {
     name += word;
 }
 
-/// "F[0, 3]", "O": a temporal operator without its operands. T is no word of the language, but may
-/// be a name of the spec.
+/// Returns a temporal operator without its operands: "F[0, 3]", "O". T is not a word of the
+/// language, and may be a name of the spec.
 std::string head_of(const ir::Node& node) {
     const std::string letter = ir::info(node.op).symbol;
     const std::string symbol = letter == "T" ? "trigger" : letter;
@@ -89,7 +89,7 @@ std::string with_more(const std::string& operand, bool max) {
 
 namespace {
 
-/// The shortest that is said in its own words, of the first few; else the first in what words fit.
+/// Returns the shortest name among the first few operands, or else a shortened name of the first.
 std::string name_of_one(const ir::Graph& graph, const std::vector<ir::NodeId>& operands,
                         std::size_t room) {
     constexpr std::size_t kFew = 8;

@@ -11,15 +11,15 @@ namespace {
 using Lines = std::vector<std::string>;
 using Text = std::string_view;
 
-constexpr std::size_t kContinued = 4;  ///< columns that the lines after the first are indented
+constexpr std::size_t kContinued = 4;  ///< indentation of the lines after the first
 constexpr std::size_t kLongestQuote = 160;
 
 bool is_word(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
-/// How many brackets are open around each character; a bracket itself stands outside. `<` is one
-/// where it stands right behind a name.
+/// Returns the number of open brackets around each character; a bracket itself is outside. `<` is a
+/// bracket directly after a name.
 std::vector<std::size_t> depths(Text text) {
     std::vector<std::size_t> result;
     std::string open;
@@ -34,7 +34,7 @@ std::vector<std::size_t> depths(Text text) {
     return result;
 }
 
-/// The text cut before each of these positions, blanks at the cuts left out.
+/// Cuts the text before each of these positions, and drops blanks at the cuts.
 Lines pieces(Text text, const std::vector<std::size_t>& cuts) {
     Lines result;
     std::size_t begin = 0;
@@ -48,7 +48,7 @@ Lines pieces(Text text, const std::vector<std::size_t>& cuts) {
     return result;
 }
 
-/// Where `what` stands within `depth` brackets; the places behind it, if asked for.
+/// Finds `what` inside `depth` brackets; with `behind`, the positions after it.
 std::vector<std::size_t> places(Text text, Text what, std::size_t depth, bool behind) {
     const std::vector<std::size_t> depth_at = depths(text);
     std::vector<std::size_t> result;
@@ -63,7 +63,7 @@ void append_indented(Lines& lines, const Lines& more, std::size_t indent) {
     for (const std::string& line : more) lines.push_back(std::string(indent, ' ') + line);
 }
 
-/// As many pieces on a line as fit, behind what stands on the last of `lines` only if `joins`.
+/// Appends pieces, as many on a line as fit; on the last of `lines` only if `joins`.
 void fill(Lines& lines, const Lines& more, std::size_t width, std::size_t indent, bool joins) {
     for (const std::string& piece : more) {
         if (joins && lines.back().size() + 1 + piece.size() <= width) {
@@ -72,11 +72,12 @@ void fill(Lines& lines, const Lines& more, std::size_t width, std::size_t indent
         }
         const Lines own = broken(piece, width - indent);
         append_indented(lines, own, indent);
-        joins = own.size() == 1;  // nothing follows on the last line of a piece of several lines
+        joins = own.size() == 1;  // nothing is appended to a piece of several lines
     }
 }
 
-/// `a = c ? x : y`, each of the three on a line; `a || b`, filled; nothing where there is neither.
+/// Breaks `a = c ? x : y` into three lines, and fills lines with `a || b`. Returns nothing for
+/// other text.
 Lines broken_at_operators(Text text, std::size_t width) {
     const std::size_t depth = text.starts_with("if (") ? 1 : 0;
     std::vector<std::size_t> cuts = places(text, " ? ", depth, false);
@@ -99,8 +100,8 @@ Lines broken_at_operators(Text text, std::size_t width) {
     return lines;
 }
 
-/// `f(a, b)` broken behind the last bracket that is not within others, and between its items; a
-/// list `= {a, b};` with its end on a line of its own.
+/// Breaks `f(a, b)` after its outermost last bracket and between its items. A list `= {a, b};` ends
+/// on a separate line.
 Lines broken_in_brackets(Text text, std::size_t width) {
     const std::vector<std::size_t> depth_at = depths(text);
     std::size_t close = text.size() - 1;
@@ -119,7 +120,7 @@ Lines broken_in_brackets(Text text, std::size_t width) {
     return lines;
 }
 
-/// `a = b` with b on a line of its own; nothing where nothing is assigned.
+/// Breaks `a = b` before b. Returns nothing for other text.
 Lines broken_at_assignment(Text text, std::size_t width, bool only_if_it_fits) {
     const std::vector<std::size_t> cuts = places(text, " = ", 0, true);
     if (cuts.empty()) return {};
@@ -131,7 +132,7 @@ Lines broken_at_assignment(Text text, std::size_t width, bool only_if_it_fits) {
     return lines;
 }
 
-/// `f() noexcept { return e; }` as a block; nothing where there is no such function.
+/// Breaks `f() noexcept { return e; }` into a block. Returns nothing for other text.
 Lines broken_function(Text text, std::size_t width) {
     const std::size_t begin = text.find(" { ", std::min(text.size(), text.find(" noexcept")));
     if (begin == Text::npos) return {};
@@ -143,7 +144,7 @@ Lines broken_function(Text text, std::size_t width) {
     return lines;
 }
 
-/// The text in lines of at most `width`, if it has places to break at.
+/// Breaks the text into lines of at most `width`, where it can be broken.
 Lines broken(Text text, std::size_t width) {
     if (text.size() <= width) return {std::string(text)};
     Lines lines = broken_function(text, width);
@@ -210,7 +211,7 @@ void print_comment(Printer& out, std::string_view mark, std::string_view text, s
     bool first_word = true;
     while (!text.empty()) {
         const std::string_view word = text.substr(0, text.find(' '));
-        // Before two blanks is the best place to break, if the line has to be broken at all.
+        // A line that is too long breaks before two blanks first.
         const bool parts = word.empty() && breaks;
         if (!first_word && (parts || line.size() + 1 + word.size() > width)) {
             out.line(line);

@@ -1,7 +1,6 @@
-// How generated code is laid out: where lines break, and how numbers and comments are written.
-// Takes: statements, declarations and comments as text. Gives: lines of at most kLineWidth columns
-// wherever the text can be broken. Keeps true: a statement breaks where a reader would break it, at
-// the outermost operator or bracket first; what depends on a condition stands in braces.
+// The layout of generated code: numbers, comments, and statements in lines of at most kLineWidth
+// columns, where they can be broken. A statement breaks at its outermost operator or bracket first;
+// statements under a condition are in braces.
 #pragma once
 
 #include <string>
@@ -13,32 +12,32 @@
 
 namespace etlc::emit {
 
-/// A float32 literal that reads back to the same bits: "0.31f".
+/// Returns a float32 literal that reads back to the same bits: "0.31f".
 std::string float_literal(float x);
 
-/// Spec text on one line, shortened where it is long.
+/// Returns spec text on one line, shortened if it is long.
 std::string quoted(std::string_view text);
 
-/// One statement, or the line that opens a block ("if (...) {"). `if (c) s;` becomes a block.
+/// Prints a statement, or the line that opens a block ("if (...) {"). `if (c) s;` becomes a block.
 void print_wrapped(Printer& out, const std::string& text);
 
-/// The same with a comment: behind it where both fit in a line, else above it.
+/// Prints a statement with a comment: on one line if both fit, otherwise above it.
 void print_with_comment(Printer& out, const std::string& text, const std::string& comment);
 
-/// A comment, broken between words: each line begins with the mark and a blank, those after the
-/// first with `hang` blanks more.
+/// Prints a comment, broken between words. Each line begins with the mark and a blank; lines after
+/// the first have `hang` more blanks.
 void print_comment(Printer& out, std::string_view mark, std::string_view text,
                    std::size_t hang = 0);
 
-/// The documentation of what follows: a comment with three slashes.
+/// Prints a documentation comment, with three slashes.
 void print_doc(Printer& out, std::string_view text);
 
-/// Declarations with their comments in one column; above the declaration, where a comment is long.
+/// Prints declarations with their comments in one column. Long comments go above the declaration.
 void print_aligned(Printer& out,
                    const std::vector<std::pair<std::string, std::string>>& declarations,
                    std::string_view mark = "//");
 
-/// A statement: one more, if there is such a number.
+/// Returns the statement that increments a counter, which saturates.
 std::string counted(std::string_view counter);
 
 }  // namespace etlc::emit

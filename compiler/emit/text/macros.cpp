@@ -17,14 +17,14 @@ bool in_word(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
-/// Just past the string that begins at `at`.
+/// Returns the position after the string literal that begins at `at`.
 std::size_t end_of_string(std::string_view code, std::size_t at) {
     for (++at; at < code.size() && code[at] != '"'; ++at)
         if (code[at] == '\\') ++at;
     return at + 1;
 }
 
-/// Those words, outside strings and comments, that are macros elsewhere.
+/// Returns the words outside strings and comments that may be macros elsewhere.
 std::set<std::string> macros_in(std::string_view code) {
     std::set<std::string> found;
     for (std::size_t at = 0; at < code.size();) {
@@ -36,7 +36,9 @@ std::set<std::string> macros_in(std::string_view code) {
             const std::size_t begin = at;
             while (at < code.size() && in_word(code[at])) ++at;
             const std::string_view word = code.substr(begin, at - begin);
-            if (check::macro_elsewhere(word)) found.emplace(word);
+            const bool is_capital =
+                word.size() == 1 && std::isupper(static_cast<unsigned char>(word[0])) != 0;
+            if (is_capital || check::macro_elsewhere(word)) found.emplace(word);
         } else {
             ++at;
         }
@@ -49,7 +51,7 @@ std::set<std::string> macros_in(std::string_view code) {
 std::string shielded(const std::string& code) {
     const std::set<std::string> names = macros_in(code);
     if (names.empty()) return code;
-    std::string before = "// Macros of other headers by these names are none in here.\n";
+    std::string before = "// These names are macros in some headers: they are not macros here.\n";
     std::string after = "\n";
     for (const std::string& name : names) {
         before += fmt::format("#pragma push_macro(\"{0}\")\n#undef {0}\n", name);

@@ -1,6 +1,5 @@
-// Names of the spec that are macros of some platform's headers.
-// Takes: generated code. Gives: the same with directives around it, under which none of its names
-// is a macro. Keeps true: behind it all macros are what they were before.
+// Shields generated code from macros: of platform headers, and single capital letters. Directives
+// around the code remove macros with names that it uses, and restore them after it.
 #pragma once
 
 #include <string>

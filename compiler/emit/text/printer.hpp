@@ -1,6 +1,5 @@
-// Text of a program, line by line, indented by blocks.
-// Takes: lines. Gives: the text. Keeps true: two spaces a level, no trailing blanks, lines end in
-// \n; text from outside ends where its line does, whatever it is.
+// Collects the lines of a program, indented by two spaces per block. Lines have no trailing blanks
+// and end in \n; text from outside cannot end its line.
 #pragma once
 
 #include <fmt/format.h>
@@ -23,13 +22,13 @@ public:
     void line(fmt::format_string<Args...> format, Args&&... args) requires(sizeof...(Args) > 0) {
         line(std::string_view(fmt::format(format, std::forward<Args>(args)...)));
     }
-    /// A blank line, unless there is one or a block begins here.
+    /// Adds a blank line, unless the last line is blank or opens a block.
     void gap() {
         const bool open = text_.size() > 1 && text_[text_.size() - 2] == '{';
         const bool blank = text_.size() > 1 && text_[text_.size() - 2] == '\n';
         if (!open && !blank) text_.push_back('\n');
     }
-    /// A line at the outer level, for `public:` one space in.
+    /// Adds a label such as `public:`, one space inside the outer level.
     void label(std::string_view text) {
         text_.append(2 * depth_ - 1, ' ').append(text).push_back('\n');
     }
@@ -52,7 +51,7 @@ private:
     std::size_t depth_ = 0;
 };
 
-/// Longest line of generated code.
+/// Width of generated code, in columns.
 inline constexpr std::size_t kLineWidth = 100;
 
 }  // namespace etlc::emit

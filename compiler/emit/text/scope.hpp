@@ -1,6 +1,4 @@
-// Names of one scope, each given once.
-// Takes: the name that is wanted. Gives: it, or one like it that is free. Keeps true: the same
-// calls in the same order give the same names.
+// A scope that gives out each name once. The same calls in the same order return the same names.
 #pragma once
 
 #include <set>
@@ -12,9 +10,9 @@ namespace etlc::emit {
 class Scope {
 public:
     explicit Scope(std::set<std::string> taken = {}) : taken_(std::move(taken)) {}
-    /// `wanted` and `mark`; where that is taken, wanted_2 and mark, wanted_3 and mark, ...
+    /// Returns `wanted` + `mark`; if that is taken, wanted_2 + mark, wanted_3 + mark, ...
     std::string claim(const std::string& wanted, const std::string& mark = "");
-    /// wanted_1, or wanted_2, wanted_3, ... where it is taken.
+    /// Returns wanted_1; if that is taken, wanted_2, wanted_3, ...
     std::string number(const std::string& wanted);
 
 private:

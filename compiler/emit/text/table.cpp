@@ -21,7 +21,7 @@ bool is_comment(const std::string& prefix) {
 
 namespace {
 
-/// The words of a cell in lines of at most `width`, where that many hold a word.
+/// Breaks the words of a cell into lines of at most `width`, unless a word is longer.
 std::vector<std::string> lines_of(std::string cell, std::size_t width) {
     std::vector<std::string> lines;
     while (cell.size() > width) {
@@ -35,7 +35,8 @@ std::vector<std::string> lines_of(std::string cell, std::size_t width) {
     return lines;
 }
 
-/// How wide each column is: as its widest cell. In a comment words that do not fit go on below.
+/// Returns the width of each column: of its widest cell. In a comment, words that do not fit
+/// continue below.
 std::vector<std::size_t> column_widths(const std::string& prefix, const std::vector<Row>& rows,
                                        std::size_t first_number) {
     constexpr std::size_t kWidestText = 40;

@@ -1,4 +1,4 @@
-// Tables of text: in a comment of the header, or in a report.
+// Prints tables of text, in a comment of the header or in a report.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@ namespace etlc::emit {
 
 using Row = std::vector<std::string>;
 
-/// In a cell: a formula's beginning, where it is long; a number.
+/// Returns the text of a cell: a formula, cut if it is long; a number.
 std::string shortened(const std::string& formula);
 std::string number(std::uint64_t x);
 
-/// Lines behind this prefix are a comment, and no wider than code.
+/// Returns whether lines with this prefix are a comment, which is no wider than code.
 bool is_comment(const std::string& prefix);
 
-/// Numbers, which are all columns from `first_number` on, stand to the right.
+/// Prints a table. Columns from `first_number` on are numbers, and right-aligned.
 void print_table(Printer& out, const std::string& prefix, const std::vector<Row>& rows,
                  std::size_t first_number);
 

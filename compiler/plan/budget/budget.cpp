@@ -6,8 +6,7 @@
 #include <set>
 
 #include "etlmon/hosted/footprint.hpp"
-#include "plan/budget/target_bytes.hpp"
-#include "plan/program/samples.hpp"
+#include "plan/program/sample_codes.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/targets/point_checks.hpp"
 #include "plan/targets/stored.hpp"
@@ -20,7 +19,7 @@ using check::Values;
 
 constexpr std::uint64_t kWord = sizeof(std::uint32_t);
 constexpr std::uint64_t kKeysPerValue = 2;
-/// Of a window whose highs part from its lows: which blocks have highs of their own, and from where
+/// For a window whose highs and lows differ: finding the blocks with highs of their own
 /// (etlmon::Parting).
 constexpr std::uint64_t kPartingComparisons = 6;
 
@@ -30,13 +29,13 @@ constexpr std::uint64_t kCodePerEnd = 16;
 constexpr std::uint64_t kCodePerReading = 64;
 constexpr std::uint64_t kCodePerWindow = 240;
 constexpr std::uint64_t kCodePerRing = 64;
-constexpr std::uint64_t kCodePerAdaptation = 144;  // observe_P(), as a Cortex-M4 has it at -Os
+constexpr std::uint64_t kCodePerAdaptation = 144;  // observe_P() on a Cortex-M4 at -Os
 constexpr std::uint64_t kCodePerTable = 200;
 constexpr std::uint64_t kCodePerSamples = 600;
 constexpr std::uint64_t kTransitionBytes = sizeof(etlmon::Transition);
 constexpr std::uint64_t kStateBytes = sizeof(std::uint32_t) + sizeof(etlmon::Owed);
 
-/// `combined` minima or maxima of two, beside `kept` values.
+/// Costs of `combined` minima or maxima of two, and `kept` values.
 Cost values(std::uint64_t kept, std::uint64_t combined) {
     return {.code_bytes = (kept + combined) * kCodePerValueOperation,
             .operations = combined * kKeysPerValue};
@@ -49,7 +48,7 @@ Cost window_cost(std::uint32_t length, std::uint64_t sides) {
             .operations = combined * kKeysPerValue + kPartingComparisons};
 }
 
-/// The assignments and the reading of straight-line code; a bound takes one end of values.
+/// Costs of the assignments and the reading of straight-line code; a bound takes one end of values.
 Cost straight_cost(const Straight& code) {
     std::uint64_t combined = combinations(code.rho);
     std::uint64_t comparisons = asks_position(code.lower) + asks_position(code.upper);
@@ -65,10 +64,10 @@ Cost straight_cost(const Straight& code) {
     return cost;
 }
 
-/// Of a window at one position: to make a suffix and a prefix, and to combine each into the result.
+/// Operations of a window at one position: a suffix, a prefix, and combining both into the result.
 constexpr std::uint64_t kPendingWindow = 4;
 
-/// Operations on values or readings at one position, in units of the temporal loops of
+/// Returns operations on values or readings at one position, in units of the temporal loops of
 /// etlmon/temporal/pending.hpp.
 std::uint64_t pending_steps(const Pending& pending) {
     std::uint64_t steps = 0;
@@ -95,7 +94,7 @@ Cost pending_cost(const Pending& pending, const ValueType& of) {
     if (pending.is_fold) return cost;
     const std::size_t states = pending.table.ends.size();
     const std::size_t guards = pending.table.guards.size();
-    // The guards at each position, and what PendingMachine::read works with.
+    // the guards at each position, and the scratch of PendingMachine::read
     cost.stack_bytes +=
         (guards * positions + 2 * states) * of.reading + (guards + states) * of.value;
     cost.code_bytes += pending.table.transitions.size() * kTransitionBytes + states * kStateBytes +
@@ -116,7 +115,7 @@ Cost table_cost(const Table& table) {
     return cost;
 }
 
-/// Code and work of a stream.
+/// Returns code and work of a stream.
 Cost work_of(const Stream& stream) {
     switch (stream.op) {
         case StreamOp::constant:
@@ -138,7 +137,7 @@ Cost work_of(const Stream& stream) {
     return {};
 }
 
-/// Code, work and stack of a reading.
+/// Returns code, work and stack of a reading.
 Cost work_of(const Reading& reading, Values kind) {
     switch (reading.kind) {
         case Reading::Kind::straight: return straight_cost(reading.straight);
@@ -149,7 +148,7 @@ Cost work_of(const Reading& reading, Values kind) {
     return {};
 }
 
-/// With the bytes of these members.
+/// Adds the bytes of these members.
 Cost keeping(Cost cost, const std::vector<Member>& members, Values kind) {
     for (const Member& member : members) cost.state_bytes += bytes_of(member, kind);
     return cost;
@@ -162,7 +161,7 @@ Cost distance_cost(const check::Model& model, const check::Distance& distance) {
     return {.distance_operations = full ? elements * (1 + target.dimension) : elements};
 }
 
-/// The array that a projected point lies in, and where there is an offset z without it.
+/// Returns the cost of a projected point: its array, and with an offset one for the centred point.
 Cost projection_cost(const check::Model& model, const check::Point& point) {
     const check::Projection& map = model.projections[point.projection];
     const std::uint64_t centred = map.offset.empty() ? 0 : map.dimension;
@@ -178,7 +177,7 @@ Cost hold_cost(const check::Input& input) {
             .operations = 1};
 }
 
-/// The parts of a plan that one monitor, or all of them, need.
+/// Collects the parts of a plan that one monitor, or all of them, need.
 class Needs {
 public:
     explicit Needs(const Plan& plan) : plan_(plan) {}
@@ -319,12 +318,13 @@ void add_costs(Plan& plan) {
         own.monitor(monitor);
         all.monitor(monitor);
         plan.monitor_costs.push_back(own.cost());
-        // The last one: a final verdict stays, and finish() repeats those of prefix monitors.
+        // The last verdict is kept where a final one stays, and where finish() repeats those of
+        // prefix monitors.
         const bool kept = type.on_demand || (plan.has_sliding && !monitor.sliding);
         if (kept) fixed.state_bytes += type.verdict;
         if (monitor.counts_steps) fixed.state_bytes += kWord;
         const bool counts_verdicts = monitor.restarts == check::Restarts::when_final;
-        if (counts_verdicts) fixed.state_bytes += 2 * kWord;  // alarms and fulfilled ones
+        if (counts_verdicts) fixed.state_bytes += 2 * kWord;  // alarms and fulfilments
     }
     if (type.sourced) {
         fixed.state_bytes += bytes_of(samples(plan), plan.monitors.size());

@@ -10,7 +10,7 @@ namespace etlc::plan {
 
 namespace {
 
-constexpr std::uint64_t kMuch = std::uint64_t{1} << 40U;  // operands that share parts count in each
+constexpr std::uint64_t kMuch = std::uint64_t{1} << 40U;  // shared parts count once per operand
 constexpr std::uint64_t kManyAsks = 16;
 
 bool passes_on(StreamOp op) {
@@ -24,7 +24,7 @@ Demand of_operands(const Stream& stream, const std::vector<Demand>& known, bool 
         demand.lazy = demand.lazy || known[operand].lazy;
         demand.work = std::min(kMuch, demand.work + known[operand].work);
     }
-    if (stream.op == StreamOp::within) demand.asks = 1;  // keeps its value anyway
+    if (stream.op == StreamOp::within) demand.asks = 1;  // its value is kept anyway
     demand.keeps = demand.lazy && is_shared && demand.asks > kManyAsks;
     return demand;
 }

@@ -1,9 +1,8 @@
-#include "plan/budget/target_bytes.hpp"
-
 #include <set>
 #include <tuple>
 
 #include "etlmon/distance/layout.hpp"
+#include "plan/budget/budget.hpp"
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
 #include "plan/targets/point_checks.hpp"
@@ -22,13 +21,13 @@ std::uint64_t element_bytes(Storage storage) {
     return sizeof(std::int8_t);
 }
 
-/// Columns are an aligned struct, which ends where its last cache line does.
+/// Rounds up to cache lines, because columns are an aligned struct.
 std::uint64_t whole_lines(std::uint64_t bytes) {
     constexpr std::uint64_t kLine = 64;
     return (bytes + kLine - 1) / kLine * kLine;
 }
 
-/// The arrays of an object, each counted once.
+/// Sums the arrays of an object, each once.
 class Arrays {
 public:
     Arrays(const Plan& plan, bool vectors) : plan_(plan), vectors_(vectors) {}
@@ -57,7 +56,7 @@ public:
     std::uint64_t bytes() const { return bytes_; }
 
 private:
-    using Rows = std::pair<Index, bool>;  ///< of a target, as given or of length 1
+    using Rows = std::pair<Index, bool>;  ///< a target, as given or normalised
     static Rows rows_of(const check::Distance& distance) {
         return {distance.target, rows_as_given(distance)};
     }
@@ -66,7 +65,7 @@ private:
         const check::Target& target = plan_.model->targets[distance.target];
         const std::uint32_t rows = target.rows;
         const std::uint32_t dimension = target.dimension;
-        // Rows of a retargetable class lie as they are, for all machines.
+        // Retargetable classes store plain rows for all machines.
         const bool columns = !plan_.model->retargetable &&
                              metric_id(distance) != etlmon::MetricId::mahalanobis &&
                              etlmon::detail::in_columns(rows, dimension, vectors_);

@@ -68,7 +68,8 @@ private:
 
     // ---- what implies what
 
-    /// rho of the first is never above rho of the second, at the same position of any prefix.
+    /// Returns whether rho of the first never exceeds rho of the second, at the same position of
+    /// any prefix.
     bool implies(NodeId stronger, NodeId weaker) const {
         if (stronger == weaker) return true;
         const Node& s = graph_[stronger];
@@ -98,7 +99,8 @@ private:
                            [&](NodeId s) { return implies(s, weaker); });
     }
 
-    /// The first clause makes the second idle: whatever satisfies the second satisfies the first.
+    /// Returns whether the first clause makes the second redundant: whatever satisfies the second
+    /// satisfies the first.
     bool absorbs(const Clause& kept, const Clause& dropped) {
         spend(1);
         if (kept.literals.size() > dropped.literals.size()) return false;
@@ -120,7 +122,7 @@ private:
         if (clauses.size() > limits_.transitions || clauses.size() > kMaxClauses) throw TooLarge{};
     }
 
-    /// Windows of one operand that touch.
+    /// Returns whether the windows touch and have the same operand.
     bool merge(NodeId first, NodeId second) const {
         const Node& a = graph_[first];
         const Node& b = graph_[second];
@@ -131,8 +133,8 @@ private:
         return touches(a.interval, b.interval) && touches(b.interval, a.interval);
     }
 
-    /// G[0,4] f and G[2,9] f are G[0,9] f: windows of one operand that touch become one, so that a
-    /// requirement which repeats at every step is one obligation and not a set of them.
+    /// Merges G[0,4] f and G[2,9] f into G[0,9] f, so that a requirement that repeats at every step
+    /// is one obligation instead of a set.
     void merge_always(Set& obligations) {
         for (std::size_t i = 0; i < obligations.size(); ++i) {
             if (graph_[obligations[i]].op != Op::always) continue;
@@ -155,8 +157,7 @@ private:
         }
     }
 
-    /// Obligations without those that another of the set implies. (None but equal ones imply each
-    /// other.)
+    /// Removes obligations that another one implies. (Only equal ones imply each other mutually.)
     void reduce(Set& obligations) {
         merge_always(obligations);
         const Set all = obligations;
@@ -168,7 +169,7 @@ private:
         });
     }
 
-    /// What both sets owe; both are reduced.
+    /// Computes the union of two reduced sets.
     void owe_both(const Set& a, const Set& b, Set& result) {
         spend(a.size() + b.size() + 2 * a.size() * b.size());
         bool related = false;
@@ -214,13 +215,13 @@ private:
         if (node.op == Op::constant_true) return always_satisfied();
         if (node.op == Op::constant_false) return {};
         if (node.op == Op::conjunction)
-            return {Clause{node.operands, {}}};  // each for itself: more is absorbed
+            return {Clause{node.operands, {}}};  // separately, so that more is absorbed
         return {Clause{{id}, {}}};
     }
 
-    /// The window one step later, as an obligation for the next position. It keeps its operator
-    /// even where the window is [0,0], since at the end of the prefix F and U are false there and G
-    /// and R are true.
+    /// Returns the window one step later, as an obligation for the next position. It stays an
+    /// operator even for [0,0], since at the end of the prefix F and U are false there, and G and R
+    /// are true.
     Clauses later(const Node& node) { return next(keep(node, node.interval.earlier())); }
 
     NodeId keep(const Node& node, Interval interval) {
@@ -312,8 +313,8 @@ private:
     // Where most clauses turn out to be idle, work and not size is what ends a construction.
     static constexpr std::uint64_t kEffortPerClause = 16;
     static constexpr std::uint64_t kEffortPerTransition = 256;
-    // Work in steps of a loop over a set: what takes longer, and what those that use the automaton
-    // do with it.
+    // Work per clause and per transition, in loop steps over a set, including the work of the users
+    // of the automaton.
     static constexpr std::uint64_t kWorkPerClause = 32;
     static constexpr std::uint64_t kWorkPerNode = 256;
     static constexpr std::uint64_t kWorkPerState = 256;

@@ -6,11 +6,11 @@ namespace etlc::plan {
 
 namespace {
 
-/// More states or transitions than these are a constant table and one loop.
+/// Larger machines become a constant table and one loop.
 constexpr std::size_t kMaxUnrolledStates = 32;
 constexpr std::size_t kMaxUnrolledTransitions = 160;
 
-/// The index of a stream's key in its list; 0, the neutral key, for no stream.
+/// Returns the index of a stream's key in its list; 0, the neutral key, for no stream.
 std::uint16_t index_of(std::vector<Slot>& list, Slot slot) {
     if (slot == kNone) return 0;
     const auto found = std::find(list.begin(), list.end(), slot);

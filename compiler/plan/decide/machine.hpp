@@ -1,7 +1,6 @@
-// State machines: from what a formula owes to code that steps.
-// Takes: an automaton, its guards as streams. Gives: the straight-line code of a small one, and the
-// tables of etlmon/temporal/machine.hpp that a larger one is. Keeps true: both make the same
-// registers of the same streams.
+// State machines made from automata: straight-line code for small ones, tables of
+// etlmon/temporal/machine.hpp for larger ones. Both compute the same registers from the same
+// streams.
 #pragma once
 
 #include <vector>
@@ -14,11 +13,11 @@ namespace etlc::plan {
 
 struct Machine {
     struct State {
-        bool strong = false;       ///< owes an F or U
+        bool strong = false;       ///< has an open F or U
         bool always_true = false;  ///< its register never leaves +inf and is not kept
-        /// Lowest unseen value of what it owes, weakly all of it; else kNone.
+        /// Lowest unseen value of its obligations if all are weak; else kNone.
         Slot weak_unseen = kNone;
-        Slot strong_unseen = kNone;  ///< highest unseen value of what it owes strongly
+        Slot strong_unseen = kNone;  ///< highest unseen value of its strong obligations
     };
     Automaton automaton;
     std::vector<State> states;
@@ -26,12 +25,12 @@ struct Machine {
     std::vector<std::vector<std::uint32_t>> guards;
 };
 
-/// Small enough for straight-line code.
+/// Returns whether straight-line code is used.
 bool is_small(const Machine& machine);
 
 Table make_table(const Machine& machine);
 
-/// The registers of its states, each updated by the ways that lead into it.
+/// Returns the code that updates and reads the registers.
 Straight straight_line(const Machine& machine, const StreamBuilder& streams);
 
 }  // namespace etlc::plan

@@ -14,20 +14,20 @@ using ir::Op;
 
 namespace {
 
-/// What all state machines of a plan may take to build, for each transition that one of them may
-/// have: 2^27 steps at the default limits, some tenths of a second. A count and not a time, so that
-/// a spec has one answer everywhere.
+/// The work of building all state machines of a plan, per transition that one of them may have:
+/// 2^27 steps at the default limits, some tenths of a second. It counts steps, not time, so that a
+/// spec gives one answer on every machine.
 constexpr std::uint64_t kWorkPerTransition = 8192;
-/// No machine takes more than its share, so that there is some for others.
+/// The share of one machine, so that some work is left for others.
 constexpr std::uint64_t kShares = 2;
 constexpr std::uint64_t kSmallShares = 16;
 
-/// Machines up to this size are preferred to anything else.
+/// Machines up to this size are preferred.
 constexpr std::size_t kSmallMachineStates = 256;
 constexpr std::size_t kSmallMachineTransitions = 2048;
-/// Operations up to which nothing is cheaper.
+/// Readings with so few operations are not improved further.
 constexpr std::uint64_t kFewOperations = 160;
-/// Operations from which on it is worth to look for another way.
+/// Readings with more operations are worth an alternative.
 constexpr std::uint64_t kMuchWork = 20'000;
 
 constexpr std::uint64_t kNumbered = 65535;  // tables number states in 16 bits
@@ -40,7 +40,7 @@ std::uint64_t total_work(const Limits& limits) {
     return most_transitions(limits) * kWorkPerTransition;
 }
 
-/// What the limits allow a single automaton; the whole plan is weighed afterwards.
+/// Returns the limits of a single automaton; the whole plan is weighed afterwards.
 AutomatonLimits machine_limits(const Limits& limits) {
     AutomatonLimits result;
     result.states =
@@ -56,7 +56,7 @@ AutomatonLimits small_machine_limits(const Limits& limits) {
             std::min(any.transitions, kSmallMachineTransitions), total_work(limits) / kSmallShares};
 }
 
-/// What it takes of that limit of which it takes most; above 1 it does not fit.
+/// Returns the largest share of a limit; above 1 it does not fit.
 double share(const Cost& cost, const Limits& limits) {
     const auto part = [](std::uint64_t need, std::uint64_t limit) {
         return static_cast<double>(need) / static_cast<double>(limit);
@@ -66,7 +66,7 @@ double share(const Cost& cost, const Limits& limits) {
                      part(cost.operations, limits.operations)});
 }
 
-/// The initial state's register stays at +inf where an unguarded loop keeps it there.
+/// Returns whether an unguarded loop keeps the register of a state at +inf.
 bool loops_freely(const Automaton& automaton, std::uint32_t state) {
     return std::any_of(automaton.transitions.begin(), automaton.transitions.end(),
                        [&](const Transition& t) {
@@ -120,7 +120,7 @@ std::uint32_t ReadingBuilder::add(NodeId id, std::string as, Straight code) {
                 .straight = std::move(code)});
 }
 
-/// The min or max of what its parts say; those without future share one latch.
+/// Combines the readings of the parts; those without future share one latch.
 std::optional<std::uint32_t> ReadingBuilder::combination(const Node& node, NodeId id) {
     std::vector<NodeId> present;
     std::vector<std::uint32_t> parts;
@@ -148,7 +148,7 @@ std::optional<std::uint32_t> ReadingBuilder::combination(const Node& node, NodeI
 Machine::State ReadingBuilder::state(const std::vector<NodeId>& obligations) {
     const auto strong = [&](NodeId obligation) { return is_strong(graph_[obligation].op); };
     Machine::State state{.strong = std::any_of(obligations.begin(), obligations.end(), strong)};
-    // Where something is owed strongly, the lower bound is -inf whatever the weak ones say.
+    // With a strong obligation the lower bound is -inf, whatever the weak ones are.
     std::vector<Slot> unseen;
     for (NodeId obligation : obligations)
         if (strong(obligation) == state.strong) unseen.push_back(streams_.unseen(obligation));
@@ -158,7 +158,7 @@ Machine::State ReadingBuilder::state(const std::vector<NodeId>& obligations) {
     return state;
 }
 
-/// The machine of an automaton, but for its guards.
+/// Makes the machine of an automaton, without its guards.
 Machine ReadingBuilder::machine_of(Automaton automaton) {
     Machine machine;
     for (const auto& obligations : automaton.states) machine.states.push_back(state(obligations));
@@ -191,7 +191,7 @@ std::optional<Machine> ReadingBuilder::machine(NodeId id, const AutomatonLimits&
     return result;
 }
 
-/// The part of `pending` that is this formula, with its operands before it.
+/// Returns the part of `pending` for this formula, and adds its operands before it.
 std::uint32_t ReadingBuilder::pending_part(Pending& pending, std::map<NodeId, std::uint32_t>& known,
                                            NodeId id) {
     if (const auto found = known.find(id); found != known.end()) return found->second;
@@ -212,7 +212,7 @@ std::uint32_t ReadingBuilder::pending_part(Pending& pending, std::map<NodeId, st
     return known[id] = static_cast<std::uint32_t>(pending.parts.size() - 1);
 }
 
-/// What is answered in two parts, whatever the lengths of its windows.
+/// Returns the reading of a response or fold in two parts, whatever the lengths of its windows.
 std::optional<Reading> ReadingBuilder::in_two(NodeId id) {
     const auto straight = [&](const char* as, Straight code) {
         return Reading{
@@ -225,7 +225,7 @@ std::optional<Reading> ReadingBuilder::in_two(NodeId id) {
     return std::nullopt;
 }
 
-/// The operator, or the automaton of what is unbounded, over the parts whose future is bounded.
+/// Evaluates the operator, or the automaton of what is unbounded, over parts with a bounded future.
 std::optional<Reading> ReadingBuilder::pending(const Node& node, NodeId id) {
     Reading reading{.kind = Reading::Kind::pending, .node = id};
     Pending& pending = reading.pending;
@@ -257,14 +257,14 @@ std::optional<Reading> ReadingBuilder::pending(const Node& node, NodeId id) {
     return reading;
 }
 
-/// The formula with its windows taken apart, where that takes a smaller share of the limits; else
-/// nothing is added.
+/// Reads the formula with its windows split if that takes a smaller share of the limits; else adds
+/// nothing.
 std::optional<std::uint32_t> ReadingBuilder::apart(NodeId id, double below) {
     const auto found = program_.split_windows.find(id);
     if (found == program_.split_windows.end()) return std::nullopt;
     const std::size_t before = readings_.size();
     const std::size_t failures = oversize_.size();
-    is_apart_ = true;  // a part that is too large is not taken apart again
+    is_apart_ = true;  // a part that is too large is not split again
     const auto reading = of(found->second);
     is_apart_ = false;
     oversize_.resize(failures);
@@ -277,7 +277,7 @@ std::optional<std::uint32_t> ReadingBuilder::apart(NodeId id, double below) {
     return std::nullopt;
 }
 
-/// Straight-line code of a small machine, else its table.
+/// Makes straight-line code of a small machine, else a table.
 Reading ReadingBuilder::as_reading(NodeId id, const Machine& machine) const {
     const bool small = is_small(machine);
     Reading reading{.kind = small ? Reading::Kind::straight : Reading::Kind::table, .node = id};
@@ -290,8 +290,8 @@ Reading ReadingBuilder::as_reading(NodeId id, const Machine& machine) const {
     return reading;
 }
 
-/// A small machine where there is one, else what takes the fewest operations: pending positions,
-/// the formula with its windows taken apart, a machine up to the limits.
+/// Chooses a small machine if there is one, else what takes the fewest operations: pending
+/// positions, the formula with its windows split, or a machine up to the limits.
 std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id) {
     const std::size_t failures = oversize_.size();
     if (auto small = machine(id, small_machine_limits(limits_))) {

@@ -1,13 +1,12 @@
-// Prefix formulas as readings: the part of the plan that speaks about position 0.
-// Takes: nodes of the graph. Gives: indices of readings. Picks per sub-formula what is smallest: a
-// latch, a fold, or the automaton. Keeps true: equal readings stand once; a formula too large for
-// the limits is reported, never approximated.
+// Builds readings, the part of the plan that evaluates prefix formulas at position 0. Each
+// sub-formula gets the smallest exact one: a latch, a fold, or an automaton. Equal readings are
+// built once; a formula too large for the limits is reported, never approximated.
 #pragma once
 
 #include <map>
 #include <vector>
 
-#include "plan/budget/limits.hpp"
+#include "plan/budget/budget.hpp"
 #include "plan/decide/machine.hpp"
 #include "plan/program/program.hpp"
 
@@ -15,7 +14,7 @@ namespace etlc::plan {
 
 class ReadingBuilder {
 public:
-    /// `graph` is the plan's copy of the program's, which grows by what readings owe.
+    /// `graph`: the plan's copy of the program's, to which readings add formulas.
     ReadingBuilder(const ir::Program& program, ir::Graph& graph, StreamBuilder& streams,
                    std::vector<Reading>& readings, const Limits& limits, check::Values values);
 
@@ -25,13 +24,15 @@ public:
         AutomatonSize reached;
     };
 
-    /// The reading of a formula; nothing where a part is too large: then `oversize` names it.
+    /// Returns the reading of a formula; nothing where a part is too large, which `oversize` then
+    /// names.
     std::optional<std::uint32_t> of(NodeId node);
     const std::vector<Oversize>& oversize() const { return oversize_; }
 
 private:
     std::optional<std::uint32_t> combination(const ir::Node& node, NodeId id);
-    /// A state machine over formulas without future, within these limits and the work that is left.
+    /// Builds a state machine over formulas without future, within these limits and the remaining
+    /// work.
     std::optional<Machine> machine(NodeId id, const AutomatonLimits& limits);
     Reading as_reading(NodeId id, const Machine& machine) const;
     std::optional<Reading> in_two(NodeId id);
@@ -54,7 +55,7 @@ private:
     check::Values values_;
     std::uint64_t work_left_;
     bool is_apart_ = false;
-    /// By the formula, and the monitor that it begins with.
+    /// By formula and by the monitor that it starts with.
     std::map<std::pair<NodeId, std::uint32_t>, std::uint32_t> known_;
     std::vector<Oversize> oversize_;
 };

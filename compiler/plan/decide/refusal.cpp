@@ -25,12 +25,13 @@ void collect_future(const ir::Graph& graph, ir::NodeId id, std::set<ir::NodeId>&
     for (ir::NodeId operand : graph[id].operands) collect_future(graph, operand, seen);
 }
 
-/// The steps of its window that a state machine counts one by one.
+/// Returns the steps of a window that a state machine counts one by one.
 std::uint32_t counted(const ir::Node& node) {
     return node.interval.bounded() ? node.interval.high : node.interval.low;
 }
 
-/// Those that look ahead, longest windows first; where none has a window, the outer ones.
+/// Returns the operators that look ahead, longest windows first; the outer ones where none has a
+/// window.
 std::vector<ir::NodeId> costly_operators(const ir::Graph& graph, ir::NodeId part) {
     std::set<ir::NodeId> found;
     collect_future(graph, part, found);
@@ -53,7 +54,7 @@ struct Part {
     Cost cost;
 };
 
-/// What a cost needs of what is short, in parts of the limit.
+/// Weighs a cost by the limits that the plan exceeds.
 double weight_of(const Cost& cost, const Cost& all, const Limits& limits) {
     const auto share = [](std::uint64_t need, std::uint64_t of_all, std::uint64_t limit) {
         return of_all <= limit ? 0.0 : static_cast<double>(need) / static_cast<double>(limit + 1);

@@ -1,7 +1,6 @@
 // The registers of a small state machine, updated by straight-line code.
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "plan/decide/machine.hpp"
@@ -10,59 +9,58 @@ namespace etlc::plan {
 
 namespace {
 
-using Literals = std::vector<Slot>;  // sorted
+using LiteralSlots = std::vector<Slot>;  // sorted
 
-/// A register as an update reads it.
+/// A register read by an update.
 struct Source {
     std::uint32_t state = 0;
-    bool updated = false;  ///< this step's value, else that of the step before
+    bool updated = false;  ///< this step's value instead of the previous one
 };
 
-/// min(max of the sources, literals); without sources the literals alone: a source that is always
-/// true adds nothing.
+/// min(max of the sources, literals); the literals alone without sources, because a source that is
+/// always true adds nothing.
 struct Product {
     std::vector<Source> sources;
-    Literals literals;
+    LiteralSlots literals;
 };
 
-/// The register of a state becomes the max of these; of none, false.
+/// Sets the register of a state to the max of these products; to false without any.
 struct Update {
     std::uint32_t state = 0;
     std::vector<Product> products;
 };
 
-/// Updates in this order.
+/// Updates, in order. Those of `first` read only old values, except for each other's results, and
+/// are stored last; each of `in_place` is stored at once, because no later one reads the old value.
 ///
-/// Where every way into S followed by the guard h is also a way into T, those ways are one: min(S
-/// after its update, h). So F (a && F b) is S = max(S, a); T = max(T, min(S, b)): a chain where the
-/// transitions alone give a triangle.
+/// Where every way into S followed by the guard h is also a way into T, those ways become one:
+/// min(S after its update, h). So F (a && F b) is S = max(S, a); T = max(T, min(S, b)): a chain
+/// where the transitions alone give a triangle.
 struct Updates {
-    std::vector<Update> list;
-    /// No update reads the old value of a register that an earlier one has written: no copies are
-    /// needed.
-    bool in_place = false;
+    std::vector<Update> first;
+    std::vector<Update> in_place;
 };
 
-/// One way into a state: from a register (or from what is always true) through literals.
+/// A way into a state: from a register, or from one that is always true, through literals.
 struct Way {
     std::uint32_t source = kNone;  ///< kNone: always true
-    Literals literals;
+    LiteralSlots literals;
 
     bool operator==(const Way&) const = default;
 };
 
-bool contains(const Literals& outer, const Literals& inner) {
+bool contains(const LiteralSlots& outer, const LiteralSlots& inner) {
     return std::includes(outer.begin(), outer.end(), inner.begin(), inner.end());
 }
 
-Literals unite(const Literals& a, const Literals& b) {
-    Literals result;
+LiteralSlots unite(const LiteralSlots& a, const LiteralSlots& b) {
+    LiteralSlots result;
     std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(result));
     return result;
 }
 
-/// An order of count > 0 states that puts `first` before `second` for each pair; empty where there
-/// is none.
+/// Returns an order that puts `first` before `second` for each pair, without the states on circles
+/// and those behind them.
 std::vector<std::uint32_t> sorted(std::size_t count,
                                   const std::set<std::pair<std::uint32_t, std::uint32_t>>& before) {
     std::vector<std::size_t> waiting_for(count, 0);
@@ -73,7 +71,6 @@ std::vector<std::uint32_t> sorted(std::size_t count,
     for (std::size_t i = 0; i < order.size(); ++i)
         for (const auto& [first, second] : before)
             if (first == order[i] && --waiting_for[second] == 0) order.push_back(second);
-    if (order.size() != count) order.clear();
     return order;
 }
 
@@ -81,7 +78,7 @@ class Programming {
 public:
     explicit Programming(const Machine& machine) : machine_(machine), ways_(machine.states.size()) {
         for (const Transition& t : machine.automaton.transitions) {
-            Literals literals = machine.guards[t.guard];
+            LiteralSlots literals = machine.guards[t.guard];
             std::sort(literals.begin(), literals.end());
             ways_[t.target].push_back(
                 {machine.states[t.source].always_true ? kNone : t.source, std::move(literals)});
@@ -100,10 +97,11 @@ public:
 private:
     using Pairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
-    /// Every way into `from`, then `through`, is a way into `target` too, or a tighter one is.
-    bool all_lead_on(std::uint32_t from, const Literals& through, std::uint32_t target) const {
+    /// Returns whether every way into `from`, continued through `through`, is a way into `target`
+    /// too, or a tighter one is.
+    bool all_lead_on(std::uint32_t from, const LiteralSlots& through, std::uint32_t target) const {
         return std::all_of(original_[from].begin(), original_[from].end(), [&](const Way& way) {
-            const Literals whole = unite(way.literals, through);
+            const LiteralSlots whole = unite(way.literals, through);
             return std::any_of(original_[target].begin(), original_[target].end(),
                                [&](const Way& other) {
                                    return (other.source == way.source || other.source == kNone) &&
@@ -112,7 +110,7 @@ private:
         });
     }
 
-    /// Reads the updated value of `way.source` where that replaces two ways or more.
+    /// Reads the updated value of `way.source` if that replaces two ways or more.
     void follow(std::uint32_t target, const Way& way) {
         if (!all_lead_on(way.source, way.literals, target)) return;
         const auto covered = [&](const Way& other) {
@@ -125,37 +123,61 @@ private:
         if (std::count_if(ways_[target].begin(), ways_[target].end(), covered) < 2) return;
         Pairs order = fresh_;
         order.emplace(way.source, target);
-        if (sorted(ways_.size(), order).empty()) return;
+        if (sorted(ways_.size(), order).size() < ways_.size()) return;
         fresh_ = std::move(order);
         std::erase_if(ways_[target], covered);
         updated_[target].push_back(way);
     }
 
+    /// As few updates in `first` as it takes: one more of each circle of updates that read each
+    /// other's old values.
     Updates program() const {
-        Pairs in_place = fresh_;
-        for (std::uint32_t target = 0; target < ways_.size(); ++target)
-            for (const Way& way : ways_[target])
-                if (way.source != kNone && way.source != target)
-                    in_place.emplace(target, way.source);
-        std::vector<std::uint32_t> order = sorted(ways_.size(), in_place);
-        Updates result{{}, !order.empty()};
-        if (order.empty()) order = sorted(ways_.size(), fresh_);
+        std::set<std::uint32_t> first;
+        std::vector<std::uint32_t> order = sorted(ways_.size(), order_without(first));
+        while (order.size() < ways_.size()) {
+            const std::set<std::uint32_t> placed(order.begin(), order.end());
+            std::uint32_t state = 0;
+            while (first.count(state) != 0 || placed.count(state) != 0) ++state;
+            add_with_read(state, first);
+            order = sorted(ways_.size(), order_without(first));
+        }
+        Updates result;
         for (std::uint32_t state : order)
             if (!machine_.states[state].always_true)
-                result.list.push_back({state, products(state)});
+                (first.count(state) != 0 ? result.first : result.in_place)
+                    .push_back({state, products(state)});
         return result;
     }
 
-    /// The ways into a state, those through the same literals together.
+    /// Returns which update comes before which: one whose result another reads, and one that reads
+    /// an old value before it is written.
+    Pairs order_without(const std::set<std::uint32_t>& first) const {
+        Pairs result = fresh_;
+        for (std::uint32_t target = 0; target < ways_.size(); ++target)
+            for (const Way& way : ways_[target])
+                if (way.source != kNone && way.source != target && first.count(target) == 0 &&
+                    first.count(way.source) == 0)
+                    result.emplace(target, way.source);
+        return result;
+    }
+
+    /// Adds the state and those whose new values its update reads.
+    void add_with_read(std::uint32_t state, std::set<std::uint32_t>& first) const {
+        first.insert(state);
+        for (const auto& [read, reader] : fresh_)
+            if (reader == state && first.count(read) == 0) add_with_read(read, first);
+    }
+
+    /// Groups the ways into a state by their literals.
     std::vector<Product> products(std::uint32_t state) const {
         std::vector<Product> result;
-        const auto product_through = [&](const Literals& literals) -> Product& {
+        const auto product_through = [&](const LiteralSlots& literals) -> Product& {
             const auto found =
                 std::find_if(result.begin(), result.end(),
                              [&](const Product& product) { return product.literals == literals; });
             return found != result.end() ? *found : result.emplace_back(Product{{}, literals});
         };
-        std::set<Literals> unconditional;  // through these alone, whatever the registers
+        std::set<LiteralSlots> unconditional;  // true through these literals alone
         for (const Way& way : ways_[state]) {
             if (way.source == kNone)
                 unconditional.insert(way.literals);
@@ -164,38 +186,37 @@ private:
         }
         for (const Way& way : updated_[state])
             product_through(way.literals).sources.push_back({way.source, true});
-        for (const Literals& literals : unconditional) product_through(literals).sources.clear();
+        for (const LiteralSlots& literals : unconditional)
+            product_through(literals).sources.clear();
         return result;
     }
 
     const Machine& machine_;
     std::vector<std::vector<Way>> original_;
-    std::vector<std::vector<Way>> ways_;     ///< that still read old values
-    std::vector<std::vector<Way>> updated_;  ///< that read new ones
-    Pairs fresh_;  ///< updates that must come before others that read their result
+    std::vector<std::vector<Way>> ways_;     ///< ways that read old values
+    std::vector<std::vector<Way>> updated_;  ///< ways that read new values
+    Pairs fresh_;  ///< updates that must precede those that read their result
 };
 
-/// The code of the updates and what the states' registers are worth.
+/// Writes the code of the updates and of the reading.
 class Writing {
 public:
     Writing(const Machine& machine, const StreamBuilder& streams)
         : machine_(machine), streams_(streams) {}
 
     Straight write(const Updates& updates) {
-        keep_registers(updates.in_place);
-        for (const Update& update : updates.list) {
-            std::vector<Term> products;
-            for (const Product& product : update.products)
-                products.push_back(value(product, updates.in_place));
-            code_.assignments.push_back(
-                {.target = updates.in_place ? Term::Kind::reg : Term::Kind::local,
-                 .index = register_of(update.state),
-                 .value = Term::extreme(true, std::move(products))});
+        keep_registers();
+        for (const Update& update : updates.first) {
+            const std::size_t local = code_.locals.size();
+            assign(Term::Kind::local, local, update);
+            local_of_.emplace(update.state, local);
+            code_.locals.emplace_back("_next");
         }
-        if (!updates.in_place)
-            for (const Update& update : updates.list)
-                code_.assignments.push_back({.index = register_of(update.state),
-                                             .value = Term::local(register_of(update.state))});
+        for (const Update& update : updates.in_place)
+            assign(Term::Kind::reg, register_of(update.state), update);
+        for (const Update& update : updates.first)
+            code_.assignments.push_back({.index = register_of(update.state),
+                                         .value = Term::local(local_of_.at(update.state))});
         read();
         return std::move(code_);
     }
@@ -206,27 +227,41 @@ private:
         return state - (machine_.states[0].always_true ? 1 : 0);
     }
 
-    /// A register a state that is not always true.
-    void keep_registers(bool in_place) {
-        int owing = 0;  // states kept so far that owe something
+    /// Adds a register for each state that is not always true.
+    void keep_registers() {
         for (std::size_t q = 0; q < machine_.states.size(); ++q) {
             if (machine_.states[q].always_true) continue;
-            const std::vector<NodeId>& owed = machine_.automaton.states[q];
-            if (!owed.empty()) ++owing;
-            Member kept{.first = neutral(q != 0),
-                        .suffix = owed.empty() ? "_met" : fmt::format("_owing_{}", owing),
-                        .before = owed.empty() ? "nothing is owed any more" : "owed: ",
-                        .formulas = owed};
-            if (!in_place) code_.locals.push_back(kept.suffix);
-            code_.registers.push_back(std::move(kept));
+            // In G f the whole formula stays pending whatever else is.
+            const std::vector<NodeId>& whole = machine_.automaton.states[0];
+            std::vector<NodeId> pending = machine_.automaton.states[q];
+            const bool also = q != 0 && contains(pending, whole);
+            if (also) std::erase(pending, whole[0]);
+            code_.registers.push_back({.first = neutral(q != 0),
+                                       .suffix = pending.empty() ? "_met"
+                                                 : q == 0        ? "_whole"
+                                                                 : "_pending",
+                                       .before = pending.empty() ? "nothing is pending"
+                                                 : also          ? "also pending: "
+                                                                 : "pending: ",
+                                       .formulas = pending});
         }
     }
 
-    Term value(const Product& product, bool in_place) const {
+    void assign(Term::Kind target, std::size_t index, const Update& update) {
+        std::vector<Term> products;
+        for (const Product& product : update.products) products.push_back(value(product));
+        code_.assignments.push_back({.target = target,
+                                     .index = static_cast<std::uint32_t>(index),
+                                     .value = Term::extreme(true, std::move(products))});
+    }
+
+    Term value(const Product& product) const {
         std::vector<Term> sources;
         for (const Source& source : product.sources) {
-            const std::uint32_t index = register_of(source.state);
-            sources.push_back(source.updated && !in_place ? Term::local(index) : Term::reg(index));
+            const auto local = local_of_.find(source.state);
+            sources.push_back(source.updated && local != local_of_.end()
+                                  ? Term::local(local->second)
+                                  : Term::reg(register_of(source.state)));
         }
         std::vector<Term> factors;
         if (!sources.empty()) factors.push_back(Term::extreme(true, std::move(sources)));
@@ -234,8 +269,9 @@ private:
         return Term::extreme(false, std::move(factors));
     }
 
-    /// The max over states of min(register, what is unseen of what the state owes): strongly for
-    /// the upper bound, weakly for the lower one, which is false where something is owed strongly.
+    /// Computes the bounds: the max over states of min(register, unseen value of its obligations),
+    /// of the strong ones for the upper bound, of the weak ones for the lower one, which is false
+    /// where a strong one is open.
     void read() {
         std::vector<Term> rho;
         std::vector<std::pair<Term, Term>> lower;
@@ -258,7 +294,7 @@ private:
         return slot == kNone ? Term::constant(etlmon::kTrue) : streams_.term(slot, end);
     }
 
-    /// The max of min(register, key), registers with the same key together.
+    /// Returns the max of min(register, key), grouped by key.
     static Term best(const std::vector<std::pair<Term, Term>>& registers_and_keys) {
         std::vector<std::pair<Term, std::vector<Term>>> by_key;
         for (const auto& one : registers_and_keys) {
@@ -275,6 +311,7 @@ private:
 
     const Machine& machine_;
     const StreamBuilder& streams_;
+    std::map<std::uint32_t, std::size_t> local_of_;  ///< per state that is updated first
     Straight code_;
 };
 

@@ -43,8 +43,8 @@ Straight fold(StreamBuilder& streams, const Node& node, NodeId id) {
         code.registers.push_back({.first = neutral(!max),
                                   .suffix = "_guard",
                                   .before = "what its left side lets through"});
-        // Once the right side has decided, the left one matters no more: where it is found out on
-        // demand, nobody asks for it.
+        // Once the right side decides, the left one is irrelevant: evaluated on demand, it is not
+        // queried.
         const Term let = streams.term(left);
         code.assignments.push_back(
             {.index = 1, .value = guarded(streams.on_demand(left) ? widen(best, let) : let)});
@@ -71,30 +71,32 @@ Op seek(bool always) {
     return always ? Op::eventually : Op::always;
 }
 
-/// An answer in two parts, taken apart: p && F[c,d] q.
+/// The parts of an answer in two parts, p && F[c,d] q.
 struct InTwo {
-    std::vector<NodeId> begins;  ///< p, whose min it is (of the dual: the max)
+    std::vector<NodeId> begins;  ///< operands of p, which is their min (in the dual: max)
     NodeId completes = 0;        ///< q
     ir::Interval within;         ///< [c,d], bounded
 };
 
-/// G[A,B] (f || F[a,b] g), taken apart.
+/// The parts of G[A,B] (f || F[a,b] g).
 struct Asked {
     bool of_always = true;  ///< else the dual
     ir::Interval outer;
     ir::Interval inner;  ///< bounded
     NodeId body = 0;
-    NodeId answer = 0;            ///< g
-    std::vector<NodeId> excuses;  ///< f, whose max it is (of the dual: the min); none: false
-    std::optional<InTwo> in_two;  ///< g, where it looks ahead
+    NodeId answer = 0;  ///< g
+    std::vector<NodeId>
+        excuses;  ///< operands of f, which is their max (in the dual: min); none: false
+    std::optional<InTwo> in_two;  ///< parts of g if it looks ahead
 };
 
-/// The operands of a formula of this operation, else the formula alone.
+/// Returns the operands of a formula of this operation, else the formula alone.
 std::vector<NodeId> parts(const ir::Graph& graph, NodeId id, Op op) {
     return graph[id].op == op ? graph[id].operands : std::vector<NodeId>{id};
 }
 
-/// The one part that looks ahead, a bounded F (of the dual: G); the others go to `rest`.
+/// Returns the single part that looks ahead, a bounded F (in the dual: G); puts the others into
+/// `rest`.
 std::optional<NodeId> ahead(const ir::Graph& graph, const std::vector<NodeId>& parts, Op op,
                             std::vector<NodeId>& rest) {
     std::optional<NodeId> found;
@@ -135,16 +137,16 @@ std::optional<Asked> asked(const ir::Graph& graph, NodeId id) {
     return result.in_two ? std::optional(result) : std::nullopt;
 }
 
-/// What a response is made of, as streams.
+/// The streams of a response.
 struct Answering {
-    Term passed;  ///< what the windows that close at this step came to, from `passes_from` on
+    Term passed;  ///< value of the windows that close at this step, from `passes_from` on
     std::uint32_t passes_from = 0;
-    Term pending;  ///< what open windows say; hopeless where none has begun at the last positions
-    Term recent;   ///< what speaks for positions whose windows have not begun
-    std::optional<Term> hope;  ///< what the unseen may come to beside what it does everywhere
+    Term pending;  ///< value of the open windows; false where none began at the last positions
+    Term recent;   ///< value for positions whose windows have not begun
+    std::optional<Term> hope;  ///< additional unseen value
 };
 
-/// f at the positions of [A,B]; elsewhere nothing is asked.
+/// Returns f at the positions of [A,B]; elsewhere nothing is asked.
 Slot excuse_of(StreamBuilder& streams, ir::Graph& graph, const Asked& asked, source::Span span) {
     const bool always = asked.of_always;
     const Slot stated = asked.excuses.empty()
@@ -174,8 +176,8 @@ Answering answering(StreamBuilder& streams, ir::Graph& graph, const Asked& asked
     return result;
 }
 
-/// What was answered at the positions that are settled, `late` steps ago; before there are any,
-/// nothing is asked.
+/// Returns what was answered at the settled positions, `late` steps ago; before the first, nothing
+/// is asked.
 Slot answered(StreamBuilder& streams, bool always, Slot excuse, Slot answer, std::uint32_t late) {
     const Value idle = neutral(!always);
     const Slot slot = streams.is_constant(excuse)
@@ -184,8 +186,8 @@ Slot answered(StreamBuilder& streams, bool always, Slot excuse, Slot answer, std
     return streams.call(slot, "answered", "what was asked is answered, where that is settled");
 }
 
-/// Of an answer in two parts. `width` + 1 steps is what a window has for them, and `late` steps
-/// after it began an answer is settled.
+/// Builds an answer in two parts. A window spans `width` + 1 steps, and an answer is settled `late`
+/// steps after it began.
 Answering answering_in_two(StreamBuilder& streams, ir::Graph& graph, const Asked& asked,
                            source::Span span) {
     const bool always = asked.of_always;
@@ -250,7 +252,7 @@ std::optional<Straight> response(StreamBuilder& streams, ir::Graph& graph, NodeI
     if (found->in_two)
         for (NodeId part : found->in_two->begins)
             if (!streams.is_constant(streams.unseen(part))) return std::nullopt;
-    streams.of(found->answer);  // so that judge() computes it before what is made of it
+    streams.of(found->answer);  // makes judge() compute it first
     const Term unseen_answer =
         streams.term(streams.unseen(found->answer), always ? End::high : End::low);
     const Term unseen_body =

@@ -1,6 +1,5 @@
-// Formulas that a few registers settle, as straight-line code.
-// Takes: nodes of the graph whose operands have no future, and their streams. Gives: the code of a
-// latch, a fold or a response. Keeps true: rho and the bounds of the definitions, on every prefix.
+// Straight-line code for formulas that a few registers settle: latches, folds and responses over
+// operands without future, with the rho and bounds of the definitions on every prefix.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +10,14 @@
 
 namespace etlc::plan {
 
-/// A formula without future at the top: its value at step 0, for good.
+/// Reads a formula without future: its value at step 0, which is final.
 Straight latch(StreamBuilder& streams, NodeId id);
 
-/// F or U, or the duals G and R, over operands without future: a max or min that grows while the
-/// window is open.
+/// Reads F or U, or the duals G and R, over operands without future: a max or min that grows while
+/// the window is open.
 Straight fold(StreamBuilder& streams, const ir::Node& node, NodeId id);
 
-/// What G responds with: something without future, or an answer in two parts.
+/// The answer that G waits for: without future, or in two parts.
 enum class Answer : std::uint8_t { at_once, in_two };
 
 /// G[A,B] (f || F[a,b] g) or its dual F[A,B] (f && G[a,b] g), f and g without future; nothing for
@@ -49,8 +48,8 @@ enum class Answer : std::uint8_t { at_once, in_two };
 std::optional<Straight> response(StreamBuilder& streams, ir::Graph& graph, NodeId id,
                                  Answer answer);
 
-/// F[A,B] (p && F[c,d] q) or its dual, [A,B] bounded: what has begun in [A,B] and is completed now,
-/// q && O[c,d] p. Nothing for other formulas.
+/// Reads F[A,B] (p && F[c,d] q) or its dual, [A,B] bounded: the parts that began in [A,B] and are
+/// completed now are q && O[c,d] p. Returns nothing for other formulas.
 std::optional<Straight> fold_in_two(StreamBuilder& streams, ir::Graph& graph, NodeId id);
 
 }  // namespace etlc::plan

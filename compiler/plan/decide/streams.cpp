@@ -147,7 +147,7 @@ Slot StreamBuilder::running(bool max, Slot slot, NodeId node) {
 Slot StreamBuilder::shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before,
                           NodeId node, std::uint32_t begins_with) {
     if (steps == 0) return slot;
-    // What is constant was so at every position: whether there is one is all that counts.
+    // A constant is the same at every position: only the existence of the position matters.
     if (lag == 0 && streams_[slot].op == StreamOp::constant)
         return within(slot, {steps, kUnbounded}, before, begins_with);
     return intern({.op = StreamOp::shift,
@@ -218,7 +218,7 @@ Slot StreamBuilder::call(Slot slot, std::string_view name, std::string_view hold
     return slot;
 }
 
-/// O[a,b] f at k is O[0,b-a] f at k - a, or false where that is before the trace; H alike.
+/// Builds O[a,b] f at k as O[0,b-a] f at k - a, or false before the trace; H likewise.
 Slot StreamBuilder::past_unary(const Node& node, NodeId id) {
     const bool max = ir::takes_max(node.op);
     const auto [low, high] = node.interval;
@@ -233,7 +233,8 @@ Slot StreamBuilder::past_unary(const Node& node, NodeId id) {
     return shift(slot, low, lag, neutral(max), id, kNone);
 }
 
-/// f S[a,b] g at k is (f S[0,b-a] g at k - a) && (f at the last a positions); its dual alike.
+/// Builds f S[a,b] g at k as (f S[0,b-a] g at k - a) && (f at the last a positions); its dual
+/// likewise.
 Slot StreamBuilder::past_binary(const Node& node, NodeId id) {
     const std::vector<Slot> operands = align(node.operands);
     const std::uint32_t lag = std::max(streams_[operands[0]].lag, streams_[operands[1]].lag);
@@ -265,8 +266,8 @@ Slot StreamBuilder::since(bool max, const std::vector<Slot>& operands, ir::Inter
     return combine(!max, {earlier, held}, id);
 }
 
-/// F[a,b] f at k, known b steps after f at k: the window over f at k+a .. k+b. A window of one
-/// position still counts: where the trace ends before it there is no such position.
+/// Builds F[a,b] f at k, known b steps after f at k: the window over f at k+a .. k+b. A window of
+/// one position counts too: the trace may end before it.
 Slot StreamBuilder::future_unary(const Node& node, NodeId id) {
     const auto [low, high] = node.interval;
     const Slot operand = of(node.operands[0]);
@@ -275,7 +276,7 @@ Slot StreamBuilder::future_unary(const Node& node, NodeId id) {
                   lag + high, id);
 }
 
-/// f U[a,b] g at k is (f at k .. k+a-1) && (f U[0,b-a] g at k + a); its dual alike.
+/// Builds f U[a,b] g at k as (f at k .. k+a-1) && (f U[0,b-a] g at k + a); its dual likewise.
 Slot StreamBuilder::future_binary(const Node& node, NodeId id) {
     const bool max = ir::takes_max(node.op);
     const auto [low, high] = node.interval;
@@ -319,20 +320,20 @@ Slot StreamBuilder::unseen(NodeId id) {
     return slot;
 }
 
-/// F, U, O, S: lowest that of the last operand if a = 0, else -inf; highest the operand's. G, R, H
-/// and the dual of S: the other way round. What is known of the operand stays in sight of a past
-/// operator.
+/// F, U, O, S: the lowest unseen value is that of the last operand if a = 0, else -inf; the highest
+/// is the operand's. G, R, H and the dual of S: the other way round. Past operators keep seeing
+/// what is known of the operand.
 Slot StreamBuilder::unseen_temporal(const Node& node, NodeId id) {
     const bool max = ir::takes_max(node.op);
     const Slot operand = unseen(node.operands.back());
     Slot slot = operand;
     if (node.interval.low > 0)
-        slot = combine(!max, {operand, constant(kAnything)});  // one end gives way to infinity
+        slot = combine(!max, {operand, constant(kAnything)});  // one end becomes infinite
     if (ir::info(node.op).tense != ir::Tense::past) return slot;
     const bool unary = ir::info(node.op).arity == ir::Arity::unary;
     if (unary && node.interval == ir::Interval{}) return combine(max, {slot, of(id)});
     if (streams_[operand].op == StreamOp::constant)
-        return slot;  // nothing known lies outside a constant range
+        return slot;  // known values lie within a constant range
     const Slot known = running(max, of(node.operands.back()), kNone);
     return combine(max, {slot, combine(!max, {known, constant(kAnything)})});
 }

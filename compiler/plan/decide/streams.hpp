@@ -1,7 +1,6 @@
-// Formulas as streams: the part of the plan that runs at every step for every position.
-// Takes: nodes of the graph. Gives: slots of streams; a stream of node f lags by f's horizon, so a
-// formula without future is known at once and a bounded future one as soon as its last sample is
-// there. Keeps true: equal streams stand once; operands stand before what uses them.
+// Builds streams, the part of the plan that evaluates formulas at every position. The stream of a
+// formula lags by its horizon: without future it is known at once, with a bounded future when its
+// last sample is there. Equal streams are built once; operands come before their users.
 #pragma once
 
 #include <map>
@@ -19,47 +18,46 @@ public:
     StreamBuilder(const ir::Graph& graph, std::vector<Stream>& streams, check::Values values)
         : graph_(graph), streams_(streams), values_(values) {}
 
-    /// The stream of rho(node, k, i) at k = i - lag, lag = the node's horizon, which is bounded.
+    /// Returns the stream of rho(node, k, i) at k = i - lag, lag being the node's bounded horizon.
     Slot of(NodeId node);
-    /// The lowest and highest unseen value of a formula, as the definition "Bounds over every
-    /// continuation" gives them after this step; constant unless an unbounded past operator narrows
-    /// them.
+    /// Returns the lowest and highest unseen value of a formula after this step, as the definition
+    /// "Bounds over every continuation" gives them; constant unless an unbounded past operator
+    /// narrows them.
     Slot unseen(NodeId node);
-    /// The max or min of streams of equal lag; constants are folded.
+    /// Returns the max or min of streams of equal lag; folds constants.
     Slot combine(bool max, std::vector<Slot> operands, NodeId node = kNone);
-    /// The same stream, later by `steps`.
+    /// Returns the stream delayed by `steps`.
     Slot delayed(Slot slot, std::uint32_t steps);
 
-    /// What a stream is at one end, or both.
+    /// Returns one end of a stream, or both, as a term.
     Term term(Slot slot, End end = End::both) const;
-    /// The stream is found out when it is asked for (plan/budget/demand.hpp).
+    /// Returns whether the stream is evaluated on demand (plan/budget/demand.hpp).
     bool on_demand(Slot slot) const { return on_demand_[slot]; }
 
     Slot constant(Value value);
 
-    // What readings add of their own begins where they begin: with this monitor, or with the trace.
+    // Streams that readings add start with this monitor, or with the trace.
     void begin_with(std::uint32_t monitor) { begins_with_ = monitor; }
     std::uint32_t begins_with() const { return begins_with_; }
-    /// A stream without lag `steps` positions earlier, `before` where there is none.
+    /// Returns a stream without lag `steps` positions earlier, `before` where there is none.
     Slot earlier(Slot slot, std::uint32_t steps, Value before) {
         return shift(slot, steps, 0, before, kNone, begins_with_);
     }
-    /// A stream without lag at the positions of the interval, `elsewhere` at others.
+    /// Returns a stream without lag at the positions of the interval, `elsewhere` at others.
     Slot within(Slot slot, ir::Interval interval, Value elsewhere) {
         return within(slot, interval, elsewhere, begins_with_);
     }
-    /// What open windows say that wait for `answer`, where `excuse` speaks for the positions that
-    /// ask (decide/straight.hpp). Of G (excuse || F answer), or of its dual; both without lag.
+    /// Returns the value of open windows that wait for `answer`, unless `excuse` holds
+    /// (decide/straight.hpp): of G (excuse || F answer), or of its dual; both without lag.
     Slot pending(bool of_always, Slot excuse, Slot answer);
-    /// The max or min over the last `length` positions of a stream without lag.
+    /// Returns the max or min over the last `length` positions of a stream without lag.
     Slot recent(bool max, Slot slot, std::uint32_t length);
-    /// left S[a,b] right over streams without lag, or the dual; the interval is bounded.
+    /// Returns left S[a,b] right over streams without lag, or the dual; the interval is bounded.
     Slot since(bool max, Slot left, Slot right, ir::Interval interval);
-    /// The best handover from `before` to `behind` in the last `length` positions, or the dual
-    /// (etlmon/temporal/handover.hpp); both without lag.
+    /// Returns the best handover from `before` to `behind` in the last `length` positions, or the
+    /// dual (etlmon/temporal/handover.hpp); both without lag.
     Slot handover(bool max, Slot before, Slot behind, std::uint32_t length);
-    /// Gives a stream a name and a comment for people, where no formula does; they outlive the
-    /// plan.
+    /// Names a stream without a formula for people; name and comment outlive the plan.
     Slot call(Slot slot, std::string_view name, std::string_view holds);
     bool is_constant(Slot slot) const { return streams_[slot].op == StreamOp::constant; }
 
@@ -69,7 +67,7 @@ private:
     Slot aligned_combination(const ir::Node& node, NodeId id);
     Slot past_unary(const ir::Node& node, NodeId id);
     Slot past_binary(const ir::Node& node, NodeId id);
-    /// The stream `steps` positions earlier, `before` where there is none.
+    /// Returns the stream `steps` positions earlier, `before` where there is none.
     Slot shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before, NodeId node,
                std::uint32_t begins_with);
     Slot within(Slot slot, ir::Interval interval, Value elsewhere, std::uint32_t begins_with);

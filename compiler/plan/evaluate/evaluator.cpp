@@ -99,7 +99,7 @@ std::uint64_t Evaluator::position(std::size_t monitor) const {
     return m.sliding ? steps_ - m.horizon : starts_[monitor];
 }
 
-/// What begins with a monitor that was restarted before this step.
+/// Restarts what belongs to monitors restarted before this step.
 void Evaluator::restart_those_due() {
     const auto restarts = [&](std::uint32_t begins_with) {
         return begins_with != kNone && restarts_[begins_with];
@@ -150,7 +150,7 @@ bool in_range(const check::Input& input, const Sample& sample) {
 
 }  // namespace
 
-/// `hold N`: the last present sample stands in for at most N missing ones in a row.
+/// `hold N`: the last present sample replaces at most N missing ones in a row.
 void Evaluator::take_inputs(const std::vector<Sample>& samples) {
     for (Index i : plan_.inputs) {
         const check::Input& input = model_.inputs[i];
@@ -204,7 +204,7 @@ void Evaluator::measure_predicates() {
 
 // ---- streams
 
-/// An operand whose position lies before the trace or after its end counts as nothing.
+/// Returns an operand, or `where_none` if its position is before the trace or after its end.
 Value Evaluator::operand(const Stream& stream, std::size_t i, Value where_none) const {
     return exists(stream.operand_lag) ? streams_[stream.operands[i]] : where_none;
 }
@@ -321,7 +321,7 @@ void Evaluator::reset_member(const Member& member, StreamState& state) {
         case Member::Kind::widening:
             state.values.assign(member.length - member.from_length, neutral(member.max));
             break;
-        default: break;  // of readings
+        default: break;  // these belong to readings
     }
 }
 

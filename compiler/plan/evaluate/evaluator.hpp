@@ -1,7 +1,6 @@
-// The plan, executed: what `etlc run` and calibration step.
-// Takes: a plan and one sample of every input a step. Gives: the verdicts and telemetry that the
-// generated class gives, from the same runtime code. Keeps true: all memory is asked for when it is
-// made, work per step is independent of history.
+// Executes a plan, for `etlc run`, calibration and evaluation: the verdicts and telemetry of the
+// generated class, by the same runtime code. All memory is allocated by the constructor, and the
+// work of a step does not depend on the history.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +11,54 @@
 
 #include "etlmon/distance/enclosed.hpp"
 #include "etlmon/temporal/handover.hpp"
+#include "etlmon/temporal/pending.hpp"
 #include "etlmon/temporal/reading.hpp"
 #include "etlmon/temporal/verdict.hpp"
 #include "plan/evaluate/inputs.hpp"
 #include "plan/evaluate/near_rows.hpp"
-#include "plan/evaluate/pending_evaluator.hpp"
 #include "plan/program/program.hpp"
 
 namespace etlc::plan {
 
-/// What became of the samples of one input since reset().
+/// Executes a pending reading: evaluates the last positions of the prefix again at every step, in
+/// constant memory, with the runtime loops of generated code.
+class PendingEvaluator {
+public:
+    explicit PendingEvaluator(const Pending& pending);
+
+    void reset();
+    /// `position`: of the step, from the start; `streams`: all values at it.
+    etlmon::Reading advance(std::uint64_t position, const std::vector<Value>& streams);
+
+private:
+    using Readings = std::vector<etlmon::Reading>;
+
+    void evaluate_parts(std::uint32_t count, const std::vector<Value>& streams);
+    void evaluate_part(std::size_t index, std::uint32_t count, const std::vector<Value>& streams);
+    etlmon::Reading advance_fold(std::uint32_t step, std::uint32_t count,
+                                 const std::vector<Value>& streams);
+    etlmon::Reading advance_machine(std::uint32_t step, std::uint32_t count,
+                                    const std::vector<Value>& streams);
+
+    const Pending& pending_;
+    /// Per part: the last horizon + 1 values, oldest first.
+    std::vector<std::vector<Value>> leaves_;
+    std::vector<Readings> parts_;   ///< per part: at the same positions
+    std::vector<Value> registers_;  ///< of settled positions
+    // scratch of a machine: guards by position, keys of its lists, registers
+    Readings guards_;
+    std::vector<Key> weak_;
+    std::vector<Key> strong_;
+    Readings scratch_;
+    std::vector<Value> values_;
+};
+
+/// Counts of the samples of one input since reset().
 struct SampleCounts {
-    std::uint64_t missing = 0;  ///< not there, or not finite
+    std::uint64_t missing = 0;  ///< absent, or not finite
     std::uint64_t out_of_range =
-        0;                   ///< a scalar beyond its declared range, which counts as missing
-    std::uint64_t held = 0;  ///< of both: where the last one stood in
+        0;                   ///< a scalar out of its declared range, which counts as missing
+    std::uint64_t held = 0;  ///< of both, those replaced by `hold`
 };
 
 class Evaluator {
@@ -34,75 +66,77 @@ public:
     explicit Evaluator(const Plan& plan);
 
     void reset();
-    /// One time step; `samples` by index of the model's inputs (those that no monitor depends on
-    /// are not looked at). The verdicts are by index of plan.monitors and good until the next call.
+    /// Executes a step; `samples`: by index of the model's inputs (only those that a monitor
+    /// depends on are read). The verdicts are by index of plan.monitors and valid until the next
+    /// call.
     const std::vector<etlmon::Verdict>& step(const std::vector<Sample>& samples);
-    /// The trace has ended: sliding monitors report one of their last positions per call, prefix
+    /// Ends the trace: per call, sliding monitors report one of their last positions, prefix
     /// monitors their last verdict.
     const std::vector<etlmon::Verdict>& finish();
 
-    /// What each let of the plan said of the last step.
+    /// Returns the verdict of each let at the last step.
     const std::vector<etlmon::Verdict>& lets() const { return lets_; }
 
-    /// From the next step on, this monitor of the plan is about that step.
+    /// Restarts a monitor of the plan with the next step.
     void restart(std::size_t monitor);
-    /// The position that the verdict of the last step is about, where it is decided.
+    /// Returns the position of the last verdict, where it is decided.
     std::uint64_t position(std::size_t monitor) const;
 
-    /// delta of the last step, by index of the model's predicates; NaN where it was unknown.
+    /// Returns delta of the last step, by index of the model's predicates; NaN where unknown.
     float distance(Index predicate) const { return measured_[predicate].delta; }
-    /// Row of the nearest target; plain distances only.
+    /// Returns the row of the nearest target; plain distances only.
     std::uint32_t nearest(Index predicate) const { return measured_[predicate].nearest; }
-    /// The same of any predicate, for each of its distances.
+    /// Returns the row of the nearest target of any predicate, for each of its distances.
     std::uint32_t nearest(Index predicate, Index distance) const;
     std::uint32_t missing_steps() const { return missing_steps_; }
-    /// By index of the model's inputs; those that no monitor depends on are not counted.
+    /// Returns counts by index of the model's inputs; only those that a monitor depends on are
+    /// counted.
     const std::vector<SampleCounts>& sample_counts() const { return counts_; }
 
-    /// The threshold that the next step uses. An adaptive one moves with the labels that observe()
-    /// is given and, as in generated code, stays through reset(); nobody but its caller gives
-    /// labels, so `etlc run` has the one that was calibrated.
+    /// Returns the threshold of the next step. An adaptive one moves with the labels given to
+    /// observe() and, as in generated code, survives reset(); only the caller gives labels, so
+    /// `etlc run` uses the calibrated one.
     float threshold(Index predicate) const { return thresholds_[predicate]; }
     void observe(Index predicate, float distance, bool truth);
 
-    /// What the predicates of the last step were computed from: an input's values after `hold`,
-    /// null where it is missing, and a distance with its nearest row, by index in the model.
+    /// Return what the predicates of the last step were computed from: an input's values after
+    /// `hold`, null where missing, and a distance with its nearest row, by index in the model.
     const float* input(Index input) const { return inputs_[input]; }
     etlmon::Measured measured(Index distance) const { return distances_[distance]; }
-    /// The elements of a point of the model from which the plan measures; null where it is unknown.
+    /// Returns the elements of a point of the model that is measured; null where unknown.
     const float* point(Index point) const { return point_at_[point]; }
-    /// Of a distance by full weights to its nearest row: the rows that may be nearest to z (see
-    /// near_rows.hpp).
+    /// Returns the rows that may be nearest to z, for a distance by full weights to its nearest row
+    /// (near_rows.hpp).
     const std::vector<std::uint32_t>& near_rows(Index distance, const float* z,
                                                 double margin) const {
         return near_.at(distance).of(z, margin);
     }
 
-    /// From now on formulas see, of predicates that are measured, this instead of their robustness:
-    /// calibration reckons with what other builds measure. Both ends go through formulas
-    /// independently; a negation exchanges them.
+    /// Replaces the robustness of measured predicates in formulas: calibration accounts for the
+    /// measurements of other builds. The ends go through formulas independently; negation exchanges
+    /// them.
     using PredicateValue = std::function<Value(Index predicate)>;
     void replace_predicate_values(PredicateValue value) { replacement_ = std::move(value); }
 
 private:
     struct Held {
-        std::vector<float> values;  ///< empty: nothing to hold
+        std::vector<float> values;  ///< empty: none yet
         std::uint32_t age = 0;
     };
     struct StreamState {
-        std::vector<Member> members;  ///< what is kept, as it begins
+        std::vector<Member> members;  ///< members with their first values
         std::vector<Value> values;
         std::vector<etlmon::Since<Value>::Element> pairs;
         std::vector<etlmon::Handover<Value>::Element> flanks;
         std::uint32_t cursor = 0;
     };
     struct ReadingState {
-        std::vector<Value> registers;  ///< of straight-line code; of a table, one a state
-        std::vector<Value> next;       ///< locals; of a table, the registers being made
+        std::vector<Value> registers;  ///< of straight-line code, or one per state of a table
+        std::vector<Value> next;       ///< locals, or the next registers of a table
         std::vector<Value> guards;
-        std::vector<Key> weak;  ///< this step's keys of the table's lists
+        std::vector<Key> weak;  ///< this step's keys in the table's lists
         std::vector<Key> strong;
-        std::vector<Value> first;  ///< of the registers of straight-line code
+        std::vector<Value> first;  ///< first registers of straight-line code
         std::optional<PendingEvaluator> pending;
     };
 
@@ -127,7 +161,7 @@ private:
     Value advance_window(const Stream& stream, StreamState& state) const;
     Value operand(const Stream& stream, std::size_t i, Value where_none) const;
     bool exists(std::uint32_t lag) const { return steps_ >= lag && finished_ <= lag; }
-    /// Steps since the trace or this monitor began.
+    /// Returns the steps since the trace or this monitor began.
     std::uint64_t steps_since(std::uint32_t begins_with) const {
         return begins_with == kNone ? steps_ : steps_ - starts_[begins_with];
     }
@@ -140,26 +174,25 @@ private:
 
     const Plan& plan_;
     const check::Model& model_;
-    std::vector<Index> measured_points_;      ///< of the model, each behind its inner one
-    std::vector<std::vector<float>> points_;  ///< per point: where vectors and projections lie
+    std::vector<Index> measured_points_;      ///< points of the model, each after its inner one
+    std::vector<std::vector<float>> points_;  ///< per point: memory of vectors and projections
     std::vector<const float*> point_at_;      ///< per point: its elements; null: unknown
     std::vector<float> centred_;              ///< scratch of a projection
-    /// Per target and distance: rows as the kernels want them.
+    /// Per target and distance: prepared rows.
     std::vector<std::vector<float>> prepared_;
-    /// Of distances by full weights to the nearest row, the rows that have to be measured, and room
-    /// for them.
+    /// For distances by full weights to the nearest row: candidate rows, and room for their values.
     mutable std::map<Index, NearRows> near_;
     std::vector<float> near_values_;
-    /// Per distance: what its narrow rows stand for, where it has some.
+    /// Per distance: its narrow rows, widened.
     std::vector<std::vector<float>> widened_;
     std::vector<const float*>
         inputs_;  ///< per input of the model: this step's values; null: missing
     std::vector<Held> held_;
     std::vector<SampleCounts> counts_;
     std::vector<etlmon::Measured> distances_;
-    /// Per distance: the same, with what narrow targets leave open.
+    /// Per distance: the same, with bounds for narrow targets.
     std::vector<etlmon::Enclosed> enclosed_;
-    /// Per predicate: where the difference turns that narrow targets leave open.
+    /// Per predicate: where its difference changes the comparison, for narrow targets.
     std::vector<std::vector<Cut>> contrast_cuts_;
     /// Per predicate: the nearest rows of its two distances, where it has such cuts.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> contrast_rows_;
@@ -176,8 +209,8 @@ private:
     std::vector<etlmon::Verdict> verdicts_;
     std::vector<etlmon::Verdict> lets_;
     std::uint64_t steps_ = 0;            ///< index of the current step, calls of finish() included
-    std::vector<std::uint64_t> starts_;  ///< per monitor: the position that it is about
-    std::vector<bool> restarts_;         ///< per monitor: with the next step
+    std::vector<std::uint64_t> starts_;  ///< per monitor: its position
+    std::vector<bool> restarts_;         ///< per monitor: whether it restarts with the next step
     bool started_ = false;
     std::uint32_t finished_ = 0;  ///< calls of finish()
     std::uint32_t missing_steps_ = 0;

@@ -34,7 +34,7 @@ FlightRecorder::FlightRecorder(const Plan& plan)
 void FlightRecorder::step(const Evaluator& evaluator,
                           const std::vector<etlmon::Verdict>& verdicts) {
     fill(evaluator);
-    // One that is about the next step from now on: its next alarm is another one.
+    // A monitor that moves to the next step may raise a new alarm.
     for (std::size_t m = 0; m < plan_.monitors.size(); ++m)
         if (plan_.monitors[m].restarts == check::Restarts::when_final && verdicts[m].final())
             restart(m);
@@ -42,7 +42,7 @@ void FlightRecorder::step(const Evaluator& evaluator,
 }
 
 void FlightRecorder::finish(const std::vector<etlmon::Verdict>& verdicts) {
-    if (plan_.has_sliding) record(unasked_, verdicts);  // others have nothing more to say
+    if (plan_.has_sliding) record(unasked_, verdicts);  // prefix monitors do not change any more
 }
 
 void FlightRecorder::fill(const Evaluator& evaluator) {

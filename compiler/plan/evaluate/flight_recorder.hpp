@@ -1,30 +1,80 @@
-// The flight recorder beside the evaluator.
-// Takes: a plan with a recorder, and the evaluator after each of its steps. Gives: the incidents
-// that the generated class gives on the same samples, byte for byte. A Boolean class measures a
-// predicate when a verdict asks for it, and records which it asked for; here all are measured.
-// Keeps true: all memory is asked for when it is made.
+// Records incidents beside the evaluator, byte for byte those of the generated class on the same
+// samples. One difference: a Boolean class measures and records predicates on demand of a verdict;
+// here all are measured. All memory is allocated by the constructor.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "etlmon/temporal/recorder.hpp"
 #include "plan/evaluate/evaluator.hpp"
-#include "plan/evaluate/recorder_storage.hpp"
-#include "plan/recorder.hpp"
+#include "plan/recorder_plan.hpp"
 
 namespace etlc::plan {
+
+struct RecorderSizes {
+    std::uint32_t figures = 0;
+    std::uint32_t bools = 0;
+    std::uint32_t monitors = 0;
+    std::uint32_t before = 0;
+    std::uint32_t after = 0;
+    std::uint32_t incidents = 0;
+};
+
+/// Mirrors etlmon::RecorderRow.
+struct RecorderRow : etlmon::RowCalls<RecorderRow> {
+    std::vector<std::uint32_t> words;
+    std::vector<std::uint8_t> bytes;
+
+    /// Makes the row of a step without queries.
+    explicit RecorderRow(const RecorderSizes& sizes)
+        : words(1 + sizes.figures, etlmon::kUnaskedBits),
+          bytes((sizes.bools + sizes.monitors + 3) / 4 * 4) {
+        words[0] = 0;
+        for (std::uint32_t i = 0; i < sizes.bools; ++i) bytes[i] = etlmon::kRecordedUnasked;
+    }
+};
+
+/// Mirrors etlmon::RecorderArrays, for sizes known at run time.
+class RecorderStorage {
+public:
+    using Row = RecorderRow;
+    using Statuses = std::vector<std::uint32_t>;
+
+    explicit RecorderStorage(const RecorderSizes& sizes)
+        : alarms((sizes.monitors + 31) / 32),
+          incidents(sizes.incidents),
+          ring(std::size_t{sizes.before} + 1, Row(sizes)),
+          log(sizes.incidents * (std::size_t{sizes.before} + 1 + sizes.after), Row(sizes)),
+          sizes_(sizes) {}
+
+    std::uint32_t before() const noexcept { return sizes_.before; }
+    std::uint32_t after() const noexcept { return sizes_.after; }
+    std::uint32_t most_incidents() const noexcept { return sizes_.incidents; }
+    std::uint32_t bools() const noexcept { return sizes_.bools; }
+    std::uint32_t monitors() const noexcept { return sizes_.monitors; }
+    std::uint32_t row_words() const noexcept { return 1 + sizes_.figures; }
+
+    std::vector<std::uint32_t> alarms;
+    std::vector<etlmon::RecordedIncident> incidents;
+    std::vector<Row> ring;
+    std::vector<Row> log;
+
+private:
+    RecorderSizes sizes_;
+};
 
 class FlightRecorder {
 public:
     explicit FlightRecorder(const Plan& plan);
 
-    /// After Evaluator::step().
+    /// Records a step; call it after Evaluator::step().
     void step(const Evaluator& evaluator, const std::vector<etlmon::Verdict>& verdicts);
-    /// After Evaluator::finish().
+    /// Records a final position; call it after Evaluator::finish().
     void finish(const std::vector<etlmon::Verdict>& verdicts);
-    /// Evaluator::restart() was called.
+    /// Call it after Evaluator::restart().
     void restart(std::size_t monitor) { recorder_.restart(static_cast<std::uint32_t>(monitor)); }
-    /// Evaluator::reset() was called.
+    /// Call it after Evaluator::reset().
     void end_episode() { recorder_.end_episode(); }
 
     std::uint32_t complete() const { return recorder_.complete(); }
@@ -32,7 +82,7 @@ public:
     void close() { recorder_.close(); }
     void forget() { recorder_.forget(); }
 
-    /// The bytes of a complete incident, good until the next call.
+    /// Returns the bytes of a complete incident, valid until the next call.
     const std::vector<std::uint8_t>& write(std::uint32_t incident);
 
 private:

@@ -1,5 +1,4 @@
-// The measuring half of the evaluator: distances and expressions of one step, through the runtime's
-// own kernels.
+// The part of Evaluator that measures distances and expressions, by the runtime's kernels.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -25,7 +24,7 @@ bool doubtful(const etlmon::Enclosed& enclosed, const std::vector<Cut>& cuts) {
     });
 }
 
-/// The points that distances are measured from, and those that these are projected from, ascending.
+/// Returns the points that distances are measured from, and those on the way, ascending.
 std::vector<Index> measured_points(const check::Model& model, const std::vector<Index>& distances) {
     std::set<Index> points;
     for (const Index d : distances)
@@ -111,7 +110,7 @@ etlmon::Measured Evaluator::measure_wide(Index d, const float* z) {
                          scratch_.data());
 }
 
-/// Two distances known within bounds; where that leaves the comparison open, on float32.
+/// Measures a contrast within bounds; on float32 where these leave the comparison open.
 etlmon::Enclosed Evaluator::measure_contrast(const check::Predicate& predicate) {
     const auto [a, b] = *contrast(predicate);
     const Index p = static_cast<Index>(&predicate - model_.predicates.data());
@@ -135,9 +134,9 @@ std::uint32_t Evaluator::nearest(Index p, Index distance) const {
                                                   : contrast_rows_[p].second;
 }
 
-/// On narrow rows where there are some; where these leave a comparison open, or there are none, on
-/// float32. The kernels give narrow rows the bits that they give what these widen to
-/// (tests/runtime/test_narrow_*.cpp), so one kernel does.
+/// Measures on narrow rows if there are any; on float32 if there are none or they leave a
+/// comparison open. Kernels give narrow rows and their widened copies the same bits
+/// (tests/runtime/test_narrow_*.cpp), so one kernel suffices.
 etlmon::Enclosed Evaluator::measure(Index d, const float* z) {
     const check::Distance& distance = model_.distances[d];
     const check::Target& target = model_.targets[distance.target];
@@ -155,7 +154,7 @@ etlmon::Enclosed Evaluator::measure(Index d, const float* z) {
     return doubtful(enclosed, set->cuts) ? etlmon::exactly(measure_wide(d, z)) : enclosed;
 }
 
-/// The kernels give a row the same bits whatever others they measure with it
+/// Measures the candidates only. Kernels give a row the same bits whatever other rows they measure
 /// (tests/runtime/test_kernel_twins.cpp).
 etlmon::Measured Evaluator::measure_near(Index d, const float* z) {
     const check::Distance& distance = model_.distances[d];
@@ -173,7 +172,7 @@ etlmon::Measured Evaluator::measure_near(Index d, const float* z) {
     return measured;
 }
 
-/// EXPR in float32, each operation rounded once; NaN where an operand is.
+/// Evaluates EXPR in float32, rounding each operation once; NaN where an operand is.
 float Evaluator::expression(const Expr& e) const {
     const auto at = [&](std::size_t i) { return expression(e.arguments[i]); };
     const auto fold = [&](auto combine) {

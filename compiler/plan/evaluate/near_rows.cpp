@@ -14,11 +14,11 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Of what kernels add up; beyond it they may overflow.
+/// The largest sum in a kernel; larger ones may overflow.
 constexpr double kGreatest = static_cast<double>(FLT_MAX) / 4;
 
-/// A bound of |W|, the matrix of absolute values, as a map: its greatest row sum, or its Frobenius
-/// norm.
+/// Returns a bound of the norm of |W|, the matrix of absolute values: its greatest row sum, or its
+/// Frobenius norm.
 double spread_of(const std::vector<float>& weights, std::size_t n) {
     double greatest = 0;
     double squares = 0;
@@ -51,13 +51,14 @@ double squared_distance(const float* z, const float* g, std::size_t n) {
     return squares;
 }
 
-/// to[j] += factor x from[j]
+/// Adds factor x from[j] to to[j].
 void add_multiple(const double* __restrict from, double factor, double* __restrict to,
                   std::size_t n) {
     for (std::size_t j = 0; j < n; ++j) to[j] += factor * from[j];
 }
 
-/// to[j] += (x - from[j])^2, several at a time: row after row there would be one sum to wait for.
+/// Adds (x - from[j])^2 to to[j], for several j at a time: row by row every addition would wait for
+/// the one before.
 void add_squares(const float* __restrict from, float x, float* __restrict to, std::size_t n) {
     for (std::size_t j = 0; j < n; ++j) to[j] += (x - from[j]) * (x - from[j]);
 }
@@ -76,7 +77,7 @@ NearRows::NearRows(const check::Distance& distance, const check::Target& target)
     whiten_rows();
 }
 
-/// Cholesky, row after row.
+/// Computes the Cholesky factor row by row.
 void NearRows::decompose(const std::vector<float>& weights) {
     const std::size_t n = target_.dimension;
     factor_.resize(n * n);
@@ -126,8 +127,8 @@ double NearRows::error(std::uint32_t row, double apart, double margin) const {
     const double magnitude = spread_ * apart;
     if (magnitude > kGreatest) return kInfinity;
     const auto distance = static_cast<double>(distances_[row]);
-    // L^T z and L^T g in double, D roundings of each element's terms; then as float32, their
-    // difference, D squares and their sum, of which denormal ones are lost.
+    // L^T z and L^T g in double: D roundings of each element's terms. Then in float32: their
+    // difference, D squares and their sum, which loses denormal ones.
     const double in_double = 2 * (n + 8) * DBL_EPSILON * factor_length_ * (length_ + lengths_[row]);
     const double as_float = FLT_EPSILON * (whitened_length_ + whitened_lengths_[row]) +
                             (n + 8) * FLT_EPSILON * distance + std::sqrt(n * FLT_MIN);
@@ -136,8 +137,7 @@ double NearRows::error(std::uint32_t row, double apart, double margin) const {
                                            distance, magnitude);
 }
 
-/// At first with a bound of |z - g| that costs nothing; then with the distance itself for the rows
-/// that this leaves.
+/// Selects rows first by a free bound of |z - g|, then by the distance itself.
 const std::vector<std::uint32_t>& NearRows::of(const float* z, double margin) {
     measure(z);
     near_.resize(target_.rows);
@@ -148,7 +148,7 @@ const std::vector<std::uint32_t>& NearRows::of(const float* z, double margin) {
             errors_[k] = error(k, apart(k), margin);
             least = std::min(least, static_cast<double>(distances_[k]) + errors_[k]);
         }
-        // What is no number stays.
+        // NaN stays.
         std::erase_if(near_, [&](std::uint32_t k) {
             return static_cast<double>(distances_[k]) - errors_[k] > least;
         });

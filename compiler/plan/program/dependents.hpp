@@ -1,6 +1,5 @@
-// Which monitors and lets a part of the plan works for.
-// Takes: a plan. Gives: per stream and per reading, the monitors and lets whose verdicts depend on
-// it. Keeps true: a part none of which can change any more need not be computed.
+// The monitors and lets whose verdicts depend on each stream and reading. A part that can no longer
+// change any of them need not be computed.
 #pragma once
 
 #include <vector>
@@ -10,7 +9,7 @@
 namespace etlc::plan {
 
 struct Dependents {
-    /// Indices of plan.monitors, ascending; behind them those of plan.lets.
+    /// Indices of plan.monitors, ascending, then of plan.lets.
     std::vector<std::vector<std::size_t>> of_stream;
     std::vector<std::vector<std::size_t>> of_reading;
 };

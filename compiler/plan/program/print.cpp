@@ -1,4 +1,4 @@
-// The plan as text, for --emit plan.
+// Prints the plan: `--emit plan`.
 #include <fmt/format.h>
 
 #include "plan/program/program.hpp"
@@ -16,7 +16,7 @@ std::string value_text(Value value) {
     return fmt::format("[{}, {}]", key_text(value.low), key_text(value.high));
 }
 
-/// What --emit plan calls an operation and its dual.
+/// Returns the name of an operation or of its dual.
 const char* name(const Stream& stream) {
     const auto either = [&](const char* max, const char* min) { return stream.max ? max : min; };
     switch (stream.op) {
@@ -39,7 +39,7 @@ const char* name(const Stream& stream) {
     return "";
 }
 
-/// F, G, U or R.
+/// Returns F, G, U or R.
 const char* symbol(bool max, bool binary) {
     if (binary) return max ? "U" : "R";
     return max ? "F" : "G";
@@ -70,14 +70,15 @@ std::string stream_text(const Plan& plan, const ir::Graph& graph, Slot slot) {
     return text + "\n";
 }
 
-std::string owed(const ir::Graph& graph, const std::vector<NodeId>& obligations) {
+std::string obligations_text(const ir::Graph& graph, const std::vector<NodeId>& obligations) {
     if (obligations.empty()) return "nothing owed";
     std::string text = "owes ";
     for (NodeId id : obligations) text += (text.size() > 5 ? ", " : "") + graph.text(id);
     return text;
 }
 
-/// "max(v0, s3)": of the reading's registers v, its locals t, and streams s; one end of them.
+/// Prints a term, or one end of it: "max(v0, s3)", with the reading's registers v, its locals t,
+/// and streams s.
 std::string term_text(const Term& term, End end = End::both) {
     const char* part = end == End::both ? "" : end == End::low ? ".low" : ".high";
     switch (term.kind) {
@@ -120,7 +121,8 @@ std::string table_text(const Table& table, char guarded, const ir::Graph& graph)
     std::string text;
     std::uint32_t begin = 0;
     for (std::size_t state = 0; state < table.ends.size(); ++state) {
-        text += fmt::format("       q{}: {}\n", state, owed(graph, table.obligations[state]));
+        text += fmt::format("       q{}: {}\n", state,
+                            obligations_text(graph, table.obligations[state]));
         for (std::uint32_t i = begin; i < table.ends[state]; ++i) {
             const etlmon::Transition t = table.transitions[i];
             text += fmt::format("           from q{}", t.source);

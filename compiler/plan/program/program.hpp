@@ -1,8 +1,7 @@
-// What a monitor does at every step, in order: the last form before code.
-// Takes: the graph. Gives: emit/ and the evaluator the same steps to print and to execute.
-// Keeps true: streams and readings stand in an order in which operands come first; each distance,
-// stream and reading is computed once however many monitors use it; the state is fixed here and
-// does not depend on the trace.
+// The plan: the operations of every step in order, the last form before code. The emitter prints
+// them and the evaluator executes them. Operands come before their users; each distance, stream and
+// reading is computed once however many monitors use it; the size of the state does not depend on
+// the trace.
 #pragma once
 
 #include <cstdint>
@@ -22,36 +21,36 @@ struct Monitor {
     std::string name;
     bool sliding = false;
     check::Restarts restarts = check::Restarts::never;
-    bool counts_steps = false;  ///< where it restarts: some part of it counts from there
+    bool counts_steps = false;  ///< for monitors that restart: some part counts steps from there
     std::uint32_t horizon = 0;
     std::uint32_t reading = kNone;  ///< prefix monitors
     Slot stream = kNone;            ///< sliding monitors: the verdicts, lagging by the horizon
     Index index = 0;                ///< of the model's monitors
-    NodeId node = 0;                ///< its formula
-    bool shifted = false;           ///< calibrated as a whole: all its numbers are less by `shift`
+    NodeId node = 0;                ///< node of its formula
+    bool shifted = false;  ///< calibrated as a whole: `shift` is subtracted from all its numbers
     float shift = 0;
 };
 
-/// A let whose verdict at the present step is telemetry.
+/// A let whose verdict is telemetry.
 struct Let {
     Index index = 0;  ///< of the model's lets
     Slot stream = kNone;
 };
 
-/// Worst case of one step and fixed sizes, of the whole or of one monitor (what it shares is
-/// counted in each).
+/// Costs of the worst step and fixed sizes, of the whole plan or of one monitor (shared parts count
+/// in each).
 struct Cost {
     std::uint64_t state_bytes = 0;
-    std::uint64_t stack_bytes = 0;   ///< arrays of a step: positions that are evaluated again
-    std::uint64_t target_bytes = 0;  ///< and weights, on a machine with vectors of floats
-    std::uint64_t scalar_target_bytes = 0;  ///< the same on one without
+    std::uint64_t stack_bytes = 0;   ///< arrays of a step, for positions that are evaluated again
+    std::uint64_t target_bytes = 0;  ///< with weights, on a machine with float vectors
+    std::uint64_t scalar_target_bytes = 0;  ///< the same on a machine without
     std::uint64_t code_bytes = 0;           ///< estimated, targets aside
     std::uint64_t operations = 0;           ///< min, max and comparisons of the temporal part
-    std::uint64_t distance_operations = 0;  ///< element differences accumulated: K x D a distance
+    std::uint64_t distance_operations = 0;  ///< accumulated element differences: K x D per distance
 };
 
-/// A target set that lies in the file beside the header, see stored.hpp; or the matrix of a
-/// projection, as one row.
+/// A target set in the file beside the header (stored.hpp), or the matrix of a projection as one
+/// row.
 struct StoredSet {
     Index target = 0;
     bool as_given = true;  ///< else rows of length 1
@@ -60,16 +59,16 @@ struct StoredSet {
     Index projection = check::kNone;  ///< else a target
 };
 
-/// How the elements of target sets are kept.
+/// The element type of target sets.
 enum class Storage : std::uint8_t { f32, f16, i8 };
 
-/// A comparison turns at a number, or somewhere in [low, high].
+/// A comparison changes at a number, or somewhere in [low, high].
 struct Cut {
     float low = 0;
     float high = 0;
 };
 
-/// The narrow copy of a target set on which a distance is measured, see narrow_targets.hpp.
+/// The narrow copy of a target set that a distance is measured on (narrow_targets.hpp).
 struct NarrowSet {
     Index distance = 0;
     Storage storage = Storage::f16;
@@ -78,12 +77,12 @@ struct NarrowSet {
     std::vector<std::uint16_t> halves;  ///< f16: IEEE bits
     std::vector<std::int8_t> bytes;     ///< i8
     float scale = 1;                    ///< i8: value = scale x integer
-    float moved = 0;        ///< no row is farther from its float32 row, in the distance's norm
-    bool lossless = false;  ///< every element widens to the float32 it was: no other copy is kept
-    std::vector<Cut> cuts;  ///< of the distance: where some predicate's comparison turns
+    float moved = 0;                    ///< bound of the distance of a row from its float32 row
+    bool lossless = false;  ///< every element widens to its float32: no other copy is kept
+    std::vector<Cut> cuts;  ///< of the distance, for all predicates
 };
 
-/// The flight recorder of the class, in steps; see recorder.hpp.
+/// The flight recorder of the class, in steps (recorder_plan.hpp).
 struct Recorder {
     std::uint32_t before = 0;
     std::uint32_t after = 0;
@@ -92,10 +91,10 @@ struct Recorder {
 
 struct Plan {
     const check::Model* model = nullptr;
-    /// The program's graph, and what readings owe from one step to the next: what `node` means.
+    /// The program's graph, and obligations of readings: the formulas that `node` refers to.
     std::shared_ptr<const ir::Graph> formulas;
     check::Values values = check::Values::robustness;
-    std::vector<Index> inputs;  ///< that some monitor depends on, in order of declaration
+    std::vector<Index> inputs;  ///< inputs of all monitors, in order of declaration
     std::vector<Index> targets;
     std::vector<Index> distances;
     std::vector<StoredSet> stored;
@@ -106,13 +105,13 @@ struct Plan {
     std::vector<Monitor> monitors;
     std::vector<Let> lets;
     bool has_sliding = false;
-    bool counts_steps = false;  ///< some part needs the number of the step
+    bool counts_steps = false;  ///< some part uses the number of the step
     std::optional<Recorder> recorder;
     Cost cost;
     std::vector<Cost> monitor_costs;
 };
 
-/// The plan as text: `--emit plan`.
+/// Prints the plan: `--emit plan`.
 std::string print(const Plan& plan);
 
 }  // namespace etlc::plan

@@ -10,26 +10,26 @@ std::uint32_t count(const auto& list) {
     return static_cast<std::uint32_t>(list.size());
 }
 
-/// What is kept of the last positions, then what is settled before them.
+/// Returns the members of the last positions, then those of the settled ones.
 std::vector<Member> members_of(const Pending& pending, NodeId node) {
-    using Kind = Member::Kind;
     std::vector<Member> result;
     for (const Pending::Part& part : pending.parts)
         if (part.leaf != kNone)
-            result.push_back(
-                {.kind = Kind::recent, .length = pending.horizon + 1, .formulas = {part.node}});
+            result.push_back({.kind = Member::Kind::recent,
+                              .length = pending.horizon + 1,
+                              .formulas = {part.node}});
     if (pending.is_fold) {
-        result.push_back({.kind = Kind::variable,
+        result.push_back({.kind = Member::Kind::variable,
                           .first = neutral(pending.fold.max),
                           .formulas = {node},
                           .after = ", where it is settled"});
-        result.push_back({.kind = Kind::variable,
+        result.push_back({.kind = Member::Kind::variable,
                           .first = neutral(!pending.fold.max),
                           .suffix = "_guard",
                           .before = "what its left side lets through there"});
         return result;
     }
-    result.push_back({.kind = Kind::pending_machine,
+    result.push_back({.kind = Member::Kind::pending_machine,
                       .length = count(pending.table.ends),
                       .guards = count(pending.table.guards),
                       .formulas = {node}});

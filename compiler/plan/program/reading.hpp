@@ -1,7 +1,6 @@
-// Readings: what prefix monitors say about the position where they began.
-// Takes: streams. Gives: rho on the prefix, and the bounds over every continuation of it. Keeps
-// true: which formula a reading came from matters no more: it is straight-line code, a table, a
-// formula over the last positions, or a max or min of readings.
+// Readings: rho of prefix monitors at the position where they began, and its bounds over every
+// continuation. Every reading is straight-line code, a table, a formula over the last positions, or
+// a max or min of readings.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +12,7 @@
 
 namespace etlc::plan {
 
-/// One register or local gets a value, at the positions of the interval.
+/// Assigns a register or local, at the positions of the interval.
 struct Assignment {
     Term::Kind target = Term::Kind::reg;  ///< reg or local
     std::uint32_t index = 0;
@@ -24,31 +23,30 @@ struct Assignment {
 /// Straight-line code: the assignments in this order, then the reading.
 struct Straight {
     std::vector<Member> registers;
-    std::vector<std::string> locals;  ///< what their names have behind that of the reading
+    std::vector<std::string> locals;  ///< ends of their names, after that of the reading
     std::vector<Assignment> assignments;
     Term rho;
-    Term lower;  ///< of which the low end counts
-    Term upper;  ///< of which the high end counts
+    Term lower;  ///< the low end counts
+    Term upper;  ///< the high end counts
 };
 
-/// A weighted automaton over (max, min), as the constant tables of etlmon/temporal/machine.hpp.
+/// A weighted automaton over (max, min), as constant tables of etlmon/temporal/machine.hpp.
 struct Table {
     std::vector<etlmon::Transition> transitions;
     std::vector<std::uint32_t> ends;  ///< per state
     std::vector<etlmon::Owed> owed;   ///< per state
     /// Streams whose low ends are the weak keys, and whose high ends are the strong keys, from
-    /// index 1 on; index 0 is kTop.
+    /// index 1; index 0 is kTop.
     std::vector<Slot> weak;
     std::vector<Slot> strong;
-    /// Per guard, what it is the min of: streams, or parts of a pending reading.
+    /// Per guard, its operands, of which it is the min: streams, or parts of a pending reading.
     std::vector<std::vector<std::uint32_t>> guards;
     std::vector<std::vector<NodeId>> obligations;  ///< per state, for people
 };
 
 /// An operator or a table over formulas with a bounded future. These are settled `horizon` steps
-/// late; at the positions since, they are computed again at every step on the prefix as it ends now
-/// (etlmon/temporal/pending.hpp), and the registers, which stand where everything is settled, are
-/// carried over them.
+/// late; later positions are evaluated again at every step on the current prefix
+/// (etlmon/temporal/pending.hpp), starting from the registers of the last settled position.
 struct Pending {
     struct Part {
         NodeId node = kNone;
@@ -56,8 +54,7 @@ struct Pending {
         bool max = true;    ///< ||, F or U; else the dual
         ir::Interval interval;
         std::vector<std::uint32_t> operands;  ///< parts
-        Slot unseen = kNone;  ///< of temporal operators: lowest and highest unseen value of the
-                              ///< last operand
+        Slot unseen = kNone;  ///< of temporal operators: unseen values of the last operand
     };
     std::vector<Part> parts;  ///< operands first
     std::uint32_t horizon = 0;
@@ -70,27 +67,27 @@ struct Reading {
     enum class Kind : std::uint8_t { straight, table, pending, combination };
     Kind kind = Kind::straight;
     NodeId node = 0;
-    std::string as;  ///< what people call it: "fold"
-    /// It restarts with this monitor, by index in the plan, and counts positions from there;
-    /// kNone: with the trace.
+    std::string as;  ///< name for people: "fold"
+    /// The monitor, by index in the plan, that it restarts with and counts positions from; kNone:
+    /// the trace.
     std::uint32_t begins_with = kNone;
     Straight straight;
     Table table;
     Pending pending;
-    bool max = true;                      ///< of a combination: the max of the operands
-    std::vector<std::uint32_t> operands;  ///< readings, of a combination
+    bool max = true;                      ///< of a combination: max of the operands, else min
+    std::vector<std::uint32_t> operands;  ///< readings of a combination
 };
 
 std::vector<Member> members_of(const Reading& reading);
 
-/// It looks at the number of the step.
+/// Returns whether the reading uses the number of the step.
 bool asks_position(const Reading& reading);
 
-/// The table that a reading runs, if it has one.
+/// Returns the table of a reading, if it has one.
 const Table* table_of(const Reading& reading);
 
-/// Calls visit(slot) for every stream that a reading reads; of a reading that may be changed, with
-/// a slot that may be.
+/// Calls visit(slot) for every stream that a reading reads; the slot of a mutable reading is
+/// mutable.
 template <class R, class Visit>
 void for_each_slot(R& reading, const Visit& visit) {
     const auto if_any = [&](auto& slot) {

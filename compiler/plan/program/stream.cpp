@@ -11,7 +11,7 @@ std::vector<Member> members_of(const Stream& stream) {
                   .length = stream.length,
                   .from_length = stream.from_length,
                   .first = stream.value};
-    const bool is_operand = stream.length == 1;  // a window of one position is what it looks at
+    const bool is_operand = stream.length == 1;  // a window of one position is its operand
     switch (stream.op) {
         case StreamOp::constant:
         case StreamOp::predicate:

@@ -47,7 +47,7 @@ Term Term::extreme(bool max, std::vector<Term> operands) {
             kept.push_back(std::move(operand));
     }
     const auto varies = [](const Term& term) { return term.kind != Kind::constant; };
-    std::stable_partition(kept.begin(), kept.end(), varies);  // as one writes it: max(v, 0.2)
+    std::stable_partition(kept.begin(), kept.end(), varies);  // for people: max(v, 0.2)
     if (kept.empty()) return constant(neutral(max));
     if (kept.size() == 1) return kept.front();
     return {.kind = Kind::extreme, .max = max, .operands = std::move(kept)};

@@ -1,7 +1,6 @@
-// What a step computes of a reading: minima and maxima over streams, registers and constants.
-// Takes: operands. Gives: a tree of six kinds, which emit/ prints and the evaluator computes. Keeps
-// true: a neutral constant is dropped, an absorbing one stands alone, and no max is the operand of
-// a max; so two ways to say the same bound are mostly one term.
+// Terms: minima and maxima over streams, registers and constants, which readings compute at every
+// step. Neutral constants are dropped, absorbing ones replace the whole, and no max is an operand
+// of a max, so equal bounds mostly are equal terms.
 #pragma once
 
 #include <cstdint>
@@ -20,12 +19,12 @@ using etlmon::Key;
 using etlmon::Value;
 using Slot = std::uint32_t;  ///< index of a stream
 
-/// The max of nothing; of a dual, whose max is a min, the min of nothing.
+/// Returns the max of nothing; for a dual, whose max is a min, the min of nothing.
 constexpr Value neutral(bool max) {
     return max ? etlmon::kFalse : etlmon::kTrue;
 }
 
-/// Which part of a value is meant: a lower bound is a low end, an upper bound a high one.
+/// The end of a value that counts: the low end for a lower bound, the high end for an upper bound.
 enum class End : std::uint8_t { both, low, high };
 
 struct Term {
@@ -33,9 +32,9 @@ struct Term {
         constant,  ///< `value`
         stream,    ///< of this slot
         reg,       ///< a register of the reading
-        local,     ///< what an earlier assignment of this step has computed
-        extreme,   ///< the max or min of two operands or more
-        before,    ///< the first operand before position `index`, from there on the second
+        local,     ///< the result of an earlier assignment of this step
+        extreme,   ///< the max or min of at least two operands
+        before,    ///< the first operand before position `index`, then the second
     };
     Kind kind = Kind::constant;
     bool max = true;  ///< of an extreme; else the min
@@ -47,20 +46,19 @@ struct Term {
     static Term stream(Slot slot);
     static Term reg(std::size_t index);
     static Term local(std::size_t index);
-    /// Of any number of terms.
+    /// Returns the extreme of any number of terms.
     static Term extreme(bool max, std::vector<Term> operands);
     static Term before(std::uint32_t position, Term inside, Term after);
 };
 
 bool operator==(const Term& a, const Term& b);
 
-/// Minima and maxima of two that computing it takes.
+/// Returns the number of binary minima and maxima of a term.
 std::size_t combinations(const Term& term);
-/// The position of the step is looked at.
+/// Returns whether the term reads the position of the step.
 bool asks_position(const Term& term);
 
-/// Calls visit(slot) for every stream that is read; of a term that may be changed, with a slot that
-/// may be.
+/// Calls visit(slot) for every stream that is read; the slot of a mutable term is mutable.
 template <class T, class Visit>
 void for_each_slot_of(T& term, const Visit& visit) {
     if (term.kind == Term::Kind::stream) visit(term.index);

@@ -1,7 +1,6 @@
-// What formulas are computed in: a row a type of values.
-// Takes: what the user chose. Gives: the bytes that values and what is made of them take, and when
-// they are found out. Keeps true: behind the plan nobody asks which type it is; the emitter has a
-// row of words for each (emit/spelling.hpp).
+// The value types of formulas: the sizes of values and of what contains them, and whether they are
+// evaluated on demand. After planning nothing branches on the type; the emitter has a row of words
+// for each (emit/spelling.hpp).
 #pragma once
 
 #include <cstdint>
@@ -11,12 +10,14 @@
 namespace etlc::plan {
 
 struct ValueType {
-    /// Predicates are measured when a verdict that can still change first depends on them, and a
-    /// final verdict ends its monitor's work. Else on every step: robustness depends on all.
+    /// Whether predicates are measured only when a verdict that can still change depends on them,
+    /// and a final verdict ends the work of its monitor. Robustness depends on all predicates at
+    /// every step.
     bool on_demand;
-    /// A value knows its sample, and the class can say which one decides a verdict.
+    /// Whether a value carries its sample, so that the class can name the one that decides a
+    /// verdict.
     bool sourced;
-    // Bytes of one, and of what the runtime makes of so many.
+    // bytes of one, and of containers of this length
     std::uint64_t value;
     std::uint64_t reading;
     std::uint64_t verdict;

@@ -20,7 +20,7 @@ using diag::Code;
 
 constexpr double kLargestHalf = 65504;
 
-/// The bits of a double that is a finite float16.
+/// Returns the bits of a double that is a finite float16.
 std::uint16_t half_bits(double half) {
     constexpr int kFractionBits = 10;
     constexpr int kLeastExponent = -14;
@@ -28,16 +28,16 @@ std::uint16_t half_bits(double half) {
     const double magnitude = std::abs(half);
     if (magnitude == 0) return sign;
     const int exponent = std::max(std::ilogb(magnitude), kLeastExponent);
-    // Subnormal ones have no implicit bit: their fraction stays below 2^10 and carries nothing into
-    // the exponent.
+    // Subnormal numbers have no implicit bit: their fraction stays below 2^10 and does not carry
+    // into the exponent.
     const auto fraction =
         static_cast<std::uint32_t>(std::ldexp(magnitude, kFractionBits - exponent));
     return static_cast<std::uint16_t>(
         sign + fraction + (static_cast<std::uint32_t>(exponent - kLeastExponent) << kFractionBits));
 }
 
-/// Of |e_0|, |e_1|, ...: the norm in which a row's move changes its distance, as
-/// etlmon::detail::change() takes it.
+/// The norm of |e_0|, |e_1|, ... in which a row's move changes its distance, as in
+/// etlmon::detail::change().
 class Norm {
 public:
     explicit Norm(const check::Distance& distance) : distance_(distance) {}
@@ -49,7 +49,7 @@ public:
     }
     double value() const {
         constexpr double kSlack =
-            1 + 1e-9;  // of the sums here, in double, over up to 2^20 elements
+            1 + 1e-9;  // covers the sums here, in double, over up to 2^20 elements
         switch (distance_.metric) {
             case check::Metric::l1: return sum_ * kSlack;
             case check::Metric::linf: return greatest_ * kSlack;
@@ -80,8 +80,8 @@ public:
           set_(set),
           rows_(prepared_rows(model, distance_)) {}
 
-    /// The first row with an element that float16 cannot hold; the number of rows where there is
-    /// none.
+    /// Narrows all rows. Returns the first row with an element beyond float16, or the number of
+    /// rows if there is none.
     std::uint32_t run() {
         set_.rows = target_.rows;
         set_.dimension = target_.dimension;
@@ -102,8 +102,8 @@ private:
         return target_.rows;
     }
 
-    /// One scale for the whole set. What an integer stands for is scale x integer, rounded to
-    /// float32 by some kernels and not by others: that rounding counts as a move.
+    /// Uses one scale for the whole set. Some kernels round scale x integer to float32, others do
+    /// not: that rounding counts as a move.
     std::uint32_t to_bytes() {
         constexpr double kLargest = 127;
         float greatest = 0;
@@ -140,8 +140,7 @@ private:
         set_.moved = check::round_up(moved);
     }
 
-    /// The row that the distance is defined by: of length 1, to the precision of double, for cosine
-    /// and angular.
+    /// Returns the row that defines the distance: normalised in double for cosine and angular.
     std::vector<double> exact_row(std::size_t row) const {
         const auto* begin = target_.values.data() + row * target_.dimension;
         std::vector<double> exact(begin, begin + target_.dimension);
@@ -158,10 +157,9 @@ private:
     std::vector<float> rows_;
 };
 
-/// Where the robustness of a predicate changes its sign, and where it passes the shift of a monitor
-/// that is calibrated as a whole, with or without a negation before it: status and finality are
-/// decided there and nowhere else. Around a shift the float32 subtractions leave a few roundings
-/// open.
+/// Adds the points at which the robustness of a predicate changes its sign or passes the shift of a
+/// monitor calibrated as a whole, negated or not: only there status and finality change. Around a
+/// shift the float32 subtractions leave a few roundings open.
 void add_cuts(const Plan& plan, const check::Predicate& predicate, std::vector<Cut>& cuts) {
     const float epsilon = predicate.threshold.value;
     const auto add = [&](Cut cut) {
@@ -192,8 +190,8 @@ bool is_adaptive(const check::Predicate& predicate) {
     return predicate.threshold.origin == check::ThresholdOrigin::adaptive;
 }
 
-/// Only predicates that compare it with a number that stays, as it is or less another one, read the
-/// distance.
+/// Returns whether all predicates that read the distance compare it, or its difference from
+/// another, with a constant.
 bool can_be_enclosed(const Plan& plan, Index distance) {
     return std::none_of(plan.predicates.begin(), plan.predicates.end(), [&](Index p) {
         const check::Predicate& predicate = plan.model->predicates[p];
@@ -202,7 +200,7 @@ bool can_be_enclosed(const Plan& plan, Index distance) {
     });
 }
 
-/// Why a distance is measured on float32 whatever is asked for; empty where it need not be.
+/// Returns why a distance is measured on float32 in any case; empty if it is not.
 std::string why_float32(const Plan& plan, Index d) {
     const check::Distance& distance = plan.model->distances[d];
     const check::Target& target = plan.model->targets[distance.target];

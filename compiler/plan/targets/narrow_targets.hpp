@@ -1,8 +1,7 @@
-// Target sets in float16 or int8: `--targets-as`.
-// Takes: a plan, and the storage asked for. Gives: per distance the narrow rows, how far the
-// narrowing moved a row, and the numbers at which a comparison turns. Keeps true: `moved` is never
-// below the true distance between a float32 row and its narrow copy, in the norm that
-// etlmon/distance/enclosed.hpp reckons with; where no row moved, nothing else is kept.
+// Stores target sets in float16 or int8: `--targets-as`. Computes per distance the narrow rows, how
+// far narrowing moved a row, and the numbers at which a comparison changes. `moved` is an upper
+// bound of the true distance between a float32 row and its narrow copy, in the norm of
+// etlmon/distance/enclosed.hpp; where no row moved, no other copy is kept.
 #pragma once
 
 #include <cstdint>
@@ -15,33 +14,32 @@
 
 namespace etlc::plan {
 
-/// The nearest float16, ties to even, as a double; infinite beyond 65504.
+/// Returns the nearest float16, ties to even, as a double; infinite beyond 65504.
 double to_f16(double x);
 
 /// Fills plan.narrow with every distance that can be measured on narrow rows: those that predicates
-/// compare with a number as they are, or whose difference they compare (a contrast). Other
-/// expressions, adaptive thresholds and mahalanobis with full weights keep float32. Reports what
-/// makes it impossible.
+/// compare with a number, or whose difference they compare (a contrast). Other expressions,
+/// adaptive thresholds and mahalanobis with full weights keep float32. Reports what makes it
+/// impossible.
 void narrow_targets(Plan& plan, Storage storage, diag::Sink& sink);
 
-/// Both distances of a predicate that has a name and compares their difference with a number that
-/// stays; nothing for others.
+/// Returns both distances of a named predicate that compares their difference with a constant;
+/// nothing for others.
 std::optional<std::pair<Index, Index>> contrast(const check::Predicate& predicate);
 
-/// Of a contrast of which narrow rows leave something open: the numbers at which it turns; else
-/// nothing.
+/// Returns the numbers at which a contrast changes, where narrow rows leave it open; else nothing.
 std::vector<Cut> contrast_cuts(const Plan& plan, const check::Predicate& predicate);
 
-/// The narrow rows of a distance; null where it is measured on float32.
+/// Returns the narrow rows of a distance; null where it is measured on float32.
 const NarrowSet* narrow_set(const Plan& plan, Index distance);
 
-/// Its rows as the kernels widen them: float32, one rounding an element of int8.
+/// Returns its rows as the kernels widen them: float32, with one rounding per element of int8.
 std::vector<float> widened_rows(const NarrowSet& set);
 
-/// Bytes of its rows.
+/// Returns the bytes of its rows.
 std::uint64_t bytes_of(const NarrowSet& set);
 
-/// "f16", "i8", "f32"
+/// Returns "f16", "i8" or "f32".
 const char* word(Storage storage);
 
 }  // namespace etlc::plan

@@ -28,7 +28,7 @@ bool left_to_kernels(const Plan& plan, Index embedding) {
     const auto leaves = [&](Index d) {
         const check::Point& point = plan.model->point_of(d);
         return point.kind != check::Point::Kind::embedding || point.inputs[0] != embedding ||
-               checks_point(plan, d);  // a projection finds out as kernels do
+               checks_point(plan, d);  // projections check as kernels do
     };
     const check::Input& input = plan.model->inputs[embedding];
     return input.is_embedding() && input.hold == 0 &&

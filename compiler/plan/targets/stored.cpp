@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kPieceBytes = 1U << 20U;
 
-/// Rows `first` to before `end` of the set, ready to be written.
+/// Writes rows `first` to `end` - 1 of the set.
 void fill(const StoredNumbers& numbers, const StoredSet& set, std::size_t first, std::size_t end,
           std::vector<float>& rows, std::vector<float>& piece) {
     const std::size_t stride = set.row_bytes / sizeof(float);

@@ -1,8 +1,7 @@
-// Target sets and projections that are not spelled out in the header: they lie in a file beside
-// it, which the monitor is given. Takes: a plan. Gives: which sets, where in the file each begins,
-// and the bytes of the file. Keeps true: rows are little-endian float32 in the form that the
-// kernels want, each padded with zeros to a multiple of 64 bytes; sets stand in the order of the
-// plan's distances; the same plan gives the same bytes on every machine.
+// Target sets and projections in a file beside the header, which is passed to the monitor. Rows are
+// little-endian float32 in the form for the kernels, each padded with zeros to a multiple of 64
+// bytes; sets are in the order of the plan's distances. The same plan gives the same bytes on every
+// machine.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +14,17 @@
 
 namespace etlc::plan {
 
-/// The sets of the plan's distances that are larger than `inline_bytes`, then the matrices of their
-/// projections that are.
+/// Returns the sets of the plan's distances larger than `inline_bytes`, then the matrices of their
+/// projections.
 std::vector<StoredSet> stored_sets(const Plan& plan, std::uint64_t inline_bytes);
 
-/// Where the distance's set lies in the file; null where it stands in the header.
+/// Returns the distance's set in the file; null where it is in the header.
 const StoredSet* stored_set(const Plan& plan, Index distance);
 
-/// The same of a projection's matrix.
+/// Returns a projection's matrix in the file; null where it is in the header.
 const StoredSet* stored_projection(const Plan& plan, Index projection);
 
-/// What is stored, as it is declared.
+/// The declared numbers of a stored set.
 struct StoredNumbers {
     const std::string& name;
     const std::string& origin;
@@ -36,21 +35,21 @@ struct StoredNumbers {
 };
 StoredNumbers numbers_of(const check::Model& model, const StoredSet& set);
 
-/// The monitor searches the distance's set, which takes state (etlmon/distance/search.hpp), and
-/// does not measure all of it.
+/// Returns whether the monitor searches the distance's set, which takes state
+/// (etlmon/distance/search.hpp), instead of measuring all of it.
 bool searches(const Plan& plan, Index distance);
 
-/// What such a search remembers.
+/// Returns the bytes of state of such a search.
 std::uint64_t search_bytes(const check::Target& target);
 
-/// Bytes of the file; 0 where there is none.
+/// Returns the bytes of the file; 0 without one.
 std::uint64_t stored_bytes(const Plan& plan);
 
-/// The file, piece by piece, for as long as `take` says true. Gives whether it always did.
+/// Passes the file to `take` piece by piece until it returns false. Returns whether it never did.
 bool store(const Plan& plan,
            const std::function<bool(const std::uint8_t* bytes, std::size_t size)>& take);
 
-/// The file's XXH64.
+/// Returns the file's XXH64.
 std::uint64_t stored_hash(const Plan& plan);
 
 }  // namespace etlc::plan

@@ -1,7 +1,7 @@
 // A Cortex-M4F without an operating system (QEMU's mps2-an386): vectors, start, and semihosting for
 // text. ARM "Semihosting for AArch32 and AArch64", 2.0; ARMv7-M Architecture Reference Manual, B1.5
-// and B3.3. On an interrupt the processor saves the registers that a function may change, those of
-// the floating-point unit included (B1.5.7): a handler is a plain function.
+// and B3.3. On an interrupt the processor saves the registers that a function may change, including
+// those of the floating-point unit (B1.5.7), so a handler is a plain function.
 #include <stdint.h>
 
 #include "board.hpp"
@@ -29,7 +29,7 @@ uint32_t semihost(uint32_t operation, const void* argument) noexcept {
     return r0;
 }
 
-/// SysTick counts down from `ticks`, over and over.
+/// SysTick counts down from `ticks` repeatedly.
 void count_from(uint32_t ticks, bool interrupts) noexcept {
     at(0xe000e014) = ticks;
     at(0xe000e018) = 0;
@@ -43,7 +43,7 @@ Intervals intervals;
 
 extern "C" {
 
-/// The processor starts with this stack, here.
+/// The processor starts here, with this stack.
 __attribute__((section(".vectors"), used)) const void* const vectors[16] = {
     &stack_top,
     reinterpret_cast<const void*>(reset),
@@ -66,7 +66,7 @@ __attribute__((section(".vectors"), used)) const void* const vectors[16] = {
 void reset() noexcept {
     at(0xe000ed88) = at(0xe000ed88) | 0xfu << 20;  // CPACR: the floating-point unit is on
     __asm__ volatile("dsb\n isb");
-    const uint32_t* from = &data_stored;  // monitors as they begin
+    const uint32_t* from = &data_stored;  // initial states of monitors
     for (uint32_t* p = &data_start; p != &data_end; ++p) *p = *from++;
     for (uint32_t* p = &bss_start; p != &bss_end; ++p) *p = 0;
     count_from(0xffffff, false);

@@ -1,4 +1,4 @@
-// A program of an operating system; its interrupts are a timer's signal.
+// A program on an operating system; its interrupts are the signals of a timer.
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-// How long a board's timer waits until its next interrupt: 1 to 64 ticks, always the same sequence.
+// The intervals between a board's timer interrupts: 1 to 64 ticks, always the same sequence.
 #pragma once
 
 #include <stdint.h>

@@ -1,7 +1,7 @@
 // An RV32IMAFC without an operating system (QEMU's virt machine): start, and semihosting for text.
 // RISC-V Semihosting Specification 0.4; RISC-V Privileged Architecture, 3.1.6 to 3.1.9 and 3.2.1.
-// The compiler saves what an interrupt handler changes, floating-point registers included: that is
-// what its attribute is for.
+// The attribute of an interrupt handler makes the compiler save the registers that it changes,
+// including floating-point registers.
 #include <stdint.h>
 
 #include "board.hpp"
@@ -49,13 +49,13 @@ constexpr uint32_t kTimerInterrupts = 1u << 7, kInterrupts = 1u << 3;  // in mie
 void (*on_tick)() = nullptr;
 Intervals intervals;
 
-/// The next interrupt, that many ticks of the timer from now.
+/// Schedules the next interrupt that many ticks from now.
 void interrupt_after(uint32_t ticks) noexcept {
     auto* time = reinterpret_cast<volatile uint64_t*>(0x0200bff8);
     auto* compare = reinterpret_cast<volatile uint32_t*>(0x02004000);
     const uint64_t then =
-        *time + ticks;  // two reads: the low half wraps after seven minutes, which no run lasts
-    compare[1] = 0xffffffff;  // none between the two assignments
+        *time + ticks;  // two reads: the low half wraps after seven minutes, longer than any run
+    compare[1] = 0xffffffff;  // no interrupt between the two assignments
     compare[0] = static_cast<uint32_t>(then);
     compare[1] = static_cast<uint32_t>(then >> 32);
 }

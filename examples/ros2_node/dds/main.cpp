@@ -1,5 +1,5 @@
-// patrol_dds FOLDER: the node over DDS, in the domain of ROS_DOMAIN_ID, until SIGINT or SIGTERM.
-// Incidents go to FOLDER.
+// patrol_dds FOLDER: runs the node over DDS, in the domain of ROS_DOMAIN_ID, until SIGINT or
+// SIGTERM. Incidents go to FOLDER.
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -20,7 +20,7 @@ std::uint32_t domain() {
 }
 
 void run(const char* incident_folder) {
-    constexpr int kTicksPerDiagnostics = 10;  // once a second, and when an answer changes
+    constexpr int kTicksPerDiagnostics = 10;  // once a second, and when a verdict changes
     RosTopics topics(domain());
     MonitorNode node(incident_folder);
     auto next = std::chrono::steady_clock::now();
@@ -33,7 +33,7 @@ void run(const char* incident_folder) {
         if (report.verdicts_changed || ticks % kTicksPerDiagnostics == 0)
             topics.publish_diagnostics(report.diagnostics);
     }
-    node.reset();  // completes the incidents that wait for steps
+    node.reset();  // completes pending incidents
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ dds_entity_t checked(dds_return_t result, const char* what) {
     throw std::runtime_error(std::string("DDS: ") + what + ": " + dds_strretcode(-result));
 }
 
-/// As the profiles of ROS 2: reliable or of sensor data, and how many are kept.
+/// The QoS profiles of ROS 2: reliable or sensor data, and the number of samples kept.
 class Qos {
 public:
     Qos(dds_reliability_kind reliability, dds_durability_kind durability, int depth)
@@ -37,7 +37,7 @@ private:
     dds_qos_t* qos_;
 };
 
-/// DDS reads the strings that it is given, though they are no pointers to const.
+/// DDS only reads these strings, although they are not pointers to const.
 char* text(const std::string& words) {
     return const_cast<char*>(words.c_str());
 }
@@ -83,7 +83,7 @@ RosTopics::RosTopics(std::uint32_t domain)
         const dds_entity_t of = topic(diagnostic_msgs_msg_dds__DiagnosticArray__desc, name);
         return checked(dds_create_writer(participant_, of, qos, nullptr), name);
     };
-    // One that takes best effort takes what is reliable, too.
+    // A best-effort reader accepts reliable writers too.
     const Qos sensor(DDS_RELIABILITY_BEST_EFFORT, DDS_DURABILITY_VOLATILE, 10);
     const char* const embedding = "rt/embedding";
     const dds_entity_t of = topic(std_msgs_msg_dds__Float32MultiArray__desc, embedding);
@@ -102,7 +102,7 @@ void RosTopics::take(const std::function<void(const float* elements, std::size_t
         const int count = checked(dds_take(embeddings_, samples, infos, kMost, kMost), "take");
         if (count == 0) return;
         for (int i = 0; i < count; ++i) {
-            if (!infos[i].valid_data) continue;  // a publisher went
+            if (!infos[i].valid_data) continue;  // a publisher left
             const auto& data = static_cast<const Embedding*>(samples[i])->data;
             each(data._buffer, data._length);
         }

@@ -1,8 +1,7 @@
-// The topics of the node, over DDS and without ROS: what rclcpp would do, for a system that has
-// CycloneDDS alone. ROS 2 nodes of the same domain see them as /embedding, /diagnostics and
-// /patrol/verdicts.
-// Takes: a domain. Gives: embeddings that came, and publishes statuses. Keeps true: a call of DDS
-// that fails throws with its words.
+// The topics of the node over DDS without ROS, in place of rclcpp, for a system with CycloneDDS
+// only. ROS 2 nodes of the same domain see them as /embedding, /diagnostics and /patrol/verdicts.
+// Takes: a domain. Gives: received embeddings, and publishes statuses. Keeps true: a call of DDS
+// that fails throws its message.
 #pragma once
 
 #include <dds/dds.h>
@@ -21,7 +20,7 @@ public:
     RosTopics(const RosTopics&) = delete;
     RosTopics& operator=(const RosTopics&) = delete;
 
-    /// Hands on every embedding that came since the last call, the oldest first.
+    /// Passes on every embedding since the last call, the oldest first.
     void take(const std::function<void(const float* elements, std::size_t count)>& each);
 
     void publish_diagnostics(const std::vector<Status>& statuses);

@@ -1,4 +1,4 @@
-// The node of ROS 2 around MonitorNode. Its executor is single-threaded, as MonitorNode needs.
+// The ROS 2 node around MonitorNode. Its executor is single-threaded, as MonitorNode requires.
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
 #include <memory>
 #include <rclcpp/rclcpp.hpp>

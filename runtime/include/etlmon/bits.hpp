@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Floats whose bits decide: what is NaN, infinite or missing, whatever -ffast-math lets a compiler
-// assume. Takes: floats from memory or fresh from arithmetic. Gives: exact answers from bits, one
-// rounding per operation, sqrt. Keeps true: no decision rests on a floating-point comparison that
-// -ffinite-math-only may fold away. Functions that may see a NaN or an infinity are inlined always
-// or take references: clang marks float parameters of others "never NaN" there. Builtins are called
-// by name so that -ffreestanding, which makes memcpy a plain function, still gets single moves.
+// Tests of floats by their bits: NaN, infinite or missing, even under -ffast-math. Takes: floats
+// from memory or from arithmetic. Gives: exact answers from bits, one rounding per operation, sqrt.
+// Keeps true: no decision depends on a floating-point comparison that -ffinite-math-only may
+// remove. Functions that may see a NaN or an infinity are always inlined or take references: clang
+// marks float parameters of other functions "never NaN" under that flag. Builtins are called by
+// name so that -ffreestanding, which makes memcpy a plain function, still gets single moves.
 #pragma once
 
 #include <float.h>
@@ -13,13 +13,13 @@
 
 #include "etlmon/build.hpp"
 
-#if !defined(__GNUC__)  // where there are no builtins; in C++, math.h takes longer to read than the
-                        // rest of a monitor
+#if !defined(__GNUC__)  // without builtins; in C++, math.h takes longer to compile than the rest of
+                        // a monitor
 #include <math.h>
 #include <string.h>
 #endif
 
-// What g++ and clang offer beyond the standard; everything below does without.
+// Extensions of g++ and clang; all code below has an alternative in standard C++.
 #if defined(__GNUC__) && !defined(ETLMON_PORTABLE)
 #include "etlmon/gnu.hpp"
 #endif
@@ -27,7 +27,7 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// What a sample that is not there looks like: a quiet NaN.
+/// The value of a missing sample: a quiet NaN.
 #if defined(__has_builtin)
 #if __has_builtin(__builtin_bit_cast)
 #define ETLMON_HAS_BIT_CAST 1
@@ -50,8 +50,7 @@ constexpr uint32_t kSignBit = 0x80000000u;
 constexpr uint32_t kInfinityBits = 0x7f800000u;
 constexpr uint32_t kMissingBits = 0x7fc00000u;
 
-// Without optimisation GCC warns of reads in loops over whole vectors that a short row never
-// enters.
+// Without optimisation GCC warns of reads in loops that a short row never enters.
 #if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 11
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wstringop-overread"
@@ -68,26 +67,19 @@ ETLMON_INLINE void copy_bytes(void* to, const void* from, size_t bytes) noexcept
 #endif
 
 #if !defined(ETLMON_GNU)
-/// The same value, of which the optimiser knows nothing: read back from memory that it must not
-/// look through.
-template <class T>
-ETLMON_INLINE T opaque(T x) noexcept {
-  const volatile T kept = x;
+/// Returns x, hidden from the optimiser by a volatile copy.
+template <class Type>
+ETLMON_INLINE Type opaque(Type x) noexcept {
+  const volatile Type kept = x;
   return kept;
 }
-/// The same value. Where gnu.hpp is included, a hint how to keep it, for speed.
-template <class T>
-ETLMON_INLINE T in_register(T x) noexcept {
-  return x;
-}
-ETLMON_INLINE void keep_apart(uint32_t&, uint32_t&, uint32_t&, uint32_t&) noexcept {}
 #endif
 
-/// The bits of a float that arithmetic made. Where NaN and infinity are assumed away, the compiler
-/// is kept from seeing where the bits come from: it must not conclude from the arithmetic what they
-/// cannot be.
+/// Returns the bits of a computed float. Under -ffinite-math-only they are hidden from the
+/// compiler, which would otherwise conclude from the arithmetic that they are not those of a NaN or
+/// an infinity.
 ETLMON_INLINE uint32_t observe(const float& x) noexcept {
-#if defined(ETLMON_HAS_BIT_CAST)  // unlike copy_bytes it tells the compiler that x is aligned
+#if defined(ETLMON_HAS_BIT_CAST)  // tells the compiler that x is aligned
   uint32_t bits = __builtin_bit_cast(uint32_t, x);
 #else
   uint32_t bits = 0;
@@ -105,9 +97,9 @@ ETLMON_INLINE float from_bits(uint32_t bits) noexcept {
   return x;
 }
 
-/// An integer that orders floats by value, given their bits; -0 and +0 are one, NaN lies beyond the
-/// infinities. Where speed counts without a branch, since the signs of robustness are what no
-/// processor predicts.
+/// Maps the bits of floats to integers in the order of the floats. -0 and +0 are equal; NaN lies
+/// beyond the infinities. Without a branch unless optimised for size, since the signs of robustness
+/// are unpredictable.
 ETLMON_INLINE constexpr int32_t ordered(uint32_t bits) noexcept {
 #if defined(__OPTIMIZE_SIZE__)
   return static_cast<int32_t>(bits >= kSignBit ? kSignBit - bits : bits);
@@ -117,29 +109,19 @@ ETLMON_INLINE constexpr int32_t ordered(uint32_t bits) noexcept {
 #endif
 }
 
-/// x, rounded to float32 here: not fused with what follows, not reassociated with it, not assumed
+/// Returns x rounded to float32: not fused or reassociated with later operations, and not assumed
 /// finite.
 ETLMON_INLINE float rounded(float x) noexcept { return opaque(x); }
 
-/// The bits of a sum that a loop made. It has to be a float until here: g++ for RISC-V would else
-/// keep it in an integer register from the start, and move it to and fro with every addition.
-ETLMON_INLINE uint32_t observe_sum(const float& x) noexcept {
-#if !defined(ETLMON_GNU) || defined(__riscv_flen)
-  return observe(opaque(x));
-#else
-  return observe(x);
-#endif
-}
-
 #if !defined(ETLMON_GNU)
-/// Two floats as two that nothing is known of, not even whether they are the same: under
-/// -ffast-math x - x is 0 and x / x is 1, whatever x is.
+/// Hides two floats from the optimiser, even that they are equal: under -ffast-math x - x is 0 and
+/// x / x is 1 for every x.
 ETLMON_INLINE void part(float& x, float& y) noexcept {
   x = opaque(x);
   y = opaque(y);
 }
 
-/// sqrt of a float that is not negative.
+/// Returns sqrt of a float that is not negative.
 ETLMON_INLINE float square_root(float x) noexcept {
 #if defined(__GNUC__)
   return __builtin_sqrtf(x);
@@ -149,19 +131,10 @@ ETLMON_INLINE float square_root(float x) noexcept {
 }
 #endif
 
-/// atan of a finite float; the library's.
-ETLMON_INLINE float arc_tangent(float x) noexcept {
-#if defined(__GNUC__)
-  return __builtin_atanf(x);
-#else
-  return atanf(x);
-#endif
-}
-
 }  // namespace detail
 
 ETLMON_INLINE bool is_nan(const float& x) noexcept {
-  return (detail::observe(x) << 1) > (detail::kInfinityBits << 1);  // without the sign
+  return (detail::observe(x) << 1) > (detail::kInfinityBits << 1);  // shifts the sign out
 }
 
 ETLMON_INLINE bool is_finite(const float& x) noexcept {

@@ -1,23 +1,49 @@
 // SPDX-License-Identifier: MIT
-// What a translation unit's flags make of inline code, as a name.
-// Takes: the compiler's macros. Gives: ETLMON_BUILD, the inline namespace that holds all of the
-// runtime and of every generated class: v0_2_gcc12_x86v3, v0_2_clang14_x86v1_O0. A program keeps
-// one copy of an inline function of a name, the first that it is linked from. Without this a unit
-// could die of the instructions that another one was built for, or answer with the bits of its
-// -ffast-math. Keeps true: functions of one name may stand for each other, in bits and in
-// instructions; what the flags leave no macro for is in docs/runtime.md, "Flags, and who shares
-// code".
+// The inline namespace of the runtime, named after the compiler and its flags. Takes: the
+// compiler's macros. Gives: ETLMON_BUILD, the inline namespace that holds all of the runtime and of
+// every generated class: v0_2_gcc12_x86v3, v0_2_clang14_x86v1_O0. The linker keeps one copy of an
+// inline function of a given name. Without this namespace, a unit could run instructions that
+// another unit was compiled for, or get results of its -ffast-math. Keeps true: functions of the
+// same name are interchangeable, in results and in instructions. docs/runtime.md, "Flags, and who
+// shares code", lists flags that define no macro.
 #pragma once
 
 #include "etlmon/version.hpp"
 
 #if !(__cplusplus >= 201703L || (defined(_MSVC_LANG) && _MSVC_LANG >= 201703L))
-// There is no such file. Of all errors this is the one after which compilers stop.
+// There is no such file: a missing include is the error after which compilers stop.
 #include <etlmon needs C++17: compile with -std=c++17 or later>
 #endif
 
-// 1 where a macro stands for 1, or for version 1.0 of an extension of RISC-V, else 0; four of them
-// in one digit.
+#define ETLMON_JOIN(a, b, c, d, e, f) ETLMON_JOIN_TOKENS(a, b, c, d, e, f)
+#define ETLMON_JOIN_TOKENS(a, b, c, d, e, f) a##b##c##d##e##f
+
+#if defined(ETLMON_STANDALONE)
+// ---- A short name, for a runtime that is pasted into a header: v0_2, or v0_2_avx2_fast. Units
+// with other vector instructions, or with -ffast-math, get another name.
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#define ETLMON_BUILD_MATH _fast
+#else
+#define ETLMON_BUILD_MATH
+#endif
+#if defined(__AVX512F__)
+#define ETLMON_BUILD_MACHINE _avx512
+#elif defined(__FMA__)
+#define ETLMON_BUILD_MACHINE _fma
+#elif defined(__AVX2__)
+#define ETLMON_BUILD_MACHINE _avx2
+#elif defined(__AVX__)
+#define ETLMON_BUILD_MACHINE _avx
+#else
+#define ETLMON_BUILD_MACHINE
+#endif
+#define ETLMON_BUILD                                                                  \
+  ETLMON_JOIN(v, ETLMON_VERSION_MAJOR, _, ETLMON_VERSION_MINOR, ETLMON_BUILD_MACHINE, \
+              ETLMON_BUILD_MATH)
+
+#else
+// ETLMON_IS is 1 for a macro that expands to 1, or to version 1.0 of a RISC-V extension, and
+// otherwise 0; ETLMON_DIGIT packs four of them into a hex digit.
 #define ETLMON_IS(macro) ETLMON_IS_VALUE(macro)
 #define ETLMON_IS_VALUE(value) ETLMON_IS_PAIR(ETLMON_IS_##value)
 #define ETLMON_IS_1 0, 1
@@ -44,10 +70,7 @@
 #define ETLMON_DIGIT_1101 d
 #define ETLMON_DIGIT_1110 e
 #define ETLMON_DIGIT_1111 f
-#define ETLMON_JOIN(a, b, c, d, e, f) ETLMON_JOIN_TOKENS(a, b, c, d, e, f)
-#define ETLMON_JOIN_TOKENS(a, b, c, d, e, f) a##b##c##d##e##f
-
-// ---- What instructions the unit may use: a level of x86-64 by its name, anything else in digits.
+// ---- Instructions that the unit may use: the name of an x86-64 level, or digits.
 #if defined(__x86_64__) || defined(__i386__)
 #define ETLMON_BUILD_DIGITS                                                     \
   ETLMON_JOIN(ETLMON_DIGIT(__SSE3__, __SSSE3__, __SSE4_1__, __SSE4_2__),        \
@@ -115,7 +138,7 @@
 #define ETLMON_BUILD_MACHINE
 #endif
 
-// ---- Who compiles, and at which speed.
+// ---- Compiler and optimisation level.
 #if defined(__clang__)
 #define ETLMON_BUILD_COMPILER ETLMON_JOIN(_clang, __clang_major__, , , , )
 #elif defined(__GNUC__)
@@ -131,7 +154,7 @@
 #define ETLMON_BUILD_SPEED
 #endif
 
-// ---- What may be assumed of floats; which versions of a kernel there are.
+// ---- Assumptions about floats; versions of the kernels.
 #define ETLMON_BUILD_ASSUMED                                                          \
   ETLMON_JOIN(ETLMON_DIGIT(__FAST_MATH__, __FINITE_MATH_ONLY__, __ASSOCIATIVE_MATH__, \
                            __RECIPROCAL_MATH__),                                      \
@@ -153,8 +176,9 @@
   ETLMON_JOIN(ETLMON_JOIN(v, ETLMON_VERSION_MAJOR, _, ETLMON_VERSION_MINOR, , ),                  \
               ETLMON_BUILD_COMPILER, ETLMON_BUILD_MACHINE, ETLMON_BUILD_SPEED, ETLMON_BUILD_MATH, \
               ETLMON_BUILD_KERNELS)
+#endif
 
-// ---- How its functions are compiled.
+// ---- Function attributes.
 #if defined(__GNUC__)
 #define ETLMON_INLINE inline __attribute__((always_inline))
 #define ETLMON_COLD __attribute__((noinline, cold))
@@ -162,8 +186,7 @@
 #define ETLMON_INLINE inline
 #define ETLMON_COLD
 #endif
-// What each step calls: where speed counts, part of the caller; where size counts, there once for
-// all callers.
+// Functions called at every step: inlined where speed counts, shared where size counts.
 #if defined(__OPTIMIZE_SIZE__)
 #define ETLMON_STEP inline
 #else

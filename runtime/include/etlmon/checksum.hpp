@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // XXH64, the 64-bit hash of the xxHash family by Yann Collet, from its public specification
-// (doc/xxhash_spec.md, 0.1.1), for bytes that come in whole stripes of 32. Takes: bytes at any
-// alignment. Gives: 64 bits. Keeps true: the same on every machine; it tells data apart that differ
-// by accident and is no defence against data made to collide.
+// (doc/xxhash_spec.md, 0.1.1), for bytes in whole stripes of 32. Takes: bytes at any alignment.
+// Gives: 64 bits. Keeps true: the result is the same on every machine. The hash detects accidental
+// changes, and does not protect against deliberate collisions.
 #pragma once
 
 #include "etlmon/bits.hpp"
@@ -40,7 +40,7 @@ ETLMON_INLINE uint64_t little_endian(const uint8_t* bytes) noexcept {
   return word;
 }
 
-/// Four lanes side by side, and what they are merged into.
+/// The four lanes, and the hash that they are merged into.
 class XxhLanes {
  public:
   constexpr explicit XxhLanes(uint64_t seed) noexcept
@@ -48,7 +48,7 @@ class XxhLanes {
         b_(seed + kXxhPrime2),
         c_(seed),
         d_(seed - kXxhPrime1) {}
-  /// A multiple of 32 bytes.
+  /// Adds a multiple of 32 bytes.
   void add(const uint8_t* bytes, size_t size) noexcept {
     for (; size >= 32; size -= 32, bytes += 32) {
       a_ = xxh_round(a_, little_endian(bytes));
@@ -68,7 +68,7 @@ class XxhLanes {
 
 }  // namespace detail
 
-/// XXH64 with seed 0 of bytes that are added a multiple of 32 at a time.
+/// XXH64 with seed 0, of bytes that are added in multiples of 32.
 class Checksum {
  public:
   void add(const uint8_t* bytes, size_t size) noexcept {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What g++ and clang offer beyond the standard, on machines that the runtime knows: statements that
-// hide a value from the optimiser without an instruction, the square root's own instruction, and
-// whether there are vectors. Gives: ETLMON_GNU; detail::opaque, in_register, keep_apart, part,
-// square_root; ETLMON_VECTORS, where vectors/ is compiled. Keeps true: the same values as without,
-// bit for bit; bits.hpp includes it, and ETLMON_PORTABLE leaves it out.
+// Extensions of g++ and clang on known machines: statements that hide a value from the optimiser
+// without an instruction, the square root instruction, and the presence of vectors. Gives:
+// ETLMON_GNU; detail::opaque, in_register, keep_apart, part, square_root; ETLMON_VECTORS, where
+// vectors/ is compiled. Keeps true: the same results, bit for bit, as without this file. bits.hpp
+// includes it unless ETLMON_PORTABLE is defined.
 #pragma once
 
 #include <stdint.h>
@@ -15,7 +15,7 @@
 #define ETLMON_VECTORS 1
 #endif
 
-// A register that floats are kept in, as an operand of asm.
+// The asm constraint of a float register.
 #if defined(__SSE__)
 #define ETLMON_FLOAT_REGISTER "x"
 #elif defined(__aarch64__)
@@ -32,7 +32,7 @@ namespace etlmon {
 inline namespace ETLMON_BUILD {
 namespace detail {
 
-/// The same value, of which the optimiser knows nothing.
+/// Returns x, hidden from the optimiser.
 ETLMON_INLINE float opaque(float x) noexcept {
   __asm__("" : "+" ETLMON_FLOAT_REGISTER(x));
   return x;
@@ -41,28 +41,28 @@ ETLMON_INLINE uint32_t opaque(uint32_t x) noexcept {
   __asm__("" : "+r"(x));
   return x;
 }
-/// A pointer to memory of which it knows nothing either.
+/// Returns x, hidden from the optimiser together with the memory that it points to.
 ETLMON_INLINE const float* opaque(const float* x) noexcept {
   __asm__("" : "+r"(x) : : "memory");
   return x;
 }
 
-/// Two floats as two that nothing is known of, not even whether they are the same: under
-/// -ffast-math x - x is 0 and x / x is 1, whatever x is.
+/// Hides two floats from the optimiser, even that they are equal: under -ffast-math x - x is 0 and
+/// x / x is 1 for every x.
 ETLMON_INLINE void part(float& x, float& y) noexcept {
   __asm__("" : "+" ETLMON_FLOAT_REGISTER(x), "+" ETLMON_FLOAT_REGISTER(y));
 }
 
-/// The same value in a register of its own, for speed: g++ jumps around a constant; a pointer then
-/// moves along by itself, which small machines do while they load, and is not computed from another
-/// one for every element.
-template <class T>
-ETLMON_INLINE T in_register(T x) noexcept {
+/// Returns x in a separate register, for speed. g++ branches around constants; and a pointer in a
+/// register is incremented, which small machines do during the load, not computed for every
+/// element.
+template <class Type>
+ETLMON_INLINE Type in_register(Type x) noexcept {
   __asm__("" : "+r"(x));
   return x;
 }
 
-/// The same, of four; where a vector holds them it would not pay.
+/// Keeps four values in separate registers, unless there are vectors.
 ETLMON_INLINE void keep_apart(uint32_t& a, uint32_t& b, uint32_t& c, uint32_t& d) noexcept {
 #if !defined(ETLMON_VECTORS)
   __asm__("" : "+r"(a), "+r"(b), "+r"(c), "+r"(d));
@@ -77,9 +77,9 @@ ETLMON_INLINE void keep_apart(uint32_t& a, uint32_t& b, uint32_t& c, uint32_t& d
 #endif
 #endif
 
-/// sqrt of a float that is not negative, rounded once. By the instruction on x86, where a compiler
-/// would add a call of the library's for the sake of errno, and with -ffast-math an approximation;
-/// clang does under any name but this.
+/// Returns sqrt of a float that is not negative, rounded once. On x86 by the instruction: compilers
+/// add a library call that sets errno, or with -ffast-math an approximation, which clang avoids
+/// only for this builtin.
 ETLMON_INLINE float square_root(float x) noexcept {
 #if defined(__clang__) && defined(__SSE__) && defined(__FAST_MATH__)
 #if defined(__AVX__)

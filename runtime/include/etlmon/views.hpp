@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What a user hands to Monitor::step: views of embeddings, and the test of what counts as present.
-// Takes: arrays whose size the compiler checks. Gives: Vector, Point, finite(...), present(...).
-// Keeps true: a default-constructed view is a missing sample; one with an element that is not
-// finite counts as missing, decided by bits; a view owns nothing and must not outlive what it
-// views.
+// Inputs of a monitor: views of embeddings, and whether they are present. Takes: arrays whose size
+// the compiler checks. Gives: Vector, Point, finite(...), present(...). Keeps true: a
+// default-constructed view is a missing sample; so is one with an element that is not finite, as
+// decided by its bits; a view owns nothing and must not outlive its array.
 #pragma once
 
 #include "etlmon/scalars.hpp"
@@ -16,85 +15,84 @@ inline namespace ETLMON_BUILD {
 
 namespace detail {
 
-template <class A>
-const A& some() noexcept;
+template <class Array>
+const Array& some() noexcept;
 
-// How many elements a container type always has: std::array by the size() of a constant, std::span
-// by its extent.
-template <class A, size_t N = A{}.size()>
+// The number of elements of a container type: size() of a constant std::array, extent of std::span.
+template <class Array, size_t Size = Array{}.size()>
 constexpr size_t fixed_size(int, int) noexcept {
-  return N;
+  return Size;
 }
-template <class A, size_t N = A::extent>
+template <class Array, size_t Size = Array::extent>
 constexpr size_t fixed_size(int, long) noexcept {
-  return N;
+  return Size;
 }
 
-// Whether it is D.
-template <class A, size_t D, typename If<fixed_size<A>(0, 0) == D>::type = 0>
+// Whether it is Dim.
+template <class Array, size_t Dim, typename If<fixed_size<Array>(0, 0) == Dim>::type = 0>
 constexpr bool holds(int) noexcept {
   return true;
 }
-template <class A, size_t D>
+template <class Array, size_t Dim>
 constexpr bool holds(long) noexcept {
   return false;
 }
 
-template <class T>
-void reads(const T*) noexcept;
-template <class T, class A>
-using ReadsAs = decltype(reads<T>(some<A>().data()));
+template <class Element>
+void reads(const Element*) noexcept;
+template <class Element, class Array>
+using ReadsAs = decltype(reads<Element>(some<Array>().data()));
 
 }  // namespace detail
 
-/// A view of D contiguous elements: float, uint16_t (the IEEE bits of a float16) or int8_t.
-/// Default: missing.
-template <class T, size_t D>
+/// A view of Dim contiguous elements: float, uint16_t (IEEE bits of a float16) or int8_t. Missing
+/// by default.
+template <class Element, size_t Dim>
 class Vector {
  public:
   constexpr Vector() noexcept = default;
-  constexpr Vector(const T (&elements)[D]) noexcept : data_(elements) {}
+  constexpr Vector(const Element (&elements)[Dim]) noexcept : data_(elements) {}
 
-  /// std::array<T, D>, std::span<T, D> and their like: data() and a size known to the compiler,
-  /// which must be D.
-  template <class A, class = detail::ReadsAs<T, A>,
-            typename detail::If<detail::holds<A, D>(0)>::type = 0>
-  constexpr Vector(const A& elements) noexcept : data_(elements.data()) {}
-  // What compilers quote where a std::vector, or another number of elements, is given.
-  // clang-format off
-  template <class A, class = detail::ReadsAs<T, A>,
-            typename detail::If<!detail::holds<A, D>(0)>::type = 0>
-  Vector(const A&) = delete;  // not D elements by its type: Vector::unchecked(x.data()) if it has D
-  template <size_t N, typename detail::If<N != D>::type = 0>
-  Vector(const T (&)[N]) = delete;  // not D elements
+  /// Views std::array<Element, Dim>, std::span<Element, Dim> and similar types, with data() and a
+  /// size known at compile time, which must be Dim.
+  template <class Array, class = detail::ReadsAs<Element, Array>,
+            typename detail::If<detail::holds<Array, Dim>(0)>::type = 0>
+  constexpr Vector(const Array& elements) noexcept : data_(elements.data()) {}
+  // Compilers quote these lines for a std::vector or a wrong number of elements. clang-format off
+  template <class Array, class = detail::ReadsAs<Element, Array>,
+            typename detail::If<!detail::holds<Array, Dim>(0)>::type = 0>
+  Vector(const Array&) = delete;  // its type does not have Dim elements:
+                                  // Vector::unchecked(x.data())
+  template <size_t Size, typename detail::If<Size != Dim>::type = 0>
+  Vector(const Element (&)[Size]) = delete;  // not Dim elements
   // clang-format on
-  /// A temporary array would be gone before step() reads it.
-  template <class A, class = detail::ReadsAs<T, A>, class = decltype(A{}.size())>
-  Vector(const A&&) = delete;
+  /// A temporary array would be destroyed before step() reads it.
+  template <class Array, class = detail::ReadsAs<Element, Array>, class = decltype(Array{}.size())>
+  Vector(const Array&&) = delete;
 
-  /// D elements at `elements`, which nothing checks; nullptr is a missing sample.
-  static constexpr Vector unchecked(const T* elements) noexcept {
+  /// Views Dim elements at `elements`, unchecked; nullptr is a missing sample.
+  static constexpr Vector unchecked(const Element* elements) noexcept {
     Vector view;
     view.data_ = elements;
     return view;
   }
 
   constexpr bool present() const noexcept { return data_ != nullptr; }
-  constexpr const T* data() const noexcept { return data_; }
+  constexpr const Element* data() const noexcept { return data_; }
 
  private:
-  const T* data_ = nullptr;
+  const Element* data_ = nullptr;
 };
 
-/// D scalars as an embedding; each kMissing where it is missing.
-template <size_t D>
+/// An embedding of Dim scalars, each kMissing if it is missing.
+template <size_t Dim>
 struct Point {
-  float elements[D];
+  float elements[Dim];
 };
 
 namespace detail {
-/// Elements of which the compiler does not know where they come from. Where NaN is assumed away it
-/// must not conclude from a choice between a number and a NaN that it was the number.
+/// Hides the origin of elements from the compiler. Under -ffinite-math-only it would take a choice
+/// between a number and a NaN for the number.
 ETLMON_INLINE const float* unforeseen(const float* elements) noexcept {
 #if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
   elements = opaque(elements);
@@ -103,7 +101,7 @@ ETLMON_INLINE const float* unforeseen(const float* elements) noexcept {
 }
 }  // namespace detail
 
-/// Every one of n floats is finite.
+/// Returns whether all n floats are finite.
 ETLMON_INLINE bool finite(const float* x, size_t n) noexcept {
   size_t i = 0;
 #if defined(ETLMON_VECTORS)
@@ -115,11 +113,11 @@ ETLMON_INLINE bool finite(const float* x, size_t n) noexcept {
   return true;
 }
 
-/// Every one of n float16, given as their IEEE bits, is finite.
+/// Returns whether all n float16, given as IEEE bits, are finite.
 ETLMON_INLINE bool finite(const uint16_t* x, size_t n) noexcept {
   uint32_t worst = 0;
   for (size_t i = 0; i < n; ++i) {
-    // Adding one to the exponent field carries into bit 15 exactly where all its bits are set.
+    // Adding one to the exponent field carries into bit 15 if and only if all its bits are set.
     worst |= (x[i] & 0x7c00u) + 0x0400u;
   }
   return (worst & 0x8000u) == 0;
@@ -127,10 +125,10 @@ ETLMON_INLINE bool finite(const uint16_t* x, size_t n) noexcept {
 
 ETLMON_INLINE constexpr bool finite(const int8_t*, size_t) noexcept { return true; }
 
-/// The embedding is there and all of it is finite.
-template <class T, size_t D>
-ETLMON_INLINE bool present(const Vector<T, D>& x) noexcept {
-  return x.present() && finite(x.data(), D);
+/// Returns whether the embedding is present and all its elements are finite.
+template <class Element, size_t Dim>
+ETLMON_INLINE bool present(const Vector<Element, Dim>& x) noexcept {
+  return x.present() && finite(x.data(), Dim);
 }
 
 }  // namespace ETLMON_BUILD

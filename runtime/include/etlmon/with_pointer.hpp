@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The size of a class that points to numbers which lie elsewhere. Takes: the bytes of its other
-// members, which are 32-bit words. Gives: sizeof the class, on machines of any pointer size.
+// The size of a class with one pointer. Takes: the bytes of its other members, which are 32-bit
+// words. Gives: sizeof the class, for any pointer size.
 #pragma once
 
 #include <stddef.h>

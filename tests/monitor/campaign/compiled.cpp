@@ -1,4 +1,4 @@
-// The compiled half of the campaign: many monitors a class, some classes a program.
+// The compiled half of the campaign: many monitors per class, some classes per program.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr int kMonitorsPerClass = 20;
 constexpr int kClassesPerProgram = 4;
 constexpr int kCompiledTries = 150;  // each is a run of the compiler
 constexpr plan::Limits kCampaignLimits{64U << 20U, 64U << 20U, 256U << 20U};
-/// Every program is made once with each: what flags may change is not what a verdict is.
+/// Every program is built with each set of flags, which must not change verdicts.
 const std::vector<Build>& builds() {
     static const std::vector<Build> all{{"Gcc", "g++", "-O1"},
                                         {"GccFastMath", "g++", "-O2 -ffast-math"},
@@ -28,7 +28,7 @@ const std::vector<Build>& builds() {
     return all;
 }
 
-/// The spec without the monitors that are refused, each under the usual limits for itself.
+/// Returns the spec without the monitors that are refused alone under the default limits.
 std::string without_refused(const std::string& spec, check::Values values) {
     std::string kept;
     std::string monitors;
@@ -48,7 +48,7 @@ std::string without_refused(const std::string& spec, check::Values values) {
     return monitors.empty() ? "" : kept + monitors;
 }
 
-/// Every other class of robustness says why its verdicts are what they are.
+/// Every other class of robustness uses --explain.
 check::Values explaining(check::Values values, std::uint64_t n) {
     return values == check::Values::robustness && n / 2 % 2 == 0 ? check::Values::sourced : values;
 }
@@ -72,7 +72,7 @@ std::optional<std::string> mismatch_of(const check::Model& model, check::Values 
     return why_mismatch(model, trace, observed, whys);
 }
 
-/// What the first instance of a program of this one class says on the trace.
+/// Returns the output of the first instance of this class on the trace.
 Trial trial_on(check::Values values, const Build& build) {
     return [values, build](const std::string& spec,
                            const reference::Trace& trace) -> std::optional<std::string> {
@@ -107,7 +107,7 @@ void compare(const GeneratedProgram& program, const std::vector<check::Values>& 
     }
 }
 
-/// One program; the number of formulas in it.
+/// Runs one program; returns the number of formulas in it.
 int try_program(const Effort& effort, std::uint64_t first, int formulas, Tally& tally) {
     GeneratedProgram program(fmt::format("campaign_{}", effort.seed));
     std::vector<check::Values> values;

@@ -1,4 +1,4 @@
-// The explaining half of the campaign: every explanation held to brute force.
+// The explaining half of the campaign: compares every explanation with brute force.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,10 +40,10 @@ Said said_by(explain::Status status, bool for_good) {
             for_good};
 }
 
-/// The graph as the reference reads formulas: bounds are those of the simplified formula.
+/// The graph as formulas of the reference: bounds are those of the simplified formula.
 reference::NormalForm form_of(const ir::Program& program) {
     using Kind = reference::Node::Kind;
-    // In the order of ir/operators.def; constants stand by `negated`.
+    // In the order of ir/operators.def; constants stand for `negated`.
     constexpr Kind kKinds[] = {Kind::constant, Kind::constant, Kind::predicate,  Kind::boolean,
                                Kind::all,      Kind::any,      Kind::eventually, Kind::always,
                                Kind::until,    Kind::release,  Kind::once,       Kind::historically,
@@ -59,7 +59,7 @@ reference::NormalForm form_of(const ir::Program& program) {
     return form;
 }
 
-/// One explanation, and the judge of it.
+/// One explanation, and its checks.
 class Judge {
 public:
     Judge(const check::Model& model, const ir::Program& program,
@@ -89,7 +89,7 @@ private:
         if (found_.status == explain::Status::unknown) return {};
         if (auto bad = samples()) return bad;
         if (auto bad = critical(reference_)) return bad;
-        // However the formula is written; but then its bounds may be looser.
+        // However the formula is written; then its bounds may be looser.
         if (!said.for_good)
             if (auto bad = critical(written_)) return bad;
         if (auto bad = chain()) return bad;
@@ -119,7 +119,7 @@ private:
         return fmt::format("critical {}, expected {}", show(found), show(expected));
     }
 
-    /// It leads from the monitor's formula to the atom.
+    /// The chain leads from the monitor's formula to the atom.
     std::optional<std::string> chain() const {
         const explain::Link& first = found_.chain.front();
         if (first.formula != model_.monitors[0].formula || first.position != position_)
@@ -150,7 +150,7 @@ private:
         return then.status != now.status || (now.for_good && !then.for_good);
     }
 
-    /// It turns the verdict, and what is a little smaller does not.
+    /// The change flips the verdict, and a slightly smaller one does not.
     std::optional<std::string> change() const {
         if (found_.change) {
             const explain::Change& change = *found_.change;
@@ -200,8 +200,8 @@ private:
         return others;
     }
 
-    /// What may turn where == or != compares: all thresholds that the expression is compared with,
-    /// what is just beside them, but for what a shift rounds, and what lies between them.
+    /// Candidates for a flip by == or !=: all thresholds of the expression, their neighbours up to
+    /// the rounding of a shift, and values between them.
     std::vector<float> points(explain::Index atom) const {
         std::set<float> thresholds;
         bool any_equality = false;
@@ -220,7 +220,7 @@ private:
         return result;
     }
 
-    /// Less a shift, robustness is rounded twice, which the reference is not: a little farther.
+    /// With a shift, robustness is rounded twice, unlike in the reference: allow a little more.
     float beyond(const explain::Change& change) const {
         if (shift() == 0 || !is_predicate(change)) return change.measured;
         const float by = 1e-6F;
@@ -231,7 +231,7 @@ private:
     bool is_predicate(const explain::Change& change) const {
         return observations_.atoms()[change.sample.atom].is_predicate;
     }
-    /// Just less than its size. Where the change is tiny, none.
+    /// Slightly less than its size; nothing for a tiny change.
     float smaller(const explain::Change& change) const {
         const float size = std::abs(change.measured - observations_.measured(change.sample));
         return std::max(0.0F, size - 0.001F);
@@ -277,10 +277,10 @@ private:
     std::uint64_t step_;
     explain::Explanation found_;
     Explained written_;    ///< the formula as written
-    Explained reference_;  ///< the formula as it is monitored
+    Explained reference_;  ///< the formula as monitored
 };
 
-/// Of the monitor at its first position, and at another one; one in three is as if it were
+/// Explains the monitor at its first position, and at another one; one in three as if it were
 /// calibrated as a whole.
 std::optional<std::string> mismatch_of(check::Model model, const reference::Trace& trace,
                                        check::Values values, std::uint64_t seed, Tally* tally) {

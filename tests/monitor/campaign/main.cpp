@@ -1,5 +1,5 @@
-// campaign [--pairs N] [--planned N] [--compiled N] [--seed S]: exit status 1 where something
-// disagrees with the reference, or more formulas are refused than may be.
+// campaign [--pairs N] [--planned N] [--compiled N] [--seed S]: the exit status is 1 if something
+// disagrees with the reference, or too many formulas are refused.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,9 +15,9 @@ namespace {
 
 using namespace etlc::tests;
 
-/// Greatest share of prefix monitors with windows to 40 that may be refused, by depth.
+/// Greatest fraction of prefix monitors with windows to 40 that may be refused, by depth.
 constexpr std::array<double, kDepths> kMayBeRefused{0.005, 0.005, 0.005, 0.05, 0.05};
-/// A share is judged from so many formulas on.
+/// A fraction is checked only from this many formulas on.
 constexpr int kEnoughForShare = 1000;
 
 void show(const Finding& finding) {
@@ -25,7 +25,7 @@ void show(const Finding& finding) {
     if (const auto model = load(finding.spec)) fmt::print("{}", to_csv(*model, finding.trace));
 }
 
-/// Whether the share that is refused is as small as it must be.
+/// Returns whether few enough formulas are refused.
 bool show_refused(const char* what, const std::array<Tally::Cell, kDepths>& row,
                   const std::array<double, kDepths>& may_be) {
     bool good = true;
@@ -57,7 +57,7 @@ int report(const Effort& effort, const Tally& tally) {
         tally.explained, tally.for_good, tally.with_samples, tally.with_change,
         tally.findings.size());
     good = good && tally.findings.empty();
-    // A spec that does not load or a class that does not compile is a failure of GoogleTest's,
+    // A spec that does not load or a class that does not compile is a failure of GoogleTest,
     // outside of any test.
     good = good && !testing::UnitTest::GetInstance()->ad_hoc_test_result().Failed();
     return good ? 0 : 1;

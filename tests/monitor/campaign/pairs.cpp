@@ -25,7 +25,7 @@ Trial trial_on(check::Values values) {
     };
 }
 
-/// Whether the formula is planned; what is refused is counted.
+/// Returns whether the formula is planned; counts refusals.
 bool planned(const Effort& effort, const Subject& subject, const PlanRunner& runner, Tally& tally) {
     Tally::Cell& cell = tally.cell(subject);
     ++cell.formulas;
@@ -42,7 +42,7 @@ void try_formula(const Effort& effort, const Subject& subject, Tally& tally) {
     if (!planned(effort, subject, runner, tally)) return;
     for (int t = 0; t <= kTracesPerFormula; ++t) {
         reference::Trace trace = subject_trace(*model, subject, t, effort.longest);
-        // Bounds hold over every continuation: the last trace goes on from a prefix of the first.
+        // Bounds hold over every continuation: the last trace continues a prefix of the first.
         if (t == kTracesPerFormula)
             trace = continuation(*model, subject_trace(*model, subject, 0, effort.longest),
                                  subject.seed);

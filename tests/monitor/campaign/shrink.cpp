@@ -18,7 +18,7 @@ using check::Index;
 using check::kUnbounded;
 using Kind = Formula::Kind;
 
-/// A formula as a tree of its own, so that parts can be exchanged.
+/// A formula as a separate tree, whose parts can be exchanged.
 struct Tree {
     Kind kind = Kind::constant_true;
     std::string atom;
@@ -93,7 +93,7 @@ std::string text(const Tree& tree) {
     return result;
 }
 
-/// Every tree that is one step smaller: a part instead of the whole, a shorter window.
+/// Returns every tree that is one step smaller: a part in place of the whole, a shorter window.
 std::vector<Tree> smaller(const Tree& tree) {
     std::vector<Tree> result = tree.operands;
     for (std::size_t i = 0; i < tree.operands.size(); ++i) {
@@ -126,7 +126,7 @@ std::vector<Tree> smaller(const Tree& tree) {
     return result;
 }
 
-/// The declarations of a spec, a line each, without lets and monitors.
+/// The declarations of a spec, one per line, without lets and monitors.
 std::string declarations(const std::string& spec) {
     std::istringstream lines(spec);
     std::string result;
@@ -148,7 +148,7 @@ bool mentions(const std::string& text, const std::string& name) {
     return false;
 }
 
-/// Without the predicates and targets that nothing after them names. Inputs stay: the trace has
+/// Removes predicates and targets that nothing after them names. Inputs stay, because the trace has
 /// their columns.
 std::string used_only(const std::string& spec) {
     std::vector<std::string> lines;

@@ -1,7 +1,7 @@
-// A mismatch made small.
-// Takes: a spec and trace on which something fails, and the test that finds that out. Gives: a spec
-// of one monitor and a trace on which it still fails, where no single smaller step does. Keeps
-// true: what it gives was seen to fail.
+// Minimises a mismatch.
+// Takes: a spec and trace with a failure, and the test that detects it. Gives: a spec of one
+// monitor and a trace that still fails, and that no single step makes smaller. Keeps true: the
+// result was seen to fail.
 #pragma once
 
 #include <functional>
@@ -12,18 +12,18 @@
 
 namespace etlc::tests {
 
-/// A spec, a trace and what is wrong there.
+/// A spec, a trace and the failure.
 struct Finding {
     std::string spec;
     reference::Trace trace;
     std::string mismatch;
 };
 
-/// What is wrong with this spec on this trace; nothing where all is well or the spec is refused.
+/// Returns the failure of this spec on this trace; empty if there is none or the spec is refused.
 using Trial = std::function<std::optional<std::string>(const std::string& spec,
                                                        const reference::Trace& trace)>;
 
-/// `tries`: how often the trial may be run.
+/// `tries`: the limit on runs of the trial.
 Finding shrink(const Finding& finding, const Trial& trial, int tries);
 
 }  // namespace etlc::tests

@@ -24,7 +24,7 @@ Subject subject(std::uint64_t campaign, std::uint64_t n, int monitors) {
 reference::Trace subject_trace(const check::Model& model, const Subject& subject, int t,
                                std::size_t longest) {
     Random random(subject.seed * 31 + static_cast<std::uint64_t>(t));
-    // Most are short: brute force over 200 steps is 1000 times that over 20.
+    // Most traces are short: brute force over 200 steps costs 1000 times that over 20.
     const double share = random.uniform();
     TraceShape shape;
     shape.steps = 1 + static_cast<std::size_t>(

@@ -34,7 +34,7 @@ Observations observations_of(const check::Model& model, const reference::Trace& 
     return result;
 }
 
-/// What why_NAME() is to say; nothing where there is no sample.
+/// Returns the expected why_NAME(); nothing if there is no sample.
 std::optional<Why> expected(const Observations& observations, const Explanation& explanation) {
     if (!explanation.critical) return {};
     const explain::Sample& sample = *explanation.critical;
@@ -66,8 +66,8 @@ bool same(float a, float b) {
     return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-/// Robustness is exact, so the distance is the one measured but for the rounding of what was
-/// subtracted; of a yes or no, and where it is infinite, it is not known.
+/// Robustness is exact, so the distance equals the measured one up to the rounding of the
+/// subtraction; it is unknown for bools and infinities.
 bool same_distance(const Why& found, const Why& expected) {
     const float a = found.distance, b = expected.distance;
     if (same(a, b)) return true;

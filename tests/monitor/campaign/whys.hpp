@@ -1,4 +1,4 @@
-// What classes made with --explain say of their verdicts, held to `etlc explain`.
+// Compares why_NAME() of classes made with --explain with `etlc explain`.
 #pragma once
 
 #include <optional>
@@ -11,13 +11,13 @@
 namespace etlc::tests {
 
 struct WhyTally {
-    int asked = 0;    ///< verdicts whose sample was compared
-    int rounded = 0;  ///< of these: their distance is not the one measured, to the bit
+    int asked = 0;    ///< verdicts with a compared sample
+    int rounded = 0;  ///< of these, distances that differ from the measured one in some bit
 };
 
-/// The first why_NAME() that is not the critical sample of its verdict, as text. Verdicts that the
-/// class finds to be final before their definition does are left out: these have bounds of their
-/// own.
+/// Returns the first why_NAME() that is not the critical sample of its verdict, as text. Skips
+/// verdicts that the class recognises as final earlier than the definition, because these have
+/// different bounds.
 std::optional<std::string> why_mismatch(const check::Model& model, const reference::Trace& trace,
                                         const Observed& observed, WhyTally& tally);
 

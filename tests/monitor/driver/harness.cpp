@@ -88,7 +88,7 @@ void operator delete[](void* block) noexcept { free(block); }
 void operator delete(void* block, size_t) noexcept { free(block); }
 void operator delete[](void* block, size_t) noexcept { free(block); }
 
-#ifdef HARNESS_COUNTS_MALLOC  // not beside AddressSanitizer, which replaces these itself
+#ifdef HARNESS_COUNTS_MALLOC  // not with AddressSanitizer, which replaces these itself
 extern "C" {
 void* __libc_malloc(size_t size);
 void* __libc_calloc(size_t number, size_t size);

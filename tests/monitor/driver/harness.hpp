@@ -1,14 +1,14 @@
-// Steps generated monitors on traces from standard input and writes what they say to standard
-// output. Takes: one request after the other (see below), binary, in this machine's byte order.
-// Gives: the runs. Keeps true: it is C++17 without exceptions, RTTI or library containers, so that
-// it compiles as firmware would; it compares no floats.
+// Steps generated monitors on traces from standard input and writes their verdicts to standard
+// output. Takes: a sequence of requests (see below), binary, in this machine's byte order. Gives:
+// the runs. Keeps true: it is C++17 without exceptions, RTTI or library containers, so it compiles
+// like firmware; it compares no floats.
 //
-// Request: u32 spec, u32 finish calls, then two traces, each u32 steps, u32 bytes and, a step, its
-// labels (per adaptive predicate u8 number, then distances and u8 truths) and its samples (per
-// input u8 present and, where present, the elements). Answer: the first trace, the second, and the
-// second once more. The first two run in turns on two instances of the class; the third runs on the
-// first instance after reset(). After the last request: u64, how often memory was asked for while a
-// monitor was constructed, stepped, finished or reset.
+// Request: u32 spec, u32 finish calls, then two traces, each u32 steps, u32 bytes and, per step,
+// its labels (per adaptive predicate u8 number, then distances and u8 truths) and its samples (per
+// input u8 present and, if present, the elements). Answer: the first trace, the second, and the
+// second once more. The first two alternate on two instances of the class; the third runs on the
+// first instance after reset(). After the last request: u64, the number of allocations during
+// construction, steps, finish and reset.
 #pragma once
 
 #include <stddef.h>
@@ -22,9 +22,9 @@
 
 namespace harness {
 
-extern bool watching;         // memory asked for now is asked for by a monitor
-extern uint64_t allocations;  // so often it was
-extern bool misbehave;        // allocate while being watched: shows that the counting works
+extern bool watching;         // whether allocations come from a monitor
+extern uint64_t allocations;  // the number of allocations
+extern bool misbehave;        // allocate while watched: shows that the counting works
 
 void allocate_once();
 
@@ -38,7 +38,7 @@ struct Watch {
   Watch& operator=(const Watch&) = delete;
 };
 
-/// Reads `size` bytes; a request that ends early ends the program with status 3.
+/// Reads `size` bytes; a truncated request ends the program with status 3.
 void read_bytes(void* to, size_t size);
 void write_bytes(const void* from, size_t size);
 
@@ -65,7 +65,7 @@ inline void write_verdict(const etlmon::Verdict& verdict) {
   write(verdict.upper);
 }
 
-/// What a verdict without numbers says about them: -inf is false and +inf true.
+/// The numbers of a verdict without numbers: -inf is false and +inf true.
 inline void write_verdict(const etlmon::BooleanVerdict& verdict) {
   etlmon::Verdict numbers;
   numbers.status = verdict.status;
@@ -77,7 +77,7 @@ inline void write_verdict(const etlmon::BooleanVerdict& verdict) {
   write_verdict(numbers);
 }
 
-/// Of a class that explains: whether there is a sample, then its name and the rest.
+/// For a class with --explain: whether there is a sample, then its name and the rest.
 inline void write_why(const etlmon::Sample& sample) {
   const bool exists = static_cast<bool>(sample);
   write(static_cast<uint8_t>(exists));
@@ -92,8 +92,8 @@ inline void write_why(const etlmon::Sample& sample) {
   write(sample.row);
 }
 
-// Where the class has no such input or predicate, because no monitor depends on it, the overloads
-// for `long` are taken. Each is instantiated for the members of one spec by the macros below.
+// If the class lacks an input or predicate, because no monitor depends on it, the overloads for
+// `long` are chosen. The macros below instantiate each for the members of one spec.
 #define HARNESS_INPUT(name)                                                             \
   struct name##_input {                                                                 \
     template <class Inputs, class Value>                                                \
@@ -155,8 +155,8 @@ inline void write_why(const etlmon::Sample& sample) {
     static void restart(Monitor&, long) {}                                           \
   }
 
-/// Reads one sample into `element` or `elements`, which a view may keep pointing at; leaves a
-/// missing input as it is.
+/// Reads one sample into `element` or `elements`, which a view may keep pointing to; leaves a
+/// missing input unset.
 template <class Member, class Inputs, class T>
 void feed_scalar(Inputs& in, T (&element)[1]) {
   if (read<uint8_t>() == 0) return;
@@ -205,7 +205,7 @@ void take_labels(Monitor& monitor) {
   }
 }
 
-/// A trace as it came in, and what a monitor says on it, kept until it is its turn to be written.
+/// A trace, and the monitor's output for it, kept until it can be written.
 constexpr size_t kTraceBytes = size_t{1} << 18;
 constexpr size_t kAnswerBytes = size_t{1} << 22;
 
@@ -216,14 +216,13 @@ struct Tape {
   size_t position;
 };
 
-/// While set, read takes from `source` and write appends to `sink`, in place of the standard
-/// streams.
+/// If set, read takes from `source` and write appends to `sink`, in place of the standard streams.
 extern Tape* source;
 extern Tape* sink;
 
 Tape& tape(int number);  // 0, 1: the traces; 2, 3: the answers
 
-/// What a generated file says about one spec: Spec::Monitor, Spec::Inputs, Spec::Buffers,
+/// A generated file defines for each spec: Spec::Monitor, Spec::Inputs, Spec::Buffers,
 /// Spec::labels, Spec::restart, Spec::restart_before, Spec::feed, Spec::verdicts, Spec::whys,
 /// Spec::telemetry, Spec::finish.
 template <class Spec>
@@ -234,7 +233,7 @@ class Session {
     for (int n = 0; n < 2; ++n) load(tape(n), steps_[n]);
     static typename Spec::Monitor first;
     static typename Spec::Monitor second;
-    Spec::restart(first);  // they are those of the requests before
+    Spec::restart(first);  // those of earlier requests
     Spec::restart(second);
     reset(first);
     reset(second);
@@ -311,7 +310,7 @@ template <class Spec>
 uint32_t Session<Spec>::steps_[2];
 
 using Answer = void (*)();
-/// Answers requests until the input ends; gives the status to exit with.
+/// Answers requests until the input ends; returns the exit status.
 int serve(const Answer* specs, size_t count, int argc);
 
 }  // namespace harness

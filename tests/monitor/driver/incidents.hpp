@@ -1,7 +1,7 @@
-// What a flight recorder holds after two episodes.
-// Takes: a request of harness.hpp. Gives, in place of its answer: how many incidents are complete
-// and how many were lost after each trace, finished and reset, then of each incident its size and
-// its bytes. What was kept before the request is forgotten.
+// Reads a flight recorder after two episodes.
+// Takes: a request of harness.hpp. Gives, in place of its answer: the numbers of complete and lost
+// incidents after each trace, finished and reset, then the size and bytes of each incident.
+// Incidents from before the request are forgotten.
 #pragma once
 
 #include "harness.hpp"
@@ -13,7 +13,7 @@ class Incidents {
  public:
   static void answer() {
     static typename Spec::Monitor monitor;
-    Spec::restart(monitor);  // adaptive thresholds are those of the request before
+    Spec::restart(monitor);  // adaptive thresholds keep the values of the previous request
     monitor.forget_incidents();
     const uint32_t calls = read<uint32_t>();
     for (int trace = 0; trace < 2; ++trace) {

@@ -1,7 +1,6 @@
-// Counts the instructions of single steps under callgrind, over signals that are hard on windows
-// and machines. Takes: a generated class over inputs x and y. Gives: a dump "NAME OPERATIONS" for
-// each step looked at, and what does not go through it on standard output: the bytes stated and the
-// bytes taken.
+// Counts the instructions of single steps under callgrind, over worst-case signals for windows and
+// machines. Takes: a generated class over inputs x and y. Gives: a callgrind dump "NAME OPERATIONS"
+// for each measured step, and on standard output the stated and the actual bytes.
 #pragma once
 
 #include <stdint.h>
@@ -10,7 +9,7 @@
 
 namespace worst_step {
 
-/// Five signals, 700 steps each: rising, falling, a saw, noise, noise with gaps.
+/// Five signals of 700 steps each: rising, falling, a saw, noise, noise with gaps.
 inline float signal(uint32_t step, uint32_t shift) {
   const uint32_t at = step % 700;
   const uint32_t noise = (step + 1 + shift * 977) * 2654435761u;
@@ -28,7 +27,7 @@ inline float signal(uint32_t step, uint32_t shift) {
   }
 }
 
-/// Every step of the first 3500, and those around the ends of the blocks of a window of 100 001.
+/// Every step of the first 3500, and those around the block boundaries of a window of 100 001.
 inline bool looked_at(uint32_t step) {
   return step < 3500 ? step % 7 < 2 || (step > 40 && step < 220) : (step + 4) % 50000 < 8;
 }

@@ -1,4 +1,4 @@
-// What retarget_test.sh says of a retargetable class, on random traces.
+// Checks a retargetable class for retarget_test.sh, on random traces.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -37,7 +37,7 @@ double wide(float x) {
     return static_cast<double>(x);
 }
 
-/// The samples of a step, some of them missing; near the targets, so that predicates turn.
+/// Makes the samples of a step, some of them missing; near the targets, so that predicates change.
 struct Sample {
     float z[32], w[7], v[33], x, y, charge;
     bool has_z, has_w, has_v, open, has_called, called;
@@ -73,7 +73,7 @@ public:
         fill(now_.v, 33, scale_[2]);
         now_.x = scale_[0] * normal(random_);
         now_.y = there() ? normal(random_) : etlmon::kMissing;
-        now_.charge = std::min(std::abs(normal(random_)), 1.875F);  // never out of its range
+        now_.charge = std::min(std::abs(normal(random_)), 1.875F);  // never out of range
         now_.has_z = there();
         now_.has_w = there();
         now_.has_v = there();
@@ -106,8 +106,8 @@ const Params& parameters(unsigned which) {
     return kAll[which];
 }
 
-/// The same numbers, in a class that has them as constants: what it measures is the same to the
-/// bit, and what it says for good the retargetable one says no sooner.
+/// The same numbers as constants of a class give the same measurements to the bit, and the
+/// retargetable class is never final earlier.
 template <class Plain, class PlainInputs>
 void compare_with_plain(unsigned which) {
     for (unsigned seed = 0; seed < 60; ++seed) {
@@ -180,8 +180,8 @@ void require_same(const A& a, const B& b, const char* what) {
     }
 }
 
-/// A kept past: each step counts as it was measured then, and nothing is said for good that other
-/// parameters take back.
+/// A kept past: each step counts as measured then, and no final verdict is taken back under other
+/// parameters.
 void swap_and_keep(unsigned seed) {
     Trace trace(seed, seed % 3 == 0 ? 0 : 0.1);
     Monitor monitor(parameters(trace.one_of(3)));
@@ -201,7 +201,7 @@ void swap_and_keep(unsigned seed) {
         const Monitor::Atoms now = monitor.measure(sample.as<docking::Inputs>());
         const auto verdicts = monitor.judge(now);
         require_same(verdicts, twin.step(as_scalars(now, sample)), "a kept past");
-        for (unsigned m = 0; m < 8; ++m) {  // those that never begin again by themselves
+        for (unsigned m = 0; m < 8; ++m) {  // monitors that never restart by themselves
             const etlmon::Verdict& old = named(before).entries[m].verdict;
             const etlmon::Verdict& next = named(verdicts).entries[m].verdict;
             if (old.final())
@@ -215,7 +215,7 @@ void swap_and_keep(unsigned seed) {
         require_same(monitor.finish(), twin.finish(), "a kept past, at its end");
 }
 
-/// A forgotten past is a new monitor.
+/// With a forgotten past it equals a new monitor.
 void swap_and_forget(unsigned seed) {
     Trace trace(seed, 0.05);
     Monitor monitor(parameters(0));
@@ -230,8 +230,8 @@ void swap_and_forget(unsigned seed) {
     }
 }
 
-/// Every bit that is turned, every length and every place but the right one is refused, and the
-/// monitor goes on as if nothing had been asked.
+/// Every flipped bit, and every wrong length or address, is refused, and the monitor continues
+/// unchanged.
 void refuse() {
     constexpr std::size_t kSize = Params::kSize;
     static_assert(kSize == sizeof first_bytes, "the class states its bytes");
@@ -272,7 +272,7 @@ void refuse() {
     expect(place + 4, kSize, ParamsState::misaligned);
     expect(longer_bytes, sizeof longer_bytes, ParamsState::wrong_shape);
 
-    // Numbers that cannot be: with a checksum that fits.
+    // Invalid numbers, with a matching checksum.
     const auto with = [&](std::size_t at, float number) {
         std::memcpy(place, second_bytes, kSize);
         std::memcpy(place + 4 * at, &number, sizeof number);
@@ -305,7 +305,7 @@ void refuse() {
     std::free(place);
 }
 
-/// Until it has parameters everything is unknown; from then on it is about the steps to come.
+/// Before it has parameters everything is unknown; from then on it judges later steps.
 void begin_without() {
     Trace trace(1, 0);
     Monitor monitor;
@@ -324,7 +324,7 @@ void begin_without() {
             "what parameters were made from");
 }
 
-/// Counts are those of two monitors that are stepped side by side.
+/// The counts equal those of two monitors stepped side by side.
 void try_out(unsigned seed) {
     Trace trace(seed, 0.05);
     docking::Shadow shadow{Monitor(parameters(0))};

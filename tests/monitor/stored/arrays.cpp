@@ -1,5 +1,5 @@
-// Writes target sets as .npy: rows that come in clusters, some of them twice, so that there are
-// ties. Usage: arrays FILE ROWS ELEMENTS [SEED]
+// Writes target sets as .npy: rows in clusters, some of them twice, so that there are ties. Usage:
+// arrays FILE ROWS ELEMENTS [SEED]
 #include <cstdio>
 #include <cstdlib>
 #include <random>

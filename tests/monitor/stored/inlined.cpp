@@ -1,4 +1,4 @@
-// The class whose target sets are spelled out: compiled once, beside every build of the other one.
+// The class with its target sets in the header: compiled once, beside every build of the other one.
 #include "inlined.hpp"
 
 #include "run.hpp"

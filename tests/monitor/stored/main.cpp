@@ -1,6 +1,6 @@
-// One spec compiled twice, its target sets spelled out and in a file: the same bits from both, on
-// embeddings that walk, jump, stand still, touch rows, leave the range of float32, or are not
-// there. Usage: main STORED.targets.bin
+// One spec compiled twice, with its target sets in the header and in a file: both give the same
+// bits, on embeddings that walk, jump, stand still, touch rows, leave the range of float32, or are
+// missing. Usage: main STORED.targets.bin
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -24,7 +24,7 @@ void say(bool right, const char* what) {
     std::exit(1);
 }
 
-/// Embeddings of one dimension, in the ways that a search over targets could get wrong.
+/// Embeddings of one dimension that could break a search over targets.
 std::vector<Sample> trace(std::uint32_t width, unsigned seed, const std::vector<float>& rows) {
     std::mt19937 random(seed);
     std::normal_distribution<float> normal;
@@ -58,7 +58,7 @@ std::vector<Sample> trace(std::uint32_t width, unsigned seed, const std::vector<
     return steps;
 }
 
-/// The rows of a .npy file that arrays.cpp wrote.
+/// Reads the rows of a .npy file written by arrays.cpp.
 std::vector<float> rows_of(const char* path) {
     std::ifstream file(path, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -68,7 +68,7 @@ std::vector<float> rows_of(const char* path) {
     return rows;
 }
 
-/// A monitor without its targets knows nothing of what they decide.
+/// A monitor without its targets has unknown verdicts for them.
 void expect_unknown(stored::Monitor&& monitor, const char* what) {
     say(!monitor.ready(), what);
     const std::vector<float> ones(384, 1.0F);

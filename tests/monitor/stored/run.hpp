@@ -1,4 +1,4 @@
-// What a monitor says on three traces, as words to compare.
+// The output of a monitor on three traces, as words to compare.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ inline void keep(std::vector<std::uint32_t>& words, const etlmon::BooleanVerdict
     keep_answers(words, v);
 }
 
-/// Every verdict, distance and nearest row of every step; after half of them a new episode.
+/// Every verdict, distance and nearest row of every step; a new episode begins halfway.
 template <class Inputs, class Monitor>
 std::vector<std::uint32_t> run(Monitor& monitor, const std::vector<Sample>& wide,
                                const std::vector<Sample>& middle,
@@ -67,7 +67,7 @@ std::vector<std::uint32_t> run(Monitor& monitor, const std::vector<Sample>& wide
 
 }  // namespace trial
 
-/// Of the class whose target sets are spelled out.
+/// For the class with its target sets in the header.
 std::vector<std::uint32_t> run_inlined(const std::vector<trial::Sample>& wide,
                                        const std::vector<trial::Sample>& middle,
                                        const std::vector<trial::Sample>& narrow);

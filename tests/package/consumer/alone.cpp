@@ -1,4 +1,4 @@
-// One monitor whose header holds the runtime that it needs, and a flight recorder.
+// A monitor whose header contains its runtime, with a flight recorder.
 #include "guard.hpp"
 
 int main() {

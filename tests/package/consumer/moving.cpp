@@ -1,4 +1,4 @@
-// A monitor whose numbers lie in a file.
+// A monitor with its numbers in a file.
 #include <cstdio>
 
 #include "reach.hpp"

@@ -1,4 +1,4 @@
-// A monitor whose targets lie in a file.
+// A monitor with its targets in a file.
 #include <cstdio>
 
 #include "etlmon/hosted/mapped_targets.hpp"

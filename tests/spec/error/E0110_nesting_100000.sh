@@ -1,4 +1,4 @@
-# Nesting 100 000 deep, in every way that the grammar allows, is refused at once.
+# Nesting 100 000 deep, in every way that the grammar allows, is refused quickly.
 repeat() { printf "%.0s$1" $(seq 100000); }
 spec() { printf 'spec t;\ninput x : f32;\npredicate p = x > 0;\n%s\n' "$1"; }
 spec "monitor m = $(repeat '(')p$(repeat ')');" > brackets.etl

@@ -1,5 +1,5 @@
-# A spec of 10 MB is refused by its size, whatever is in it; so is one of
-# a byte too many. One below the limit is read.
+# A spec of 10 MB is refused by its size, whatever its content; so is one that is a byte too long.
+# One below the limit is read.
 head='spec t;\ninput x : f32;\nlet l0 = x > 0;\n'
 { printf "$head"; head -c 10000000 /dev/zero | tr '\0' ' '; } > blank.etl
 { printf "$head"; yes 'predicate p = x > 0;' | head -c 10000000; } > declarations.etl

@@ -1,4 +1,5 @@
-# --set of what is no constant, or of another kind; and values that do not do where they are used.
+# --set of a name that is not a constant, or with another kind of value; and values that are invalid
+# where the constant is used.
 cat > t.etl <<'END'
 spec t;
 const limit = 0.5;

@@ -1,4 +1,4 @@
-# --lets where a let has no value at its own step: one is left out, all are an error.
+# --lets if lets have no value at their own step: one is omitted, all are an error.
 cat >some.etl <<'END'
 spec some;
 input x : f32;

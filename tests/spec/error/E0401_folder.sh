@@ -1,4 +1,4 @@
-# A folder that is named like an array.
+# A folder with the name of an array.
 mkdir goal.npy goal.npz
 cat > t.etl <<'END'
 spec t;

@@ -1,5 +1,5 @@
-# A file that is as large as its header says, and larger than any target set should be: 128 MiB and
-# one byte of int8. The header is padded to 128 bytes by hand; the data are a hole in the file.
+# A file that is as large as its header says, and larger than any target set may be: 128 MiB and one
+# byte of int8. The header is padded to 128 bytes by hand; the data are a hole in the file.
 header="{'descr': '|i1', 'fortran_order': False, 'shape': (134217729, 1), }"
 { printf '\223NUMPY\001\000v\000%-117s\n' "$header"; } > large.npy
 truncate -s $((128 + 134217729)) large.npy

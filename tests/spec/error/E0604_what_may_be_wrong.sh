@@ -1,4 +1,4 @@
-# One fault at a time: a key missing, unknown, twice; values of another type or out of range.
+# One fault at a time: a missing, unknown or repeated key; values of another type or out of range.
 cat > t.etl <<'END'
 spec t;
 input z : f32[1];

@@ -1,4 +1,4 @@
-# A number that was changed by hand does not follow from the others, whichever it is.
+# A number that was changed by hand contradicts the others, whichever number it is.
 cat > t.etl <<'END'
 spec t;
 input x, px : f32;

@@ -1,4 +1,4 @@
-# What `etlc fit` has not made yet: an error, of which --check makes a note.
+# Results that `etlc fit` has not made yet: an error, but a note with --check.
 cat > t.etl <<'END'
 spec t;
 input z : f32[2];

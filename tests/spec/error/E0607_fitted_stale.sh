@@ -1,4 +1,4 @@
-# Numbers that were fitted for another method, point, truth or shape than the spec now says.
+# Numbers fitted for another method, point, truth or shape than the spec now has.
 cp "$SPECS/../ok/projections.etl" "$SPECS/../ok/frames.csv" .
 changed() {
     sed "$1" projections.etl > t.etl

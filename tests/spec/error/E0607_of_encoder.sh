@@ -1,4 +1,4 @@
-# What was fitted to the embeddings of a model that is not the spec's any more.
+# Fits to embeddings of another model than the spec now has.
 . "$SPECS/../encoding.bash"
 sed -i '/^target/s/$/\ntarget mean = fitted(mean, of = z, where = true);/; s/z, bay/z, mean/' t.etl
 echo > ep.mp4

@@ -1,4 +1,4 @@
-# Thresholds and a target that are not there yet are no errors of --check, unlike all else.
+# With --check, missing thresholds and a missing target are not errors; everything else is.
 cat > t.etl <<'END'
 spec t;
 input z : f32[1];
@@ -21,7 +21,7 @@ echo "exit status $?"
 "$ETLC" t.etl -o t.hpp
 mkdir goal.npy
 "$ETLC" t.etl --check
-# A key that its file has not yet got.
+# A key that its file does not have yet.
 cp "$SPECS/E0408_two.npz" two.npz
 sed 's/load("goal.npy")/load("two.npz", "goal_c")/' t.etl > u.etl
 "$ETLC" u.etl --check

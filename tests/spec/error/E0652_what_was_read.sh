@@ -1,4 +1,5 @@
-# A shift whose monitor counts missing samples otherwise now; a threshold whose labels were arrays.
+# A shift whose monitor now counts missing samples differently; a threshold whose labels were
+# arrays.
 cat > t.etl <<'END'
 spec t;
 input x, y : f32;

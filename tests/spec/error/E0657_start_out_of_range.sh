@@ -1,5 +1,5 @@
-# A threshold that would start outside [lo, hi] is refused where it is
-# fitted, and where the spec changed after that.
+# A threshold that would start outside [lo, hi] is refused during calibration, and if the spec
+# changed afterwards.
 cat > hand.etl <<'END'
 spec hand;
 input grip, force : f32;

@@ -1,4 +1,4 @@
-# A spec whose thresholds are all written out.
+# A spec with literal thresholds only.
 cat > hand.etl <<'END'
 spec hand;
 input grip : f32;

@@ -1,4 +1,4 @@
-# No demonstration shows what is to be found; or none measures it where it is true.
+# No demonstration has a positive frame; or none has a distance at one.
 cat > hand.etl <<'END'
 spec hand;
 input grip, force : f32;

@@ -1,4 +1,4 @@
-# What keeps a fold from being calibrated names the fold.
+# An error in the calibration of a fold names the fold.
 cat > t.etl <<'END'
 spec t;
 input x : f32;

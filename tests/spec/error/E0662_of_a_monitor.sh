@@ -1,5 +1,5 @@
-# The ground truth of a monitor has to do what the monitor must not miss,
-# in enough episodes, and rho has to be finite.
+# Enough episodes need a step at which the ground truth is what the monitor must not miss, and rho
+# must be finite.
 cat > hand.etl <<'END'
 spec hand;
 input grip, force : f32;

@@ -1,4 +1,4 @@
-# alpha = 0.1 takes nine demonstrations. The guarantee is never quietly given up.
+# alpha = 0.1 takes nine demonstrations. The guarantee is never silently dropped.
 cat > hand.etl <<'END'
 spec hand;
 input grip, force : f32;

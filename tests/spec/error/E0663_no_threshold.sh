@@ -1,4 +1,4 @@
-# A score at the rank that is infinite; positive frames that no < of an observed distance finds.
+# An infinite score at the rank; positive frames that < with an observed distance never finds.
 cat > hand.etl <<'END'
 spec hand;
 input grip, force : f32;

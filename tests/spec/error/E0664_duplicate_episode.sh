@@ -1,4 +1,4 @@
-# The same recording under two names, in two formats of numbers, with other labels.
+# The same recording under two names, in two number formats, with other labels.
 cat > hand.etl <<'END'
 spec hand;
 input grip, force : f32;

@@ -1,5 +1,5 @@
-# A monitor that is calibrated as a whole, by the frames of the demonstrations themselves: nothing
-# would be missed in these, and everything in others.
+# A monitor that is calibrated as a whole, with frames of the demonstrations as targets: it would
+# miss nothing in these, and everything in others.
 cat > leak.etl <<'END'
 spec leak;
 input z : f16[2];

@@ -1,4 +1,4 @@
-# Targets taken from a demonstration: as they are, and normalised under cosine.
+# Targets taken from a demonstration: unchanged, and normalised under cosine.
 cat > hand.etl <<'END'
 spec hand;
 input z : f32[2];
@@ -17,7 +17,7 @@ printf 'z[0],z[1],z_x\n3,3.5,3\n3,4.25,3\n' > c.csv
 "$ETLC" calibrate hand.etl --data a.csv b.csv c.csv
 echo "exit status $?"
 ls
-# Where a drive has to begin at a target, a reason lets it pass, and stands beside the guarantees.
+# If drives must begin at a target, a reason accepts it, and is shown beside the guarantees.
 "$ETLC" calibrate hand.etl --data a.csv b.csv c.csv \
     --allow-overlap 'each drive begins at home' | sed -n '/^guarantees/,$p'
 grep -A1 allowances hand.thresholds.json

@@ -1,4 +1,4 @@
-# Most of an episode that the predicates have seen; allowed for a reason, which the file keeps.
+# Most of an episode that the predicates have seen; accepted for a reason, which the file keeps.
 cat > dock.etl <<'END'
 spec dock;
 input z  : f32[2];

@@ -1,5 +1,4 @@
-# Predicates calibrated again, on the episodes of the
-# monitors, and the two files put together by hand.
+# Predicates calibrated again on the episodes of the monitors, and the two files merged by hand.
 cat > hand.etl <<'END'
 spec hand;
 input grip, force : f32;

@@ -1,5 +1,5 @@
-# Monitors are calibrated on other episodes than the predicates in
-# them; then all is well, until something changes.
+# Monitors are calibrated on other episodes than their predicates; this is valid until something
+# changes.
 cat > hand.etl <<'END'
 spec hand;
 input grip, force : f32;

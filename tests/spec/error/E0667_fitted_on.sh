@@ -1,5 +1,5 @@
-# What is fitted on an episode and most of it again is fitted on one of them twice. The reason for
-# which it was done stands wherever something is said of what was fitted.
+# A fit on an episode and on most of it again uses one of them twice. The reason for accepting it is
+# shown with everything about the fit.
 cat > t.etl <<'SPEC'
 spec t;
 input z : f32[2];

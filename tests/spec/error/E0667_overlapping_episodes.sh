@@ -1,5 +1,5 @@
-# An episode less its last frame, and most of one, are no other recordings; episodes that all begin
-# with the same frame are. A reason lets the former pass.
+# An episode without its last frame, and most of one, are not other recordings; episodes that all
+# begin with the same frame are. A reason accepts the former.
 cat > dock.etl <<'END'
 spec dock;
 input z  : f32[2];
@@ -27,7 +27,7 @@ echo "exit status $?"
 grep -A1 '"allowances"' dock.thresholds.json
 "$ETLC" dock.etl --emit report | grep -A 1 allow
 "$ETLC" dock.etl -o dock.hpp && grep -A 1 allow dock.hpp
-# Equal ones do not pass; nor does a reason that is none.
+# Equal ones are refused even then; so is an empty reason.
 cp a.csv c.csv
 "$ETLC" calibrate dock.etl --data a.csv c.csv --allow-overlap 'the room has few places'
 "$ETLC" calibrate dock.etl --data a.csv b.csv --allow-overlap ' '

@@ -1,5 +1,5 @@
-# Thresholds and fitted things by an earlier version: its episodes cannot be told from others, so
-# they are refused where that matters. What was made of them still compiles.
+# Thresholds and fits of an earlier version: its episodes cannot be compared with others, so they
+# are refused where that matters. Specs with these files still compile.
 cat > dock.etl <<'END2'
 spec dock;
 input z : f32[2];

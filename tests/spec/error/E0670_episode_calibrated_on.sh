@@ -1,5 +1,5 @@
-# Thresholds are evaluated on other episodes than those they were
-# calibrated on, whatever the files are called.
+# Thresholds must be evaluated on other episodes than those used for calibration, whatever the names
+# of the files.
 cat > t.etl <<'SPEC'
 spec t;
 input x, px : f32;

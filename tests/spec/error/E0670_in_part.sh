@@ -1,5 +1,5 @@
-# Episodes that were calibrated on are known by what they hold: also where one lacks some frames,
-# and where the spec has other predicates since.
+# Episodes used for calibration are recognised by their content, also if some frames are missing,
+# and if the spec has other predicates since.
 cat > two.etl <<'END'
 spec two;
 input z, w : f32[2];

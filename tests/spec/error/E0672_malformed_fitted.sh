@@ -1,4 +1,4 @@
-# What is no file of 'etlc fit' is told apart from one that is damaged.
+# A file that does not come from 'etlc fit' is distinguished from a damaged one.
 cat > t.etl <<'SPEC'
 spec t;
 input z : f32[2];

@@ -1,5 +1,5 @@
-# What is fitted separates the episodes that it was fitted on better than any others, so thresholds
-# and figures come from other ones, whatever the files are called.
+# A fit separates its own episodes better than any others, so thresholds and figures need other
+# episodes, whatever the names of the files.
 cat > t.etl <<'SPEC'
 spec t;
 input z : f32[2];

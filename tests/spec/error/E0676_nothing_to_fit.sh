@@ -1,4 +1,4 @@
-# Only what is declared fitted(...) is fitted.
+# Only fitted(...) declarations are fitted.
 cat > t.etl <<'SPEC'
 spec t;
 input x : f32;

@@ -1,5 +1,5 @@
-# A fit takes frames: some at all, as many as rows, more than components, and for a discriminant
-# episodes enough to choose its shrinkage on others than it is fitted on.
+# A fit needs frames: at least one, as many as rows, more than components, and for a discriminant
+# enough episodes to choose its shrinkage on others than it is fitted on.
 fit() {  # DECLARATION POINT EPISODE...
   cat > t.etl <<SPEC
 spec t;

@@ -1,4 +1,4 @@
-# A discriminant tells two classes apart, so frames of both have to be there.
+# A discriminant separates two classes, so both need frames.
 cat > t.etl <<'SPEC'
 spec t;
 input z : f32[2];

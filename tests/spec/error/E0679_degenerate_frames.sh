@@ -1,4 +1,4 @@
-# Frames on a line have one direction in which they vary; components in a second one are made up.
+# Frames on a line vary in one direction; components in a second one would be arbitrary.
 cat > t.etl <<'SPEC'
 spec t;
 input z : f32[3];

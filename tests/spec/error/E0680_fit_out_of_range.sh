@@ -1,4 +1,4 @@
-# A direction with next to no variance, whitened, takes numbers beyond those of float32.
+# Whitening a direction with almost no variance needs numbers beyond float32.
 cat > t.etl <<'SPEC'
 spec t;
 input z : f32[1];

@@ -1,4 +1,4 @@
-# Suggestions are for predicates that have labels, and measure from one point.
+# Suggestions need predicates that have labels and measure from one point.
 cat > t.etl <<'SPEC'
 spec t;
 input z : f32[2];

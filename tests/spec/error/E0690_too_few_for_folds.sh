@@ -1,4 +1,4 @@
-# Every fold holds out an episode; and folds take thresholds from the episodes, so there is no file.
+# Every fold holds out an episode; and folds compute thresholds from the episodes, without a file.
 cat > t.etl <<'END'
 spec t;
 input x : f32;

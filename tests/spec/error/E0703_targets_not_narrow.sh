@@ -1,4 +1,4 @@
-# --targets-as where an element is beyond float16, and where no distance can be measured so.
+# --targets-as with an element beyond float16, and with no distance that can be narrow.
 cat >beyond.etl <<'END'
 spec beyond;
 input z : f32[2];

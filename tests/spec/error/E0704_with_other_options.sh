@@ -1,4 +1,4 @@
-# A monitor that is calibrated as a whole; and options that --retargetable does not go with.
+# A monitor that is calibrated as a whole; and options that cannot be combined with --retargetable.
 cat >whole.etl <<'SPEC'
 spec whole;
 input x : f32 in [0, 4];

@@ -1,4 +1,4 @@
-# A trace that is not there, or is a folder.
+# A missing trace, and a folder.
 cat > t.etl <<'END'
 spec t;
 input z : f32[2];

@@ -1,4 +1,4 @@
-# The ending of a trace says what it is.
+# The extension of a trace determines its format.
 cat > t.etl <<'END'
 spec t;
 input z : f32[2];

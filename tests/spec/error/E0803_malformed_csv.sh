@@ -1,4 +1,4 @@
-# Quotes, line ends, row lengths; no row of verdicts is left behind.
+# Quotes, line ends, row lengths; no rows of verdicts remain.
 cat > t.etl <<'END'
 spec t;
 input z : f32[2];

@@ -1,4 +1,4 @@
-# Every input that the monitors use has its columns, or its array, once.
+# Every input that the monitors use needs its columns, or its array, exactly once.
 cat > t.etl <<'END'
 spec t;
 input z : f32[2];
@@ -13,7 +13,7 @@ header 'z[0],grip,held'
 header 'z0,z1,grip,held'
 header 'z[0],z[1],grip,held,grip'
 "$ETLC" run t.etl --trace "$SPECS/E0804_absent.npz" 2>&1 | sed "s|$SPECS/||"
-# What --map names is an input of the spec; what it says is looked for in the file.
+# The name in --map must be an input of the spec; its value is looked up in the file.
 printf 'z[0],z[1],grip,closed\n1,2,0.75,0\n' > trace.csv
 "$ETLC" run t.etl --trace trace.csv --map held=closed --map gripper=grip
 "$ETLC" run t.etl --trace trace.csv --map held=closed --map grip=gripp

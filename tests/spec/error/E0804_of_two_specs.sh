@@ -1,4 +1,4 @@
-# Episodes have to serve every spec: the message names the one that they do not.
+# Episodes must serve every spec: the message names the spec that they do not serve.
 cat > a.etl <<'END'
 spec a;
 input x : f32;

@@ -1,4 +1,4 @@
-# Cells that are no numbers, with their place.
+# Cells that are not numbers, with their place.
 cat > t.etl <<'END'
 spec t;
 input z : f32[2];

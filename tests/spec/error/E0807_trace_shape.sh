@@ -1,4 +1,4 @@
-# Shapes that do not fit the inputs, and arrays of different lengths.
+# Shapes that do not match the inputs, and arrays of different lengths.
 cat > t.etl <<'END'
 spec t;
 input z : f32[2];

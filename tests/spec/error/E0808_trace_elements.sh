@@ -1,4 +1,4 @@
-# Elements that are no samples of their input.
+# Elements that are not valid samples of their input.
 cat > t.etl <<'END'
 spec t;
 input z : f32[2];

@@ -1,4 +1,4 @@
-# The same fault of many episodes is told once, with all of them counted, and another one apart.
+# The same fault in many episodes is reported once, with their number, and another fault separately.
 cat > hand.etl <<'END'
 spec hand;
 input grip : f32;

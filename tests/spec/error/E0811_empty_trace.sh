@@ -1,4 +1,4 @@
-# A trace of no steps is no trace on which all is well.
+# A trace without steps must not look like success.
 cat > t.etl <<'END'
 spec t;
 input x, px : f32;

@@ -1,4 +1,4 @@
-# Of a step there must be a verdict.
+# The step must have a verdict.
 cat > t.etl <<'END'
 spec t;
 rate 10 Hz;

@@ -1,4 +1,4 @@
-# An incident that is not there, or is a folder.
+# A missing incident, and a folder.
 cat > t.etl <<'END'
 spec t;
 input grip : f32;

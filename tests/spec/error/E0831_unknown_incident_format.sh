@@ -1,4 +1,4 @@
-# Files that are no incidents, and one of a later version.
+# Files that are not incidents, and one of a later version.
 cat > t.etl <<'END'
 spec t;
 input grip : f32;

@@ -1,4 +1,4 @@
-# What a recorder wrote, cut, continued and changed; whole it is printed.
+# An incident cut, extended and changed; the original is printed.
 cat > gripper.etl <<'END'
 spec gripper;
 rate 10 Hz;

@@ -1,4 +1,4 @@
-# Another spec, other data, other thresholds than those of the monitor that wrote it.
+# The incident comes from a monitor with another spec, other data, other thresholds.
 cat > gripper.etl <<'END'
 spec gripper;
 rate 10 Hz;

@@ -1,4 +1,4 @@
-# Pictures that are nowhere, and a pattern that is the same for every episode.
+# Missing pictures, and a pattern that is the same for every episode.
 cat > t.etl <<'SPEC'
 spec t;
 input grip : f32;

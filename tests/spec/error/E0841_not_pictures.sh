@@ -1,4 +1,4 @@
-# Files that are no pictures, and arrays that hold none.
+# Files that are not pictures, and arrays without pictures.
 cat > t.etl <<'SPEC'
 spec t;
 input grip : f32;

@@ -1,4 +1,4 @@
-# Metadata that are damaged, or of another version.
+# Metadata that are damaged, or have another version.
 . "$SPECS/../dataset.bash"
 sed -i 's/v2.1/v1.6/' set/meta/info.json
 "$ETLC" run rows.etl --trace set --map push=action[0]

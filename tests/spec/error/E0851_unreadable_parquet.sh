@@ -1,4 +1,4 @@
-# Metadata of version 3.0 that are no Parquet.
+# Metadata of version 3.0 that are not Parquet.
 . "$SPECS/../dataset.bash"
 sed -i 's/v2.1/v3.0/' set/meta/info.json
 mkdir -p set/meta/episodes/chunk-000

@@ -1,4 +1,4 @@
-# A spec of another rate than the rows.
+# A spec with another rate than the rows.
 . "$SPECS/../dataset.bash"
 sed -i 's/10 Hz/5 Hz/' rows.etl
 "$ETLC" run rows.etl --trace set --map push=action[0]

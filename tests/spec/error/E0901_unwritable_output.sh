@@ -1,4 +1,4 @@
-# An output that cannot be written, and no part of it left behind.
+# An output that cannot be written, without remains.
 printf 'spec t;\ninput ok : bool;\nmonitor m = G ok;\n' > t.etl
 "$ETLC" t.etl -o nowhere/t.hpp
 echo "exit status $?"

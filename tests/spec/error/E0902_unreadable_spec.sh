@@ -1,4 +1,4 @@
-# A spec that is not there, and one that is a folder.
+# A missing spec, and a folder.
 "$ETLC" missing.etl --check
 echo "exit status $?"
 mkdir folder.etl

@@ -1,4 +1,4 @@
-# A target set that is too large for a header on standard output; with a file of its own it is none.
+# A target set that is too large for a header on standard output, unless it has its own file.
 printf 'spec t;\ninput z : f32[3];\ntarget near = [[1, 2, 3], [4, 5, 6]];\n' > t.etl
 printf 'predicate at = min l2(z, near) <= 1;\nmonitor m = F at;\n' >> t.etl
 "$ETLC" t.etl -o - --inline-targets 23

@@ -1,5 +1,5 @@
-# No output may be a file that the call reads, by whatever
-# name, nor another output; nothing is written then.
+# No output may be a file that the call reads, under any name, nor another output; then nothing is
+# written.
 cat > dock.etl <<'END'
 spec dock;
 input z : f32[2];

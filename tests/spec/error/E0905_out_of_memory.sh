@@ -1,5 +1,5 @@
-# Files that unpack to more memory than there is: the file is named. A sanitizer takes the address
-# space for itself, so that there is no limit to set; then there is nothing to see.
+# Files that unpack to more memory than available: the message names the file. A sanitizer reserves
+# the address space, so no limit can be set, and the test is skipped.
 cat > big.etl <<'END'
 spec big;
 input z : f32[1000];

@@ -1,4 +1,4 @@
-# Nothing was embedded yet; not by this encoder; not of these images.
+# Nothing is embedded yet; not by this encoder; not of these images.
 . "$SPECS/../encoding.bash"
 "$ETLC" t.etl -o m.hpp
 "$ETLC" t.etl --check

@@ -1,5 +1,5 @@
-# Each of what embeddings are made of, changed: images, model, settings. What is gone altogether is
-# not missed, where a monitor is built.
+# Changes of everything that embeddings are made from: images, model, settings. Building a monitor
+# does not need the original files.
 . "$SPECS/../encoding.bash"
 embeds "$dimension$row$row" > /dev/null
 echo another > bay/2.png

@@ -1,4 +1,4 @@
-# The second image is damaged; another one is of an unknown kind; there is none.
+# The second image is damaged; another one has an unknown format; there is none.
 . "$SPECS/../encoding.bash"
 decodes 65 "has 16 bits a channel, expected 8: save it with 8"
 sed -i 's/for file; do/for file in "$1"; do/' embedder

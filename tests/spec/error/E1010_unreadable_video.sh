@@ -1,4 +1,4 @@
-# A video that is cut, one that ends its reader, one that is not there: and nothing is written.
+# A video that is cut, one that crashes its reader, a missing one: nothing is written.
 . "$SPECS/../encoding.bash"
 echo > ep.mp4
 decodes 65 "promises 100 frames and holds 57: it is cut or damaged"

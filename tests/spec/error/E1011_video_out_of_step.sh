@@ -1,4 +1,4 @@
-# As etlc-embed says it.
+# As reported by etlc-embed.
 . "$SPECS/../encoding.bash"
 echo > ep.mp4
 decodes 66 "has 25 frames a second, expected a multiple of the 10 steps of the spec"

@@ -1,4 +1,4 @@
-# Commands that die, hang, write too little, too much, or something else.
+# Commands that crash, hang, write too little, too much, or something else.
 . "$SPECS/../encoding.bash"
 "$ETLC" embed t.etl --encoder-cmd 'echo "no module named torch" >&2; exit 3'
 "$ETLC" embed t.etl --encoder-cmd 'kill -9 $$'

@@ -1,4 +1,4 @@
-# No ONNX Runtime is found, or what is found ends etlc-embed.
+# ONNX Runtime is not found, or crashes etlc-embed.
 . "$SPECS/../encoding.bash"
 decodes 68 "is not run: there is no ONNX Runtime"
 sed -i 's/^onnxruntime).*/onnxruntime) ;;/' embedder

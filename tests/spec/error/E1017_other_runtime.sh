@@ -1,4 +1,4 @@
-# An episode that another release of ONNX Runtime encoded than the targets.
+# An episode encoded by another release of ONNX Runtime than the targets.
 . "$SPECS/../encoding.bash"
 echo > ep.mp4
 VERSION=1.29.0 "$ETLC" embed t.etl --data ep.mp4 -o out

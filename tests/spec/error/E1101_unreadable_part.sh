@@ -1,4 +1,4 @@
-# A part that is not there, and one that is a folder.
+# A missing part, and a folder.
 . "$SPECS/../shards.bash"
 "$ETLC" merge 1.part 3.part -o out.json
 mkdir folder

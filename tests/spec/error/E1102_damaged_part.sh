@@ -1,4 +1,4 @@
-# What is no part, one that is cut, and one that was changed; whole they are merged.
+# Not a part, a cut one, and a changed one; the originals are merged.
 . "$SPECS/../shards.bash"
 "$ETLC" merge 1.part 2.part -o out.json
 rm out.json

@@ -1,4 +1,4 @@
-# Parts of two calls, of other shards, over other episodes; and a spec that has changed since.
+# Parts of two calls, with other shards, with other episodes; and a spec that has changed since.
 . "$SPECS/../shards.bash"
 cp 2.part 2.first
 shards --folds 2 > /dev/null

@@ -1,4 +1,4 @@
-# A shard that is missing, one that is there twice, and episodes that change from shard to shard.
+# A missing shard, a repeated one, and episodes that differ between shards.
 . "$SPECS/../shards.bash"
 "$ETLC" merge 1.part -o out.json
 "$ETLC" merge 2.part 1.part 2.part -o out.json

@@ -1,4 +1,4 @@
-# What is a target is easier to tell than what is not.
+# Frames that are targets are easier to classify than others.
 cat > t.etl <<'END'
 spec t;
 input z : f32[2];
@@ -11,7 +11,7 @@ END
 printf 'z[0],z[1],px\n3,3.5,0\n3,4,0\n' > a.csv
 printf 'z[0],z[1],px\n3,3.25,0\n3,4.5,2\n' > b.csv
 printf 'z[0],z[1],px\n1,0,0\n3,4.5,2\n' > c.csv
-# Not straight into head: a report whose reader goes away ends the call before its files appear.
+# Not directly into head: a closed pipe ends the call before its files appear.
 "$ETLC" evaluate t.etl --data a.csv b.csv c.csv --json figures.json > report.txt
 head -2 report.txt
 grep leaked figures.json

@@ -1,5 +1,5 @@
-# Labels that have nothing to do with the distance, that are the wrong way round, and a threshold
-# that one strange demonstration makes so wide that nearly every frame is within.
+# Labels that are unrelated to the distance, or inverted, and a threshold that one strange
+# demonstration makes so wide that nearly every frame is within.
 cat > t.etl <<'END'
 spec t;
 input x, y, wide : f32;

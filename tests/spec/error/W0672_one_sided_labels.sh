@@ -1,4 +1,4 @@
-# Labels that are all alike: of the calibration, and of the evaluation.
+# Labels that are all alike, in the calibration and in the evaluation.
 cat > dock.etl <<'END2'
 spec dock;
 input z : f32[2];

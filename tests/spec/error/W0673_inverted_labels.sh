@@ -1,4 +1,4 @@
-# Labels, or a comparison, the wrong way round: the area under the ROC curve is surely below 0.5.
+# Labels, or a comparison, the wrong way round: the area under the ROC curve is clearly below 0.5.
 cat > dock.etl <<'END2'
 spec dock;
 input x : f32;

@@ -1,4 +1,4 @@
-# An alpha above 0.5 is mostly a coverage by mistake; 0.5 itself is not.
+# An alpha above 0.5 is probably meant as a coverage; 0.5 itself gets no warning.
 cat > t.etl <<'END2'
 spec t;
 input z : f32[2];

@@ -1,4 +1,4 @@
-# Elements that never change may be a fault of the encoder, and nobody knows what they would do.
+# Elements that never change may be a fault of the encoder; their effect would be unknown.
 cat > t.etl <<'SPEC'
 spec t;
 input z : f32[3];

@@ -1,5 +1,5 @@
-# The labels are in three elements, and most of the variance in the first: a principal component
-# loses what the plain distance sees.
+# The labels depend on three elements, and most of the variance is in the first: a principal
+# component loses information that the plain distance has.
 cat > dock.etl <<'END2'
 spec dock;
 input z : f32[4];

@@ -1,5 +1,5 @@
-# A threshold that every frame is within, and beside it one that tells. Few episodes leave it open,
-# and of a monitor that is careful nothing is said.
+# A threshold that includes every frame, beside one that separates. With few episodes the question
+# stays open, and a careful monitor gets no warning.
 cat > dock.etl <<'END2'
 spec dock;
 input x : f32;

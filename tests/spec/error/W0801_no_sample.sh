@@ -1,4 +1,4 @@
-# A trace in which an input is never there, or never in its range.
+# A trace in which an input is always missing, or always out of range.
 cat > t.etl <<END
 spec t;
 input x, y : f32 in [0, 1];

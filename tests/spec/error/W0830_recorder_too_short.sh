@@ -1,4 +1,4 @@
-# The step that a sliding monitor's alarm is about, and a recorder that holds it just.
+# The step that a sliding monitor's alarm is about, and a recorder that just includes it.
 cat > t.etl <<'END'
 spec t;
 rate 10 Hz;

@@ -1,4 +1,4 @@
-# An episode without its pictures, and one with too few, are shown without any.
+# Episodes without pictures, or with too few, are shown without any.
 cat > t.etl <<'SPEC'
 spec t;
 input grip : f32;

@@ -1,4 +1,4 @@
-# Episodes that do not say which encoder made their embeddings: each command says so, once a call.
+# Episodes that do not record the encoder of their embeddings: each command warns once per call.
 . "$SPECS/../encoding.bash"
 sed -i '/^monitor/d' t.etl
 cat >> t.etl << 'END'
@@ -21,11 +21,11 @@ done
 "$ETLC" crossvalidate t.etl --data ep?.csv --folds 2 > /dev/null
 "$ETLC" calibrate t.etl --data ep[1-4].csv -o none.json -Werror > /dev/null
 [ ! -e none.json ] || echo "it was made"
-# A frame of one as a target, too.
+# A frame of such an episode as a target, too.
 sed 's|^target.*|target bay = frames("ep1.csv", "z", [0]);|; s/calibrated.*;/1;/' t.etl > f.etl
 mv t.embedded.npz f.embedded.npz
 "$ETLC" f.etl --check
-# What fits, too.
+# Also if it matches.
 cat > p.etl << 'END'
 spec p;
 encoder net = load("net.onnx"), image [1, 1];

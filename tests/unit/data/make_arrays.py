@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes the .npy and .npz files beside it, as numpy writes them. Needs numpy; runs in any folder.
 
-Element (i, j) of every 3 x 4 array is 4 i + j, minus 2 where the type has a sign, halved where it
-has fractions: exact in float16, so that every file holds the same numbers.
+Element (i, j) of every 3 x 4 array is 4 i + j, minus 2 for signed types, halved for floating-point
+types: exact in float16, so every file holds the same numbers.
 """
 import io
 import pathlib

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes trace.h5 and lzf.h5 (h5py) beside this file: datasets of every kind that a trace may
-hold, and of those it may not."""
+"""Writes trace.h5 and lzf.h5 (h5py) beside this file: datasets of every valid and invalid kind for
+a trace."""
 import pathlib
 
 import h5py

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "artifacts/fitted.hpp"
+#include "artifacts/thresholds.hpp"
 #include "calibrate/calibrate.hpp"
 #include "diag/diag.hpp"
 #include "driver/compile/compile.hpp"
-#include "fitted/fitted.hpp"
-#include "thresholds/thresholds.hpp"
 
 namespace etlc::driver {
 

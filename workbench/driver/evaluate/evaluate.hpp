@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "artifacts/thresholds.hpp"
 #include "diag/diag.hpp"
 #include "driver/compile/compile.hpp"
 #include "driver/fleet/fleet.hpp"
 #include "evaluate/evaluate.hpp"
-#include "thresholds/thresholds.hpp"
 
 namespace etlc::driver {
 

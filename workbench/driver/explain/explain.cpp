@@ -10,9 +10,8 @@
 #include "data/text/quote.hpp"
 #include "driver/compile/names.hpp"
 #include "driver/process/output_file.hpp"
+#include "episodes/data_warnings.hpp"
 #include "episodes/replay.hpp"
-#include "episodes/unmarked.hpp"
-#include "explain/history.hpp"
 #include "explain/report.hpp"
 #include "source/escape.hpp"
 

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "etlmon/temporal/recorder.hpp"
-#include "plan/recorder.hpp"
+#include "plan/recorder_plan.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::driver {

@@ -9,7 +9,7 @@
 #include "driver/incident/formats.hpp"
 #include "driver/process/output_file.hpp"
 #include "etlmon/temporal/recorder.hpp"
-#include "plan/recorder.hpp"
+#include "plan/recorder_plan.hpp"
 
 namespace etlc::driver {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "artifacts/fitted.hpp"
 #include "check/check.hpp"
 #include "diag/diag.hpp"
-#include "fit/request.hpp"
-#include "fitted/fitted.hpp"
+#include "fit/readings.hpp"
 #include "source/source.hpp"
 
 namespace etlc::driver {

@@ -8,7 +8,7 @@
 #include "driver/evaluate/evaluate.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/progress.hpp"
-#include "episodes/unmarked.hpp"
+#include "episodes/data_warnings.hpp"
 
 namespace etlc::driver {
 

@@ -13,9 +13,9 @@
 #include "driver/process/progress.hpp"
 #include "driver/report/report.hpp"
 #include "driver/run/summary.hpp"
+#include "episodes/data_warnings.hpp"
 #include "episodes/replay.hpp"
-#include "episodes/unmarked.hpp"
-#include "plan/recorder.hpp"
+#include "plan/recorder_plan.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::driver {

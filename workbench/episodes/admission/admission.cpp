@@ -3,13 +3,74 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 
 #include "data/files/file.hpp"
 #include "data/text/quote.hpp"
-#include "episodes/admission/leak_evidence.hpp"
 #include "episodes/admission/overlaps.hpp"
 
 namespace etlc::episodes {
+
+namespace {
+
+/// Returns the probability of n or more of the frames by chance, with the mean chance for each.
+/// That is an upper bound where n is above the expected number (Hoeffding, "On the Distribution of
+/// the Number of Successes in Independent Trials", 1956).
+double at_least(std::uint64_t n, const RoundedRows::Around& around) {
+    const auto frames = static_cast<double>(around.frames);
+    const auto count = static_cast<double>(n);
+    const double chance = around.chance / frames;
+    if (around.chance >= count) return 1;
+    if (chance <= 0) return 0;
+    double log = (frames - count) * std::log1p(-chance);
+    for (double k = 1; k <= count; ++k) log += std::log((frames - count + k) / k * chance);
+    double term = std::exp(log);
+    double sum = 0;
+    for (double k = count; k <= frames && term > sum * 1e-9; ++k) {
+        sum += term;
+        term *= (frames - k) / (k + 1) * chance / (1 - chance);
+    }
+    return sum;
+}
+
+/// The evidence of all episodes about one set.
+struct Sum {
+    std::uint64_t leaks = 0;  ///< episodes with a frame within rounding
+    RoundedRows::Around close;
+    RoundedRows::Around wide;
+};
+
+/// Tests that frames far around the rows are too few to put so many within rounding, and that
+/// frames close to them do not merely crowd there.
+bool is_no_chance(const Sum& sum) {
+    constexpr double kNotByChance = 0.001;
+    constexpr double kNotByCrowding = 0.3;
+    return sum.leaks > 0 && at_least(sum.leaks, sum.wide) < kNotByChance &&
+           at_least(sum.leaks, sum.close) < kNotByCrowding;
+}
+
+}  // namespace
+
+LeakEvidence::LeakEvidence(const Identities& episodes) {
+    std::vector<Sum> sums;
+    episodes.for_each([&](std::size_t, const Recorded& episode) {
+        if (episode.near.size() > sums.size()) sums.resize(episode.near.size());
+        for (std::size_t i = 0; i < episode.near.size(); ++i) {
+            sums[i].leaks += episode.near[i].first ? 1 : 0;
+            sums[i].close.add(episode.near[i].close);
+            sums[i].wide.add(episode.near[i].wide);
+        }
+    });
+    for (const Sum& sum : sums) leaks_.push_back(is_no_chance(sum));
+}
+
+std::optional<Leak> LeakEvidence::of(const Recorded& episode) const {
+    if (episode.leak) return episode.leak;
+    for (std::size_t i = 0; i < episode.near.size(); ++i)
+        if (leaks_[i] && episode.near[i].first) return episode.near[i].first;
+    return std::nullopt;
+}
 
 namespace {
 
@@ -17,14 +78,14 @@ using diag::Code;
 
 constexpr std::string_view kHowToAllow =
     "if they are different recordings after all, say why with --allow-overlap REASON: the reason "
-    "is kept with the result and stands next to every guarantee";
+    "is stored with the result and shown with every guarantee";
 
 /// "shares about 97 % of its content with"
 std::string in_common(const data::Overlap& overlap) {
     return fmt::format("shares about {:.0f} % of its content with", 100 * overlap.share);
 }
 
-/// The episodes that are refused for one reason.
+/// Collects the episodes that are refused for one reason.
 class Refusals {
 public:
     Refusals(Code code, std::vector<std::string> notes) : code_(code), notes_(std::move(notes)) {}
@@ -38,7 +99,7 @@ public:
         const std::size_t reported = std::min(all_.size(), kMostReported);
         for (std::size_t i = 0; i < reported; ++i) {
             auto& error = sink.report(data::in_file({code_, all_[i].message}, all_[i].path));
-            if (i > 0) continue;  // the notes are those of all
+            if (i > 0) continue;  // the notes hold for all
             for (const std::string& note : notes_) error.note(note);
             if (all_.size() > reported)
                 error.note(fmt::format("{} episodes are refused for this; {} are shown",
@@ -56,11 +117,11 @@ private:
     std::vector<Refusal> all_;
 };
 
-/// Refuses what something in a file was made from.
+/// Refuses episodes that something in a file was made from.
 class Unseen {
 public:
-    /// `source`: which one it is of the search; `one`: what messages call such an episode;
-    /// `advice`: the notes where it comes up again; `allowing`: another, where it does in part.
+    /// `source`: its index in the search; `one`: what messages call such an episode; `advice`: the
+    /// note for a repeated one; `allowing`: a further note for a partial overlap.
     Unseen(const OverlapSearch& search, std::size_t source, bool allows, Code code, std::string one,
            const std::string& advice, std::string_view allowing)
         : search_(search),
@@ -98,7 +159,7 @@ private:
 
 enum SourceNumber : std::size_t { fitted_file, thresholds_file };
 
-/// What was fitted, then what was calibrated.
+/// Searches among the episodes of fits, then of calibration.
 OverlapSearch search(const Identities& episodes, const fitted::File& fitted,
                      const thresholds::File& thresholds, std::vector<std::uint64_t> calibrated_on,
                      bool each_other) {
@@ -108,7 +169,7 @@ OverlapSearch search(const Identities& episodes, const fitted::File& fitted,
         each_other};
 }
 
-/// Refuses what something was fitted on.
+/// Refuses episodes that something was fitted on.
 Unseen not_fitted_on(const OverlapSearch& search, const fitted::File& file, bool allows,
                      std::string_view allowing) {
     return {search,
@@ -122,7 +183,7 @@ Unseen not_fitted_on(const OverlapSearch& search, const fitted::File& file, bool
             allowing};
 }
 
-/// Refuses a file in which episodes are told apart as they no longer are.
+/// Refuses a file of an old format, whose hashes of episodes are not comparable.
 void refuse_old(std::uint32_t format, bool has_episodes, const std::string& path,
                 std::string_view again, diag::Sink& sink) {
     if (format == thresholds::kFormat || !has_episodes) return;
@@ -145,7 +206,7 @@ void refuse_old(const thresholds::File& thresholds, const fitted::File& fitted, 
                "calibrate again with 'etlc calibrate'", sink);
 }
 
-/// Looks at one episode after the other.
+/// Examines the episodes in order.
 class Admission {
 public:
     Admission(const check::Model& model, const Identities& episodes, const thresholds::File& before,
@@ -166,7 +227,7 @@ public:
 
     void look_at(std::size_t e, const Recorded& episode) {
         const Unseen::Met fitted_on = not_fitted_on_.look_at(e, episode);
-        if (fitted_on == Unseen::Met::refused) return;  // its frames are what was fitted
+        if (fitted_on == Unseen::Met::refused) return;  // the fit was made from its frames
         const Unseen::Met calibrated_on = unseen_.look_at(e, episode);
         const bool overlaps =
             fitted_on == Unseen::Met::passed_over || calibrated_on == Unseen::Met::passed_over;
@@ -186,7 +247,7 @@ public:
     }
 
 private:
-    /// Whether an overlap was passed over.
+    /// Returns whether an overlap was allowed.
     bool look_at_earlier(std::size_t e, const Recorded& episode) {
         const auto found = search_.find_earlier(e, episode);
         if (!found) return false;
@@ -254,7 +315,7 @@ thresholds::Allowance admit_unseen(const Identities& episodes, const thresholds:
                                    diag::Sink& sink) {
     constexpr std::string_view kAllowing =
         "if they are different recordings after all, say why with --allow-overlap REASON: the "
-        "reason stands next to the figures";
+        "reason is shown with the figures";
     refuse_old(thresholds, fitted, sink);
     thresholds::Allowance passed_over{reason};
     const OverlapSearch among =

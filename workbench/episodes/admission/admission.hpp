@@ -1,10 +1,7 @@
-// Which episodes a guarantee may be taken from.
-// Takes: what was read of every episode, and the episodes that thresholds and fitted things behind
-// it have seen.
-// Gives: an error for each that voids the guarantee: a target among its frames, the same episode
-// twice, one that was seen, and one that shares most of its content with such a one. Keeps true:
-// every calibration asks here, and what is calibrated beyond this is exchangeable with what comes,
-// as far as data can tell; what the user answers for is counted.
+// Decides which episodes a guarantee may rest on. Refuses those that void it: with a target among
+// their frames, used twice, used by a fit or a calibration before, or mostly equal to such an
+// episode. Every calibration asks here, so what is calibrated is exchangeable with future episodes
+// as far as data can show; overlaps that the user allows are counted.
 #pragma once
 
 #include <cstdint>
@@ -12,34 +9,47 @@
 #include <string>
 #include <vector>
 
+#include "artifacts/fitted.hpp"
+#include "artifacts/thresholds.hpp"
 #include "diag/diag.hpp"
 #include "episodes/recording.hpp"
-#include "fitted/fitted.hpp"
-#include "thresholds/thresholds.hpp"
 
 namespace etlc::episodes {
 
-/// "step 4 is row 1 of target 'home', from which 'at_home' measures"
+/// Decides whether rows of a target set were taken from frames of the episodes. A frame equal to a
+/// row is a leak. A frame within rounding of a row is one if so many episodes would not have such
+/// frames by chance, given how many lie near rows (episodes/leaks/rounded_rows.hpp).
+class LeakEvidence {
+public:
+    explicit LeakEvidence(const Identities& episodes);
+
+    std::optional<Leak> of(const Recorded& episode) const;
+
+private:
+    std::vector<bool> leaks_;  ///< per watched set
+};
+
+/// Describes a leak: "step 4 is row 1 of target 'home', from which 'at_home' measures".
 std::string text(const check::Model& model, const Leak& leak);
 
-/// `before`: where thresholds in the model come from; `fitted`: where what is fitted does.
-/// `reason`: of --allow-overlap; with one, overlaps short of equality and targets among the frames
-/// are counted and not refused.
+/// Admits episodes for calibration. `before` and `fitted`: the origin of thresholds and fits in the
+/// model. `reason`: the argument of --allow-overlap; with it, targets among the frames and overlaps
+/// short of equality are counted instead of refused.
 thresholds::Allowance admit(const check::Model& model, const Identities& episodes,
                             const thresholds::File& before, const fitted::File& fitted,
                             const std::string& reason, diag::Sink& sink);
 
-/// For an evaluation: refuses what thresholds were calibrated on, or something was fitted on, and
-/// counts overlaps with it where a `reason` allows them.
+/// Admits episodes for evaluation: refuses those that thresholds were calibrated on or something
+/// was fitted on, and counts overlaps with them if `reason` allows these.
 thresholds::Allowance admit_unseen(const Identities& episodes, const thresholds::File& thresholds,
                                    const fitted::File& fitted, const std::string& reason,
                                    diag::Sink& sink);
 
-/// Notes in the file what tells these episodes apart, and what was passed over, if anything was.
+/// Records the identities of the episodes in the file, and the allowed overlaps, if any.
 void record(const Identities& episodes, const thresholds::Allowance& allowance,
             thresholds::File& file);
 
-/// Where --allow-overlap was given and there was nothing to pass over.
+/// Remarks that --allow-overlap was not needed.
 std::string remark_on(const thresholds::Allowance& allowance);
 
 }  // namespace etlc::episodes

@@ -11,11 +11,11 @@ using check::Distance;
 using check::Input;
 using check::InputType;
 
-/// Covers what is rounded here, and what normalising an embedding in float32 rounds.
+/// Covers the rounding here, and that of normalising an embedding in float32.
 constexpr double kFourRoundings = 4 * 0x1p-24;
 
-/// How far a number moves when it is rounded to the input's type. Targets are float32, and so are
-/// the samples of all inputs but these two.
+/// Returns how far rounding to the input's type moves a number. Targets are float32, and so are the
+/// samples of all inputs but these two.
 double rounding(const Input& input, double x) {
     constexpr double kABitMore = 1 + 0x1p-8;
     switch (input.type) {
@@ -25,14 +25,7 @@ double rounding(const Input& input, double x) {
     }
 }
 
-double length(const float* v, std::size_t n) {
-    double square = 0;
-    for (std::size_t i = 0; i < n; ++i)
-        square += static_cast<double>(v[i]) * static_cast<double>(v[i]);
-    return std::sqrt(square);
-}
-
-/// The rows as they were before they were projected.
+/// Returns the target as declared, before it was projected.
 Index declared(const check::Model& model, const Distance& distance) {
     const Index source = model.targets[distance.target].source;
     return source == check::kNone ? distance.target : source;
@@ -42,7 +35,7 @@ const check::Target& declared_target(const check::Model& model, const Distance& 
     return model.targets[declared(model, distance)];
 }
 
-/// The point in whose space the rows were declared.
+/// Returns the point in whose space the rows were declared.
 Index declared_space(const check::Model& model, const Distance& distance) {
     const Index space = declared_target(model, distance).space;
     if (space != check::kNone) return space;
@@ -51,7 +44,7 @@ Index declared_space(const check::Model& model, const Distance& distance) {
     return at;
 }
 
-/// What the point is made of, however it is projected.
+/// Returns the inputs of the point, before any projection.
 const std::vector<Index>& inputs_of(const check::Model& model, const Distance& distance) {
     return model.points[distance.point].inputs;
 }
@@ -60,7 +53,7 @@ bool is_embedding(const check::Model& model, const Distance& distance) {
     return model.inputs[inputs_of(model, distance)[0]].is_embedding();
 }
 
-/// False where a projection that leads to it is not fitted yet.
+/// Returns false where a projection on the way is not fitted yet.
 bool is_there(const check::Model& model, Index point) {
     Index at = point;
     while (model.points[at].is_projected() &&
@@ -69,13 +62,14 @@ bool is_there(const check::Model& model, Index point) {
     return !model.points[at].is_projected();
 }
 
-/// A vector of scalars may well come to lie where somebody has written a target down: a robot stops
-/// at the origin. Rows of a file are looked for all the same, for they may have been recorded.
+/// Returns whether rows may stem from a recording. Scalars can reach a hand-written target by
+/// themselves: a robot stops at the origin. Rows of a file may have been recorded, so they are
+/// checked.
 bool may_be_recorded(const check::Model& model, const Distance& distance) {
     return is_embedding(model, distance) || !declared_target(model, distance).path.empty();
 }
 
-/// The numbers of a vector of scalars; empty where one is missing.
+/// Returns the numbers of a vector of scalars; empty where one is missing.
 std::vector<float> gathered(const check::Model& model, const Distance& distance,
                             const std::vector<plan::Sample>& samples) {
     std::vector<float> point;
@@ -87,18 +81,18 @@ std::vector<float> gathered(const check::Model& model, const Distance& distance,
     return point;
 }
 
-/// Two numbers of a row and a sample are told apart where they differ by more than the sample was
-/// rounded.
+/// Compares numbers of a row and a sample: they differ where rounding of the sample cannot explain
+/// it.
 struct Rounded {
     const Input& input;
-    double relative = 0;  ///< of the row's number, which by direction has the sample's length
+    double relative = 0;  ///< relative to the row's number; by direction, at the sample's length
 
     bool same(double x, double g) const {
         return std::abs(x - g) <= relative * std::abs(g) + rounding(input, x);
     }
 };
 
-/// By direction: how far the length of z is from that of what was rounded to it, relative to it.
+/// Returns the relative change of the length of z by rounding, for comparison by direction.
 double rounding_of_length(const Input& input, const std::vector<float>& z, double size) {
     double square = 0;
     for (const float x : z) {
@@ -142,13 +136,13 @@ void Leaks::watch(Index predicate, Index index) {
     watched_.push_back(std::move(watched));
 }
 
-/// Where the rows were declared, and where the distance measures: there frames count too that only
-/// the projection makes alike.
+/// Watches where the rows were declared, and where the distance measures: there frames also count
+/// that only the projection makes alike.
 void Leaks::watch_near(Index predicate, Index index) {
     const Distance& distance = model_.distances[index];
     const auto add = [&](Index point, Index target) {
         if (model_.targets[target].values.empty() || !is_there(model_, point)) return;
-        NearRows rows(model_, index, point, target);
+        RoundedRows rows(model_, index, point, target);
         const bool known =
             std::any_of(watched_near_.begin(), watched_near_.end(),
                         [&](const WatchedNear& other) { return other.rows.same_as(rows); });
@@ -164,7 +158,7 @@ void Leaks::find_near(const std::vector<plan::Sample>& samples, std::uint64_t fr
     near.resize(watched_near_.size());
     for (std::size_t i = 0; i < watched_near_.size(); ++i) {
         const WatchedNear& watched = watched_near_[i];
-        const NearRows::Found found = watched.rows.find(samples);
+        const RoundedRows::Found found = watched.rows.find(samples);
         near[i].close.add(found.close);
         near[i].wide.add(found.wide);
         if (found.row && !near[i].first)
@@ -181,8 +175,8 @@ std::optional<Leak> Leaks::find(const std::vector<plan::Sample>& samples,
     return std::nullopt;
 }
 
-/// Row by row, of which the first element tells nearly all apart. z is the row g or, by direction,
-/// |z| / |g| times g.
+/// Compares row by row; the first element excludes nearly all. z is the row g or, by direction, |z|
+/// / |g| times g.
 std::optional<std::uint32_t> Leaks::row_of(const Watched& watched,
                                            const std::vector<plan::Sample>& samples) const {
     const Distance& distance = model_.distances[watched.distance];

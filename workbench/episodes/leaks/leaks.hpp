@@ -1,9 +1,8 @@
-// Targets that are frames of the episodes which thresholds are calibrated, or monitors evaluated,
-// on. Takes: the predicates that what is calibrated depends on, and an episode's samples, a frame
-// after the other. Gives: the first frame that is a row of a set from which one of them measures,
-// and those that may be one but for rounding. Keeps true: a sample is looked for as the monitor is
-// given it, so a row counts as the frame that it becomes once it is rounded to the input's type;
-// and where the distance measures, so a row counts as the frame that is projected to it.
+// Finds targets that are frames of the episodes used to calibrate thresholds or to evaluate
+// monitors: the first frame that is a row of a watched set, and those that may be one but for
+// rounding. Samples are compared as the monitor gets them, so a row matches the frame that it
+// becomes once rounded to the input's type, and in the space of the distance, so a row matches the
+// frame that is projected to it.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +10,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "episodes/leaks/near_rows.hpp"
+#include "episodes/leaks/rounded_rows.hpp"
 #include "plan/evaluate/inputs.hpp"
 
 namespace etlc::episodes {
@@ -31,15 +30,15 @@ void fields(Archive& archive, Leak& leak) {
     archive(leak.predicate, leak.distance, leak.row, leak.frame);
 }
 
-/// What the frames of an episode say of one set that they are compared with within rounding.
+/// The evidence of an episode's frames about one set, within rounding.
 struct NearLeak {
-    std::optional<Leak> first;  ///< a frame that is as near as rounding explains
-    NearRows::Around close;     ///< of all frames
-    NearRows::Around wide;
+    std::optional<Leak> first;  ///< a frame as near as rounding explains
+    RoundedRows::Around close;  ///< over all frames
+    RoundedRows::Around wide;
 };
 
 template <class Archive>
-void fields(Archive& archive, NearRows::Around& around) {
+void fields(Archive& archive, RoundedRows::Around& around) {
     archive(around.frames, around.chance);
 }
 
@@ -48,24 +47,24 @@ void fields(Archive& archive, NearLeak& leak) {
     archive(leak.first, leak.close, leak.wide);
 }
 
-/// May be shared between threads; the model outlives it.
+/// Thread-safe; the model outlives it.
 class Leaks {
 public:
     Leaks(const check::Model& model, const std::vector<Index>& predicates);
 
-    /// `samples`: of this frame, by index of the model's inputs.
+    /// Returns the row that this frame equals. `samples`: by index of the model's inputs.
     std::optional<Leak> find(const std::vector<plan::Sample>& samples, std::uint64_t frame) const;
-    /// Adds what this frame says to `near`, which is empty before the first.
+    /// Adds the evidence of this frame to `near`, which is empty before the first.
     void find_near(const std::vector<plan::Sample>& samples, std::uint64_t frame,
                    std::vector<NearLeak>& near) const;
 
 private:
-    /// A point and a set from which it is measured, by however many predicates.
+    /// A point and a set that predicates measure it from.
     struct Watched {
-        Index predicate = 0;  ///< the first that does
+        Index predicate = 0;  ///< the first such predicate
         Index distance = 0;
         bool by_direction = false;  ///< under cosine and angular a multiple of a row is the row
-        /// First element of every row; by direction: of the row at length 1.
+        /// The first element of every row; by direction, of the row at length 1.
         std::vector<double> firsts;
         std::vector<double> lengths;  ///< by direction: |row|
     };
@@ -73,7 +72,7 @@ private:
     struct WatchedNear {
         Index predicate = 0;
         Index distance = 0;
-        NearRows rows;
+        RoundedRows rows;
     };
 
     void watch(Index predicate, Index distance);

@@ -8,35 +8,36 @@ namespace etlc::episodes {
 
 namespace {
 
-/// How many frames of a class.
+/// Numbers of frames per class.
 struct Classes {
     double positives = 0;
     double negatives = 0;
 };
 
-/// Of a group, or of an episode those that it has a part in.
+/// Pairs of a group, or those of an episode with the group.
 struct Pairs {
     double ordered = 0;
-    double within = 0;  ///< of these, both frames are of the episode
+    double within = 0;  ///< ordered pairs with both frames in the episode
     double positives = 0;
     double negatives = 0;
 };
 
-/// The frames of an episode that have one score.
+/// The frames of an episode with one score.
 struct Alike {
     std::uint32_t episode = 0;
     Classes frames;
 };
 
-/// Counts the pairs of a group that are ordered. Numbers of halves: exact in any order.
+/// Counts the ordered pairs of a group, in halves: exact in any order.
 class PairCounter {
 public:
-    /// `positives`: of the group; `lower_negatives`: of each episode, 0 at first.
+    /// `positives`: of the group; `lower_negatives`: per episode, initially 0.
     PairCounter(double positives, std::vector<Pairs>& episodes,
                 std::vector<double>& lower_negatives)
         : positives_(positives), episodes_(episodes), lower_negatives_(lower_negatives) {}
 
-    /// In ascending order of the score; those of an episode and of one score come together.
+    /// Adds a frame, in ascending order of the score; frames of an episode with one score come
+    /// together.
     void add(float score, std::uint32_t episode, bool positive) {
         if (!tied_.empty() && score != score_) end_tie();
         score_ = score;
@@ -97,7 +98,7 @@ void sort_by_score(std::vector<RankedFrame>& frames) {
     });
 }
 
-/// Which part of its pairs is ordered, of each of those of ascending scores.
+/// Sets the share of ordered pairs of each frame; frames are in ascending order of the score.
 void set_ordered(std::vector<RankedFrame>& frames, const Pairs& all) {
     Classes lower;
     for (std::size_t i = 0, end = 0; i < frames.size(); i = end) {
@@ -118,10 +119,10 @@ void set_ordered(std::vector<RankedFrame>& frames, const Pairs& all) {
 
 struct Group {
     Pairs all;
-    std::vector<Pairs> episodes;  ///< of those without frames in it, all 0
+    std::vector<Pairs> episodes;  ///< per episode; 0 without frames in the group
 };
 
-/// `without_one`: the value without each of the episodes.
+/// `without_one`: the value without each episode.
 Auroc with_interval(double value, const std::vector<double>& without_one) {
     constexpr std::size_t kLeastEpisodes = 5;
     Auroc result{value, {}};
@@ -157,8 +158,7 @@ std::optional<Auroc> auroc_of(const std::vector<Group>& groups) {
     return with_interval(ordered / pairs, without_one);
 }
 
-/// Of one group in every resample, twice the pairs that are ordered (a tie is half a pair), and the
-/// frames of the lower scores.
+/// Counts, for one group in every resample, twice the ordered pairs (a tie is half a pair).
 class ResampledPairs {
 public:
     explicit ResampledPairs(std::size_t resamples)
@@ -169,7 +169,7 @@ public:
           tied_negatives_(resamples) {}
 
     void add(const FramesByScore& frames, const Weights& weights) {
-        std::optional<Scored> first;  // of a score
+        std::optional<Scored> first;  // first frame with a score
         bool is_tied = false;
         const auto end_score = [&] {
             if (is_tied)
@@ -226,7 +226,7 @@ private:
     Sums ordered_twice_;
     Sums positives_;
     Sums negatives_;
-    Sums tied_positives_;  ///< of the score at hand, 0 between two
+    Sums tied_positives_;  ///< of the current score, 0 between two
     Sums tied_negatives_;
 };
 
@@ -249,7 +249,7 @@ std::optional<Auroc> auroc(std::vector<std::vector<RankedFrame>>& groups, std::s
 }
 
 std::optional<Auroc> auroc(const FramesByScore& frames, std::size_t episodes, Likely likely) {
-    // Negated scores order a pair as its frames would with their classes exchanged.
+    // Negating scores orders pairs as exchanging the classes does.
     const bool exchanged = likely == Likely::smaller;
     std::vector<Pairs> pairs(episodes);
     std::vector<double> lower_negatives(episodes);

@@ -4,10 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
+#include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
+#include "data/recordings/open.hpp"
 #include "data/spill/pack.hpp"
 #include "data/text/quote.hpp"
 
@@ -19,10 +22,10 @@ using diag::Code;
 using diag::Failure;
 
 constexpr std::string_view kMagic = "etlc part 1\n";
-constexpr std::size_t kHash = 8;  ///< bytes, the last of the file: of all before
+constexpr std::size_t kHash = 8;  ///< bytes at the end of the file: hash of all before
 constexpr std::uint64_t kLargest = std::uint64_t{1} << 40U;
 
-/// What two parts of a call have to share.
+/// Returns whether two parts belong to one call.
 bool same_call(const Part& a, const Part& b) {
     return a.etlc == b.etlc && a.call == b.call && a.loaded == b.loaded && a.shards == b.shards &&
            a.episodes == b.episodes && a.labelled == b.labelled;
@@ -56,7 +59,7 @@ std::string as_file(std::string_view body) {
 }
 
 diag::Result<Part> parse_part(std::string_view bytes) {
-    const Failure damaged{Code::damaged_part, "is cut, or was changed after it was written"};
+    const Failure damaged{Code::damaged_part, "is truncated, or was changed after it was written"};
     if (!bytes.starts_with(kMagic))
         return Failure{Code::damaged_part,
                        fmt::format("is no part of a result: expected {} at its begin",
@@ -123,10 +126,10 @@ bool Joined::is_complete(diag::Sink& sink) const {
         const auto end =
             missing.begin() + static_cast<std::ptrdiff_t>(std::min(missing.size(), kMostTold));
         sink.report(data::in_file(
-            {Code::incomplete_parts, fmt::format("is one of {}, of which these are missing: {}{}",
-                                                 diag::counted(call_.shards, "shard"),
-                                                 fmt::join(missing.begin(), end, ", "),
-                                                 missing.size() > kMostTold ? ", ..." : "")},
+            {Code::incomplete_parts,
+             fmt::format("is one of {}; missing: {}{}", diag::counted(call_.shards, "shard"),
+                         fmt::join(missing.begin(), end, ", "),
+                         missing.size() > kMostTold ? ", ..." : "")},
             first_));
         return false;
     }
@@ -136,6 +139,50 @@ bool Joined::is_complete(diag::Sink& sink) const {
         {Code::incomplete_parts, "no shard has read it: its file has changed in between"},
         call_.episodes[static_cast<std::size_t>(unread - at_.begin())]));
     return false;
+}
+
+namespace {
+
+using diag::Code;
+
+constexpr std::uint64_t kLargestContents = std::uint64_t{1} << 40U;
+
+struct Kept {
+    std::vector<std::string> episodes;
+    std::vector<std::uint64_t> contents;
+};
+
+template <class Archive>
+void fields(Archive& archive, Kept& kept) {
+    archive(kept.episodes, kept.contents);
+}
+
+std::optional<Kept> read(const std::string& path) {
+    const auto bytes = data::read_file(path, kLargestContents, Code::unreadable_part);
+    return bytes ? data::unpacked<Kept>(*bytes) : std::nullopt;
+}
+
+}  // namespace
+
+std::uint64_t content_of(const std::string& episode) {
+    const std::string file = data::trace_file(episode);
+    return data::xxh64(data::ends_of_file(file) + episode.substr(file.size()));
+}
+
+std::vector<std::uint64_t> contents_of(const std::vector<std::string>& episodes,
+                                       const std::string& kept) {
+    if (!kept.empty())
+        if (auto found = read(kept);
+            found && found->episodes == episodes && found->contents.size() == episodes.size())
+            return std::move(found->contents);
+    std::vector<std::uint64_t> contents;
+    contents.reserve(episodes.size());
+    for (const std::string& episode : episodes) contents.push_back(content_of(episode));
+    // If writing fails, the next process reads the episodes again.
+    if (!kept.empty())
+        static_cast<void>(data::write_file_atomically(kept, data::packed(Kept{episodes, contents}),
+                                                      Code::unwritable_output));
+    return contents;
 }
 
 }  // namespace etlc::episodes

@@ -1,8 +1,6 @@
-// A call whose episodes are shared out among processes.
-// Takes: the numbers of shards, or all parts of a call. Gives: of a shard, its part; of all parts,
-// what one process would have made of each episode. Keeps true: what comes after the reading of
-// episodes is done once, over all of them in the order of the call, so it gives the bytes of one
-// process.
+// Distributes the episodes of a call among processes: a shard reads its own into a part, and a
+// merge has the results of all parts. Everything after the reading is done once, over all episodes
+// in the order of the call, so the output has the bytes of a single process.
 #pragma once
 
 #include <functional>
@@ -14,32 +12,31 @@
 #include "data/spill/pack.hpp"
 #include "episodes/parallel.hpp"
 #include "episodes/recording.hpp"
-#include "episodes/shared/contents.hpp"
 #include "episodes/shared/part.hpp"
 
 namespace etlc::episodes {
 
 class Sharing {
 public:
-    /// Of a process that makes several shards: which comes next, and what becomes of its part.
+    /// For a process that makes several shards: returns the next one, and stores a complete part.
     struct Turns {
         std::function<std::optional<std::uint32_t>()> next;
         std::function<std::optional<diag::Failure>(const Part&)> keep;
     };
 
-    /// One shard: `part` says which, and of what call. `contents`: as contents_of takes it.
+    /// Makes one shard, described by `part`. `contents`: see contents_of.
     static Sharing shard(Part part, std::string contents) {
         Sharing result(std::move(part), false);
         result.contents_ = std::move(contents);
         return result;
     }
-    /// Several, one after the other.
+    /// Makes several shards in turn.
     static Sharing shards(Part part, std::string contents, Turns turns) {
         Sharing result = shard(std::move(part), std::move(contents));
         result.turns_ = std::move(turns);
         return result;
     }
-    /// All of them, from these files.
+    /// Merges all parts, from these files.
     static Sharing merge(Joined all, std::vector<std::string> files) {
         Sharing result(all.call(), true);
         result.all_ = std::move(all);
@@ -49,7 +46,7 @@ public:
 
     bool merges() const { return merges_; }
     bool has_turns() const { return turns_.next != nullptr; }
-    /// False where no shard is left; else `part()` is that of the next, still empty.
+    /// Begins the next shard, with `part()` empty; returns false where none is left.
     bool begin_shard() {
         if (!has_turns()) return !std::exchange(has_begun_, true);
         const auto next = turns_.next();
@@ -57,16 +54,16 @@ public:
         part_.shard = next.value_or(0);
         return next.has_value();
     }
-    /// Its part is complete.
+    /// Stores the complete part.
     std::optional<diag::Failure> end_shard() const {
         return has_turns() ? turns_.keep(part_) : std::nullopt;
     }
     Part& part() { return part_; }
-    /// Where parts are merged: what was made of an episode.
+    /// Returns the merged result of an episode.
     std::string result(std::size_t place) const { return all_.result(place); }
-    /// What is merged, which no result may be written over.
+    /// Returns the merged files, which no output may overwrite.
     const std::vector<std::string>& files() const { return files_; }
-    /// The file in which processes keep by what episodes are shared out; empty: none.
+    /// Returns the file that keeps the numbers of contents; empty: none.
     const std::string& contents() const { return contents_; }
 
 private:
@@ -81,8 +78,8 @@ private:
     std::string contents_;
 };
 
-/// As labelled_in of the first episode; where parts are merged, from them. Nothing where the sink
-/// now says why. Of the request it uses `episodes`, `names` and `sharing`.
+/// Returns the labelled predicates of the first episode, or those of the merged parts. Returns
+/// nothing after an error. Uses `episodes`, `names` and `sharing` of the request.
 template <class Request>
 std::optional<std::vector<Index>> labelled_in_first(const check::Model& model,
                                                     const Request& request, diag::Sink& sink) {
@@ -97,9 +94,9 @@ std::optional<std::vector<Index>> labelled_in_first(const check::Model& model,
     return std::move(*labelled);
 }
 
-/// As in_order. Of a shard only its own are read, their results go into its part, and none is
-/// taken; where parts are merged, nothing is read. Whether all were taken; where not, and this is
-/// no shard, the sink now says why.
+/// Reads episodes as in_order does. A shard reads only its own, into its part, and `take` gets
+/// none; a merge reads nothing. Returns whether `take` got all; if not, an error was reported or
+/// this is a shard.
 template <class T, class Request, class Make, class Take>
 bool over_shared_episodes(const std::vector<std::string>& paths, const Request& request,
                           diag::Sink& sink, Make make, Take take) {

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "episodes/random.hpp"
-#include "fit/algebra/products.hpp"
+#include "fit/algebra/dense.hpp"
 
 namespace etlc::fit {
 
@@ -16,8 +16,8 @@ using Eigen::Index;
 constexpr int kMostRounds = 100;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// k-means++: each centre is a member, drawn by its squared distance to those there are. Nothing
-/// where all members are centres already.
+/// k-means++: draws each centre from the members by squared distance to the centres so far. Returns
+/// nothing where all members are centres already.
 std::optional<Members> seeds(const Points& points, const Members& members, Index k,
                              episodes::Random& random) {
     Members drawn;
@@ -41,7 +41,8 @@ std::optional<Members> seeds(const Points& points, const Members& members, Index
     }
 }
 
-/// Lloyd's rounds. A centre is the mean of a set of points; where it is, only products say.
+/// Lloyd's rounds. A centre is the mean of a set of points, represented by its products with the
+/// members.
 class Lloyd {
 public:
     Lloyd(const Points& points, const Members& members, const Members& seeds)
@@ -58,7 +59,7 @@ public:
         assign();
     }
 
-    /// Until no member changes its centre.
+    /// Repeats until no member changes its centre.
     void run() {
         for (int round = 0; round < kMostRounds; ++round) {
             take_means();
@@ -68,7 +69,7 @@ public:
 
     double inertia() const { return squared_.sum(); }
 
-    /// The largest cluster first.
+    /// Returns the centres, that of the largest cluster first.
     Matrix centres() const {
         Matrix found = Matrix::Zero(points_.centred().rows(), counts_.size());
         std::vector<std::size_t> sizes(alone_.size());
@@ -108,7 +109,7 @@ private:
         alone_[static_cast<std::size_t>(centre)] = kNobody;
     }
 
-    /// The centre is this point.
+    /// Moves the centre to this point.
     void put_alone(Index centre, Index point) {
         clear(centre);
         add(centre, 1, point);
@@ -116,8 +117,8 @@ private:
         alone_[static_cast<std::size_t>(centre)] = point;
     }
 
-    /// Each centre becomes the mean of the members that are nearest to it; one without any moves to
-    /// the member that is furthest from its own.
+    /// Moves each centre to the mean of its nearest members; one without any moves to the member
+    /// that is furthest from its own centre.
     void take_means() {
         for (Index c = 0; c < counts_.size(); ++c)
             if (alone_[static_cast<std::size_t>(c)] != kNobody) clear(c);
@@ -141,7 +142,7 @@ private:
         }
     }
 
-    /// Whether a member has another nearest centre than before.
+    /// Assigns members to their nearest centres; returns whether any changed.
     bool assign() {
         bool changed = false;
         for (Index i = 0; i < squared_.size(); ++i) {
@@ -160,12 +161,12 @@ private:
     const Points& points_;
     const Members& members_;
     std::vector<Index> nearest_;  ///< centre of each member
-    Vector squared_;              ///< per member, its squared distance to that
-    std::vector<Index> mean_of_;  ///< per member, the centre whose mean it is counted in
-    std::vector<Index> alone_;    ///< per centre: the point that it is, if it is no mean
-    Matrix sums_;     ///< per member and centre: its product with the sum of the centre's points
-    Vector counts_;   ///< of these points
-    Vector squares_;  ///< per centre: its product with itself
+    Vector squared_;              ///< per member, the squared distance to that centre
+    std::vector<Index> mean_of_;  ///< per member, the centre whose mean includes it
+    std::vector<Index> alone_;    ///< per centre, the point that it is; kNobody for a mean
+    Matrix sums_;     ///< per member and centre, the product with the sum of the centre's points
+    Vector counts_;   ///< number of these points
+    Vector squares_;  ///< per centre, the product with itself
 };
 
 }  // namespace
@@ -178,7 +179,8 @@ Points::Points(const Matrix& points)
 }
 
 double Points::squared_distance(Index i, Index j) const {
-    constexpr double kFewDigits = 1e-8;  // what is left of a difference; then it is taken directly
+    constexpr double kFewDigits =
+        1e-8;  // below this share cancellation is severe: subtract the points instead
     const double all = products_(i, i) + products_(j, j);
     const double squared = all - 2 * products_(i, j);
     return squared > kFewDigits * all ? squared : (centred_.col(i) - centred_.col(j)).squaredNorm();

@@ -1,15 +1,13 @@
-// Cluster centres, and the frames nearest to them.
-// Takes: points, as columns. Gives: k centres, largest cluster first. Keeps true: the same points
-// in the same order give the same bits. All goes by the products of pairs of points, which are
-// computed once: n^2 numbers, however many centres and parts are asked for. Sources: Lloyd, "Least
-// Squares Quantization in PCM", 1982; Arthur, Vassilvitskii, "k-means++: The Advantages of Careful
-// Seeding", 2007.
+// k-means clustering, largest cluster first, and the points nearest to the centres. The same points
+// in the same order give the same bits. Works on the products of pairs of points, n^2 numbers that
+// are computed once for all centres and parts. Sources: Lloyd, "Least Squares Quantization in PCM",
+// 1982; Arthur, Vassilvitskii, "k-means++: The Advantages of Careful Seeding", 2007.
 #pragma once
 
 #include <optional>
 #include <vector>
 
-#include "fit/algebra/affine.hpp"
+#include "fit/algebra/dense.hpp"
 
 namespace etlc::fit {
 
@@ -20,10 +18,10 @@ public:
 
     Eigen::Index size() const { return centred_.cols(); }
     Vector operator[](Eigen::Index i) const { return centred_.col(i) + middle_; }
-    /// Of two points.
+    /// Returns the squared distance of two points.
     double squared_distance(Eigen::Index i, Eigen::Index j) const;
     const Matrix& products() const { return products_; }
-    /// From their mean, about which products lose the fewest digits.
+    /// Returns the points minus their mean, about which products lose the fewest digits.
     const Matrix& centred() const { return centred_; }
     const Vector& middle() const { return middle_; }
 
@@ -33,15 +31,16 @@ private:
     Matrix products_;  ///< n x n
 };
 
-/// Numbers of points, ascending.
+/// Indices of points, ascending.
 using Members = std::vector<Eigen::Index>;
 
-/// The centres of these points, as columns: the best of kStarts. Nothing where there are fewer than
-/// k different points.
+/// Returns the centres of these points, as columns: the best of kStarts runs. Returns nothing where
+/// fewer than k points differ.
 inline constexpr int kStarts = 4;
 std::optional<Matrix> k_means(const Points& points, const Members& members, Eigen::Index k);
 
-/// Per centre which of the members is nearest to it, and to no centre before it.
+/// Returns per centre the index of the member that is nearest to it and not taken by a centre
+/// before it.
 std::vector<std::size_t> nearest_points(const Points& points, const Members& members,
                                         const Matrix& centres);
 

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "fit/algebra/cholesky.hpp"
+#include "fit/algebra/dense.hpp"
 
 namespace etlc::fit {
 
 namespace {
 
-/// The first of two elements of equal magnitude decides.
+/// Makes the element of greatest magnitude positive; of equal ones, the first.
 Vector with_sign(const Vector& direction) {
     Eigen::Index greatest = 0;
     direction.cwiseAbs().maxCoeff(&greatest);
@@ -21,7 +21,8 @@ bool has_both(const Moments& moments) {
     return moments.frames(0) > 0 && moments.frames(kHolds) > 0;
 }
 
-/// How many standard deviations within classes the class means of `moments` are apart along it.
+/// Returns the distance of the class means along a direction, in standard deviations within
+/// classes.
 double separation(const Moments& moments, const Vector& direction) {
     const double apart = direction.dot(moments.mean(kHolds) - moments.mean(0));
     const double variance = moments.within_along(direction) / static_cast<double>(moments.frames());
@@ -34,7 +35,7 @@ void shrink(Matrix& covariance, double shrinkage) {
     covariance.diagonal().array() += shrinkage * mean;
 }
 
-/// `within`: its covariance within classes. `room`: memory for another such matrix.
+/// `within`: the covariance within classes. `room`: memory for another such matrix.
 std::optional<Affine> discriminant(const Moments& moments, const Matrix& within, double shrinkage,
                                    Matrix& room) {
     if (!has_both(moments)) return std::nullopt;

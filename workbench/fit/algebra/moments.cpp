@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <map>
 
-#include "fit/algebra/products.hpp"
+#include "fit/algebra/dense.hpp"
 
 namespace etlc::fit {
 
 namespace {
 
-/// What the scatter of two sets has beside the scatter of each: `factor` v v^T, where v is from the
-/// one mean to the other.
+/// Returns the factor of v v^T, v being the difference of two means, that the scatter of their
+/// union has beyond the sum of both scatters.
 double between(std::uint64_t a, std::uint64_t b) {
     const auto n = static_cast<double>(a);
     const auto m = static_cast<double>(b);

@@ -1,7 +1,5 @@
-// What `etlc fit --suggest` tries for a predicate.
-// Takes: the point that the predicate measures. Gives: per candidate a distance and the
-// declarations that it needs, as lines of a spec. Keeps true: names are new; the same declaration
-// is made once.
+// The distances that `etlc fit --suggest` tries for a predicate, with the declarations that they
+// need, as lines of a spec. Names are new, and equal declarations are made once.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +10,20 @@
 
 namespace etlc::fit {
 
-/// The names in a spec, and whatever else looks like one.
+/// Returns all words of a spec, which include its names.
 std::set<std::string> words_of(std::string_view spec);
 
-/// Lines that declare something, under names that start with a prefix.
+/// Declarations under names that start with a prefix.
 class Declarations {
 public:
-    /// Names are none of `taken`, and are there from now on. It outlives this.
+    /// Avoids the names in `taken`, and adds its own to them; `taken` outlives this.
     Declarations(std::string prefix, std::set<std::string>& taken)
         : prefix_(std::move(prefix)), taken_(taken) {}
 
-    /// The name of `kind NAME = text;`, which ends in the role where none has that yet.
+    /// Returns the name of `kind NAME = text;`, and declares it, with the role as its end, if it is
+    /// new.
     std::string name(const std::string& kind, const std::string& role, const std::string& text);
-    /// A name that is none of those taken.
+    /// Returns a new name.
     std::string unused(const std::string& wanted);
 
     const std::vector<std::string>& lines() const { return lines_; }
@@ -40,24 +39,25 @@ private:
     std::vector<std::string> lines_;
 };
 
-/// What a candidate is made of; the words are those of the language.
+/// The parts of a candidate, in words of the language.
 struct Candidate {
     std::string_view map;       ///< method of the projection; empty: none
     std::uint32_t r = 0;        ///< its rows
-    bool discriminant = false;  ///< behind it, or of the point itself
+    bool discriminant = false;  ///< a discriminant of the projection, or of the point
     std::string_view targets;   ///< method of the targets
     std::uint32_t k = 0;        ///< their rows; 0: one
     std::string_view distance;  ///< "mahalanobis": by the fitted metric
-    bool contrast = false;  ///< less the same to the frames at which the predicate does not hold
+    bool contrast =
+        false;  ///< minus the same distance to the frames at which the predicate does not hold
 };
 
-/// Those that a point of this dimension allows.
+/// Returns the candidates that fit a point of this dimension.
 std::vector<Candidate> candidates(std::uint32_t dimension);
 
-/// "min l2(pca 16(z), 8 medoids), contrast"
+/// Describes a candidate: "min l2(pca 16(z), 8 medoids), contrast".
 std::string described(const Candidate& candidate, const std::string& point);
 
-/// The distance of the candidate, from `point`, to frames at which `predicate` holds.
+/// Returns the distance of the candidate, from `point`, to frames at which `predicate` holds.
 std::string expression(const Candidate& candidate, const std::string& point,
                        const std::string& predicate, Declarations& declarations);
 

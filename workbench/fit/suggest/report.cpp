@@ -1,4 +1,4 @@
-// Suggestions for people and for programs.
+// Prints suggestions as text and as JSON.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::string row(const Suggestion& one) {
                        one.lines.empty() ? " (as it is)" : "");
 }
 
-/// What to paste, or that nothing is to be.
+/// Prints the lines to paste, if any.
 std::string lines_of(const Suggestion& one) {
     if (one.lines.empty()) return "  nothing: the predicate as it is\n";
     std::string text;
@@ -41,7 +41,7 @@ std::string report(const Suggestions& all) {
     if (!all.ranked.front().auroc) return text;
     text += "\nBest:\n" + lines_of(all.ranked.front());
     if (all.recommended != 0)
-        text += "\nRecommended, for it costs least of those marked *:\n" +
+        text += "\nRecommended, the cheapest of those marked *:\n" +
                 lines_of(all.ranked[all.recommended]);
     return text;
 }

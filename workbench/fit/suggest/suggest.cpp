@@ -8,7 +8,7 @@
 #include "data/text/quote.hpp"
 #include "diag/diag.hpp"
 #include "episodes/admission/admission.hpp"
-#include "episodes/unmarked.hpp"
+#include "episodes/data_warnings.hpp"
 #include "fit/separation.hpp"
 #include "fit/suggest/candidates.hpp"
 #include "plan/budget/budget.hpp"
@@ -35,7 +35,7 @@ bool refuse(const check::Model& model, const std::string& name, const std::strin
     return false;
 }
 
-/// Those to suggest for, in the order of the model.
+/// Returns the predicates to suggest for, in the order of the model.
 std::optional<std::vector<Index>> asked_for(const check::Model& model,
                                             const std::vector<std::string>& names,
                                             const std::vector<Index>& labelled, diag::Sink& sink) {
@@ -71,7 +71,8 @@ std::optional<std::vector<Index>> asked_for(const check::Model& model,
     return result;
 }
 
-/// With the bound of the predicate where that is calibrated; a number is of another scale.
+/// Declares the predicate, with its threshold where that is calibrated; a literal is on another
+/// scale.
 std::string predicate_line(const Predicate& predicate, const std::string& expression) {
     const bool calibrated = predicate.threshold.origin != check::ThresholdOrigin::literal;
     return fmt::format("predicate {} = {} <= {}{};", predicate.name, expression,
@@ -83,7 +84,7 @@ std::string with_lines(std::string_view spec, const std::vector<std::string>& li
     return fmt::format("{}\n{}\n", spec, fmt::join(lines, "\n"));
 }
 
-/// One spec that has all candidates beside what it has already.
+/// One spec with all candidates beside its own declarations.
 class Trials {
 public:
     Trials(const check::Model& model, const CheckText& check_text)
@@ -92,7 +93,7 @@ public:
           words_(words_of(model.file.text())),
           taken_(words_) {}
 
-    /// The predicate as it is, and every candidate that the language allows.
+    /// Adds the predicate itself, and every candidate that the language allows.
     Suggestions add(Index predicate) {
         const Predicate& own = model_.predicates[predicate];
         Suggestions result{own.name, {}, 0};
@@ -118,14 +119,14 @@ public:
         return result;
     }
 
-    /// Each candidate alone is a spec; all together may be larger than one can be.
+    /// Returns the spec. Each candidate alone is valid; all together may exceed the limits.
     std::optional<check::Model> spec() const {
         std::vector<std::string> lines = lines_;
         lines.insert(lines.end(), trials_.begin(), trials_.end());
         return check_text_(with_lines(model_.file.text(), lines));
     }
 
-    /// In the order in which they were added.
+    /// Returns the predicates to measure, in the order in which they were added.
     std::vector<Measured> measured(const check::Model& spec) const {
         std::vector<Measured> result;
         for (const auto& [trial, label] : measured_)
@@ -134,7 +135,8 @@ public:
     }
 
 private:
-    /// Nothing where it is no spec, as cosine is not of scalars that are missing.
+    /// Returns nothing where the candidate is invalid, such as cosine of scalars that may be
+    /// missing.
     std::optional<Suggestion> suggestion_of(const Candidate& candidate, const std::string& point,
                                             const Predicate& predicate) const {
         std::set<std::string> taken = words_;
@@ -155,14 +157,14 @@ private:
 
     const check::Model& model_;
     const CheckText& check_text_;
-    const std::set<std::string> words_;  ///< of the spec
-    std::set<std::string> taken_;        ///< with what was declared since
+    const std::set<std::string> words_;  ///< words of the spec
+    std::set<std::string> taken_;        ///< with the names declared since
     std::vector<std::string> lines_;
     std::vector<std::string> trials_;
     std::vector<std::pair<std::string, std::string>> measured_;  ///< predicate, and whose labels
 };
 
-/// Why one of the folds cannot be fitted for it; empty where all can.
+/// Returns why some fold cannot be fitted for the predicate; empty where all can.
 std::string why_not(const std::vector<Filled>& folds, Index predicate) {
     for (const Filled& fold : folds)
         if (const auto refused = refused_for(fold, predicate))
@@ -197,7 +199,7 @@ void rank(Suggestions& all) {
             all.recommended = i;
 }
 
-/// Nothing where the sink now says why.
+/// Returns nothing after an error.
 std::optional<Separations> measure(const check::Model& spec, const std::vector<Measured>& measured,
                                    const Request& request, Suggested& suggested, diag::Sink& sink) {
     fix_order_of_sums();

@@ -1,7 +1,6 @@
-// `etlc fit --suggest`: which distances would separate a predicate, and what they cost.
-// Takes: a spec, and episodes. Gives: candidates in the order of how well they separate on episodes
-// that nothing was fitted on. Keeps true: what is measured is a spec of these very lines, by the
-// way that `etlc fit` measures it, so the lines give the figures that stand beside them.
+// Suggests distances that separate a predicate, and their costs: `etlc fit --suggest`. Candidates
+// are ranked by how well they separate on episodes that were not fitted on. The suggested lines are
+// measured as `etlc fit` would measure them, so they give the figures beside them.
 #pragma once
 
 #include <functional>
@@ -12,24 +11,25 @@
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
 #include "episodes/ranking/auroc.hpp"
-#include "fit/request.hpp"
+#include "fit/readings.hpp"
 
 namespace etlc::fit {
 
 struct Suggestion {
-    std::string distance;            ///< in words: "min l2(z, 8 medoids)"
-    std::vector<std::string> lines;  ///< to paste in place of the predicate; empty: it is that
-    std::uint64_t elements = 0;      ///< that a step compares, those of projections with them
-    std::optional<episodes::Auroc> auroc;  ///< nothing: it cannot be fitted
-    std::string why_not;                   ///< then
-    bool ties = false;                     ///< its interval reaches that of the best
+    std::string distance;  ///< description: "min l2(z, 8 medoids)"
+    std::vector<std::string>
+        lines;  ///< lines to paste in place of the predicate; empty: the predicate itself
+    std::uint64_t elements = 0;  ///< elements compared per step, those of projections included
+    std::optional<episodes::Auroc> auroc;  ///< empty where it cannot be fitted
+    std::string why_not;                   ///< the reason then
+    bool ties = false;                     ///< its interval overlaps that of the best
 };
 
 struct Suggestions {
     std::string predicate;
-    std::vector<Suggestion> ranked;  ///< best first; behind them those that cannot be fitted
-    /// Of `ranked`: among those that tie with the best, the first that costs no more than the
-    /// cheapest and a tenth.
+    std::vector<Suggestion> ranked;  ///< best first, then those that cannot be fitted
+    /// Index into `ranked`: among those that tie with the best, the first that costs at most 10 %
+    /// more than the cheapest.
     std::size_t recommended = 0;
 };
 
@@ -40,11 +40,11 @@ struct Suggested {
     std::size_t folds = 0;
 };
 
-/// The model of a text in place of the spec's; nothing where it is no spec.
+/// Checks a text in place of the spec's; returns nothing where it is invalid.
 using CheckText = std::function<std::optional<check::Model>(const std::string& text)>;
 
-/// `names`: of predicates; none: all that have labels and can be suggested for. Nothing where the
-/// sink now says why.
+/// `names`: predicates; empty: all that have labels and can be suggested for. Returns nothing after
+/// an error.
 std::optional<Suggested> suggest(const check::Model& model, const CheckText& check_text,
                                  const std::vector<std::string>& names, const Request& request,
                                  diag::Sink& sink);

@@ -1,4 +1,4 @@
-// What all charts share: a drawing with margins, axes, and a line through points.
+// Shared by all charts: a drawing with margins, axes, and a line through points.
 
 // A drawing of `width` x `height` pixels whose origin is at the margins.
 function drawing(parent, width, height, margin) {
@@ -26,14 +26,14 @@ function yAxis(g, y, label, ticks = 4) {
       .attr("text-anchor", "middle").text(label);
 }
 
-// Through [x, y] pairs, in the data's numbers; with gaps where a y is no number.
+// Draws a line through [x, y] pairs of data, with gaps where y is not finite.
 function path(g, points, x, y, name) {
   const line = d3.svg.line().x((p) => x(p[0])).y((p) => y(p[1]))
     .defined((p) => Number.isFinite(p[1]));
   return g.append("path").attr("class", name).attr("d", line(points));
 }
 
-// The span of the finite ones, a little wider, so that no line lies on an edge.
+// Returns the span of the finite values, widened so that no line lies on an edge.
 function spanOf(values) {
   const finite = values.filter(Number.isFinite);
   let [low, high] = finite.length > 0 ? d3.extent(finite) : [0, 1];

@@ -1,15 +1,15 @@
-// The chosen episode: its numbers at the cursor, and why its verdicts are what they are.
+// The selected episode: its values at the cursor and the explanations of its verdicts.
 
 const view = { row: null, episode: null, timelines: null, step: 0, why: 0 };
 
-// What a track has at a step; of a reduced one, the least and the greatest of its bucket.
+// Returns the values of a track at a step: one, or the least and the greatest of its bucket.
 function valueAt(episode, of, index, step) {
   const series = episode.tracks[of]?.[index];
   if (!series) return [];
   return series.map((values) => values[placeOf(episode, values.length, step)]);
 }
 
-// Where a step stands among so many numbers of an episode.
+// Returns the index of a step in a series.
 function placeOf(episode, count, step) {
   if (count === episode.steps) return step;
   return Math.min(Math.floor((step + 0.5) * count / episode.steps), count - 1);

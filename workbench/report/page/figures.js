@@ -1,5 +1,4 @@
-// The top of the page: the figures of `etlc evaluate`, beside those of monitors that look at
-// nothing, and where thresholds come from.
+// The top of the page: figures of `etlc evaluate`, its baselines, and the origins of thresholds.
 
 function figureCell(of, key) {
   const interval = of[`${key}_interval`];
@@ -19,9 +18,9 @@ function headRow(...titles) {
 }
 
 const blindHeads = [
-  ["always true", "F1 of saying true every time"],
-  ["always false", "F1 of saying false every time"],
-  ["duration", "F1 of what the length of the episode, or the number of the step, says by itself"],
+  ["always true", "F1 of always claiming true"],
+  ["always false", "F1 of always claiming false"],
+  ["duration", "F1 of a threshold on the length of the episode, or the number of the step"],
 ];
 
 function blindCells(of, key) {
@@ -36,10 +35,10 @@ function predicateTable() {
       figureCell(of, "auroc"), ...blindCells(of, "f1"),
       element("td", { class: "number" }, counted(of.positives, "frame"))));
   return element("table", {}, headRow(["", ""], ["F1", "by frames, with its 95 % interval"],
-    ["precision", "of what it says holds, the part that does"],
-    ["recall", "of what holds, the part that it says"],
-    ["AUROC", "how well the distance tells the frames apart, whatever the threshold"],
-    ...blindHeads, ["truly so", "frames at which the truth holds"]), body);
+    ["precision", "share of its claims that are true"],
+    ["recall", "share of the true cases that it claims"],
+    ["AUROC", "how well the distance separates the frames, at any threshold"],
+    ...blindHeads, ["labelled true", "frames at which the truth holds"]), body);
 }
 
 function delayText(detection) {
@@ -61,7 +60,7 @@ function monitorTable() {
     if (!figures) continue;
     if (!of.evaluable) {
       row.append(element("td", { colspan: 7 },
-        `no truth of ${of.without_truth.join(", ")}: not evaluated`));
+        `no labels for ${of.without_truth.join(", ")}: not evaluated`));
       continue;
     }
     row.append(figureCell(of, "episode_agreement"), figureCell(of, "step_agreement"),
@@ -70,9 +69,10 @@ function monitorTable() {
   }
   const heads = [["", ""], ["formula", ""]];
   if (figures)
-    heads.push(["episodes right", "part of the episodes whose last verdict is the true one"],
-      ["steps right", "part of the steps"], ["F1", "by episodes, with its 95 % interval"],
-      ...blindHeads, ["delay", "mean time from the true turn to the monitor's"]);
+    heads.push(["episodes right", "share of the episodes whose last verdict is correct"],
+      ["steps right", "share of the steps whose verdict is correct"],
+      ["F1", "by episodes, with its 95 % interval"],
+      ...blindHeads, ["delay", "mean time from the true change to the monitor's"]);
   return element("table", {}, headRow(...heads), body);
 }
 
@@ -115,5 +115,5 @@ function showFigures() {
   if (figures) {
     fill("predicate-figures", element("h2", {}, "Predicates"), predicateTable());
   }
-  fill("provenance", element("h2", {}, "Thresholds and what they promise"), provenanceTable());
+  fill("provenance", element("h2", {}, "Thresholds and guarantees"), provenanceTable());
 }

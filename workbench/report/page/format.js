@@ -19,7 +19,7 @@ function fill(id, ...children) {
   document.getElementById(id).replaceChildren(...children);
 }
 
-// A figure as etlc's tables have it: "0.95".
+// Formats a figure as etlc's tables do: "0.950".
 const rate = (value) => (value === null || value === undefined ? "–" : value.toFixed(3));
 
 function measured(value) {

@@ -1,6 +1,6 @@
-// The list of episodes, which sorts and filters; worst first.
+// The list of episodes, worst first, with sorting and filters.
 
-// A row of the data as workbench/report/document.cpp writes it, with names.
+// Names the members of a row that workbench/report/document.cpp writes.
 const episodes = data.rows.map(
   ([path, frames, outcomes, missing, judged, parts, buckets, series, pictures], place) => {
     const finite = outcomes.map((of) => of[1]).filter((value) => value !== null);
@@ -19,7 +19,7 @@ const episodes = data.rows.map(
 const orders = {
   worst: { title: "Worst", help: "wrong verdicts, then the share of wrong frames; without truths " +
     "alarms, then the least robustness", key: (episode) => episode.place },
-  margin: { title: "Margin", help: "the least distance of a last verdict from turning",
+  margin: { title: "Margin", help: "the smallest change that would flip a last verdict",
     key: (episode) => episode.margin },
   alarm: { title: "Alarm", help: "the step of the first alarm", key: (episode) => episode.alarm },
   name: { title: "Name", help: "the file", key: (episode) => episode.path },
@@ -60,7 +60,7 @@ function drawMoreRows() {
   markSelected();
 }
 
-// Within the list: the page itself stays where it is.
+// Scrolls the list, not the page.
 function bringIntoSight(row) {
   const box = row.parentElement;
   const top = row.offsetTop;
@@ -104,17 +104,17 @@ function leftOut() {
   const rounded = episodes.filter((episode) => episode.series !== null && episode.parts > 0);
   const reduced = episodes.filter((episode) => episode.series !== null && episode.buckets > 0);
   if (unlisted > 0)
-    found.push(`${counted(unlisted, "episode")} that went better left out of the list`);
+    found.push(`${counted(unlisted, "better episode")} not listed`);
   if (without > 0) found.push(`${counted(without, "listed episode")} without timelines`);
   if (rounded.length > 0)
     found.push(`numbers of ${counted(rounded.length, "episode")} rounded to 1/` +
       `${d3.min(rounded, (episode) => episode.parts)} of their span, or finer`);
   if (reduced.length > 0)
-    found.push(`of ${counted(reduced.length, "episode")} only the least and greatest number ` +
+    found.push(`${counted(reduced.length, "episode")} reduced to the least and greatest numbers ` +
       "of every few steps");
   if (found.length === 0) return "";
   return `To keep this page small: ${found.join("; ")}. Verdicts and truths are exact. ` +
-    "etlc report --size says how large it may be.";
+    "etlc report --size sets its size.";
 }
 
 function showList() {

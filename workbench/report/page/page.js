@@ -1,4 +1,4 @@
-// Keys, the colours, and the beginning.
+// Keys, colours, and the start of the page.
 
 const keys = {
   ArrowLeft: (event) => moveCursor(view.step - (event.shiftKey ? 10 : 1)),

@@ -1,5 +1,5 @@
-// What the camera saw at the cursor, or at the last step before it that there is a picture of, and
-// beside it the nearest row of each target that is made of pictures.
+// The camera picture at the cursor, or the last one before it, and the nearest row of each
+// target that is made of pictures.
 
 let sheet = null;  // the pictures of the episode, one below the other; null: they are files
 
@@ -26,7 +26,7 @@ function showPictures() {
   image.src = pictures.files[0];
 }
 
-// One for each predicate whose distance is to such a target.
+// Shows one for each predicate that measures from such a target.
 function showNearest() {
   fill("nearest", ...data.predicates.map((predicate, index) => {
     const [row] = valueAt(view.episode, "nearest", index, view.step);

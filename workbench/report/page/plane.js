@@ -1,5 +1,5 @@
-// The episode's way through the space of an embedding: its first two principal components, with the
-// targets in them, coloured by time.
+// The episode's path through an embedding, coloured by time, and the targets, in the plane of
+// the first two principal components.
 
 const planeSize = { width: 290, height: 240 };
 const planeMargin = { left: 34, right: 8, top: 8, bottom: 34 };

@@ -1,5 +1,5 @@
-// A card for each predicate: the distances inside and outside, the curves that all thresholds make,
-// and the scores that a calibrated threshold was taken from.
+// A card for each predicate: distances inside and outside, curves over all thresholds, and the
+// scores behind a calibrated threshold.
 
 const cardSize = { width: 340, height: 210 };
 const cardMargin = { left: 52, right: 12, top: 10, bottom: 40 };
@@ -20,10 +20,10 @@ function thresholdLine(g, x, height, threshold) {
     .attr("y1", 0).attr("y2", height);
 }
 
-// Parts of the frames of each class, so that a rare class is seen beside a frequent one.
+// Draws shares of each class, so that a rare class is visible beside a frequent one.
 function drawHistogram(card, predicate) {
   const { edges, inside, outside } = predicate.distribution;
-  const { g, width, height } = cardDrawing(card, "Distances: where it truly holds, and elsewhere");
+  const { g, width, height } = cardDrawing(card, "Distances of the frames labelled true and false");
   const x = scale(d3.extent([...edges, predicate.threshold]), [0, width]);
   const parts = [["outside", outside], ["inside", inside]].map(([name, counts]) => {
     const all = d3.sum(counts);
@@ -37,11 +37,11 @@ function drawHistogram(card, predicate) {
   }
   thresholdLine(g, x, height, predicate.threshold);
   xAxis(g, x, height, predicate.expression);
-  yAxis(g, y, "part of the frames", 4);
+  yAxis(g, y, "share of the frames", 4);
   const key = element("p", { class: "key" });
   for (const { name, all } of [parts[1], parts[0]])
     key.append(element("span", { class: `swatch ${name}` }),
-      `${name === "inside" ? "truly so" : "not so"}: ${counted(all, "frame")} `);
+      `${name === "inside" ? "true" : "false"}: ${counted(all, "frame")} `);
   key.append(element("span", { class: "swatch threshold" }),
     `threshold ${measured(predicate.threshold)}`);
   card.lastChild.append(key);

@@ -1,10 +1,10 @@
 // The timelines of an episode: one drawing, one time axis, a lane for each predicate and monitor.
-// A lane has a chart, and below it strips: what was said, what was true, and where they differ.
+// A lane has a chart, and strips below it: claims, truths, and where they differ.
 
 const laneSize = { title: 18, predicate: 64, monitor: 54, strip: 7, gap: 12 };
 const laneMargin = { left: 62, right: 14 };
 
-// Steps in a row with the same code, as [first, end, code].
+// Returns the runs of equal codes as [first, end, code].
 function runsOf(codes) {
   const runs = [];
   for (let i = 0; i < codes.length; i++) {
@@ -14,8 +14,7 @@ function runsOf(codes) {
   return runs;
 }
 
-// [step, value] of a track; of a reduced one the least and greatest of each bucket, one after the
-// other.
+// Returns [step, value] pairs of a track; for a reduced one the least and greatest of each bucket.
 function pointsOf(episode, series) {
   if (episode.buckets === 0) return Array.from(series[0], (value, step) => [step, value]);
   const points = [];
@@ -136,7 +135,7 @@ class Timelines {
       .attr("y", top).attr("height", laneSize.strip);
   }
 
-  // Between the bounds of a prefix monitor's robustness, and where they meet for good.
+  // Shades the area between the bounds of a prefix monitor's robustness, until they meet.
   drawBounds(g, lane) {
     if (lane.bounds) {
       const [lower, upper] = lane.bounds;
@@ -175,7 +174,7 @@ class Timelines {
     this.listeners.drawn();
   }
 
-  // By a factor about a step.
+  // Zooms by a factor about a step.
   zoomAbout(step, factor) {
     const [from, to] = this.domain;
     const width = Math.max((to - from) * factor, 4);
@@ -189,7 +188,7 @@ class Timelines {
       .classed("hidden", !isSeen);
   }
 
-  // The samples that a verdict rests on, and the one whose robustness it has.
+  // Marks the samples that explain a verdict, and the one whose robustness it has.
   mark(why) {
     this.marks.selectAll("*").remove();
     if (!why) return;
@@ -201,7 +200,7 @@ class Timelines {
       this.marks.append("rect").attr("class", "sample").attr("x", this.x(mark.first - 0.5))
         .attr("width", Math.max(this.x(mark.last + 0.5) - this.x(mark.first - 0.5), 2))
         .attr("y", lane.top + laneSize.title).attr("height", lane.chart)
-        .append("title").text(`${why.status} rests on this`);
+        .append("title").text(`${why.status} depends on this`);
     }
     const lane = why.critical && laneOf(why.critical);
     if (!lane) return;

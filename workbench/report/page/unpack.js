@@ -1,4 +1,4 @@
-// The series of an episode: base64 of deflated bytes, as workbench/report/packing/pack.hpp writes them.
+// Unpacks the series of an episode: base64 of deflated bytes that workbench/report/blob.cpp writes.
 
 async function inflated(text) {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
@@ -6,7 +6,7 @@ async function inflated(text) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-// Numbers of `width` bytes, which lie byte by byte of all of them.
+// Reads numbers of `width` bytes, stored byte by byte of all numbers.
 function words(bytes, at, count, width) {
   const all = new Uint32Array(count);
   for (let byte = 0; byte < width; byte++)
@@ -37,8 +37,8 @@ const readers = {
   },
 };
 
-// {steps, buckets, why, tracks}: tracks by what they are of and which one, each a list of series:
-// one, or the least and the greatest of every bucket.
+// Returns {steps, buckets, why, tracks}. A track, by kind and index, is a list of series: one,
+// or two with the least and the greatest numbers of each bucket.
 async function unpack(text) {
   const bytes = await inflated(text);
   const length = new DataView(bytes.buffer).getUint32(0, true);

@@ -1,31 +1,29 @@
 // SPDX-License-Identifier: MIT
-// From the values of K rows to one: min, max, mean, the n-th smallest; and which row is nearest.
-// Takes: rows' values in ascending row order, each a float that is not negative (+inf where it
-// overflowed). Gives: the aggregate and the index of the nearest row, the lowest on ties. Keeps
-// true: values are compared as the integers of their bits, whose order is theirs; work per row is
-// bounded (Kth: n moves), no heap.
+// Aggregation of the values of rows: min, max, mean, the n-th smallest; and the nearest row. Takes:
+// the values in row order, floats that are not negative (+inf after overflow). Gives: the aggregate
+// and the index of the nearest row, the lowest on ties. Keeps true: values are compared by their
+// bits as integers, which have the same order; work per row is bounded (Kth: n moves); no heap.
 #pragma once
 
-#include "etlmon/bits.hpp"
+#include "etlmon/distance/storage.hpp"
 
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// What a predicate's distance was: telemetry, and where its robustness comes from.
+/// The distance of a predicate, for its robustness and telemetry.
 struct Measured {
-  float delta;  ///< the aggregated distance; NaN where it is unknown: a zero vector under cosine or
+  float delta;  ///< the aggregated distance; NaN if unknown, also of a zero vector under cosine or
                 ///< angular
-  uint32_t nearest;  ///< row of the nearest target, the lowest on ties; 0 where delta is unknown
+  uint32_t nearest;  ///< row of the nearest target, the lowest on ties; 0 if delta is unknown
 };
 
-/// What a predicate's distance is where its input is missing.
+/// The distance of a predicate whose input is missing.
 constexpr Measured kUnmeasured{kMissing, 0};
 
 namespace detail {
 
-/// A Measured as kernels return it: the bits of delta, above them the row. An integer comes back in
-/// registers on every machine, and what calls another kernel for its result can jump there, so that
-/// it needs no frame.
+/// A Measured as an integer: the row above the bits of delta. Every machine returns it in
+/// registers, and a kernel that calls another for its result needs no frame.
 using MeasuredBits = uint64_t;
 ETLMON_INLINE MeasuredBits packed(uint32_t delta, uint32_t nearest) noexcept {
   return static_cast<MeasuredBits>(nearest) << 32 | delta;
@@ -39,7 +37,7 @@ ETLMON_INLINE Measured unpacked(MeasuredBits m) noexcept {
 
 /// The nearest row so far.
 struct Nearest {
-  uint32_t least = 0xffffffffu;  ///< bits of its value; no value is that large
+  uint32_t least = 0xffffffffu;  ///< bits of its value; larger than any value
   uint32_t row = 0;
 
   ETLMON_INLINE void add(uint32_t bits, uint32_t at) noexcept {
@@ -48,7 +46,7 @@ struct Nearest {
       least = bits;
       row = at;
     }
-#else  // without a branch: any row is as likely as any other
+#else  // without a branch, since rows are equally likely
     at = in_register(at);
     row = bits < least ? at : row;
     least = bits < least ? bits : least;
@@ -56,7 +54,7 @@ struct Nearest {
   }
 };
 
-/// Keeps the n smallest values, ascending, in `values`, of which `count` are there.
+/// Keeps the n smallest values in `values`, ascending; `count` of them are set.
 ETLMON_INLINE void keep_smallest(float* values, uint32_t n, uint32_t& count,
                                  uint32_t bits) noexcept {
   if (count == n && bits >= observe(values[n - 1])) return;
@@ -69,9 +67,9 @@ ETLMON_INLINE void keep_smallest(float* values, uint32_t n, uint32_t& count,
 
 /// The distance of the nearest target.
 struct Min {
-  static constexpr bool kNearest = true;  ///< the result is the nearest row's value
+  static constexpr bool kNearest = true;  ///< the result is the value of the nearest row
   static constexpr bool kOfDistances =
-      false;  ///< order statistics work on values: one finish() for all rows
+      false;  ///< order statistics are computed on values: one finish() for all rows
   ETLMON_INLINE void add(uint32_t) noexcept {}
   ETLMON_INLINE uint32_t result(const detail::Nearest& nearest) const noexcept {
     return nearest.least;
@@ -98,17 +96,19 @@ struct Mean {
   float sum = 0.0f;
 };
 
-/// The n-th smallest distance, from 1; n known to the compiler.
-template <uint32_t N>
+/// The Nth smallest distance, from 1.
+template <uint32_t Nth>
 struct Kth {
   static constexpr bool kNearest = false;
   static constexpr bool kOfDistances = false;
-  static_assert(N >= 1, "the n-th smallest counts from 1");
-  ETLMON_INLINE void add(uint32_t bits) noexcept { detail::keep_smallest(values, N, count, bits); }
-  ETLMON_INLINE uint32_t result(const detail::Nearest&) const noexcept {
-    return detail::observe(values[N - 1]);
+  static_assert(Nth >= 1, "the n-th smallest counts from 1");
+  ETLMON_INLINE void add(uint32_t bits) noexcept {
+    detail::keep_smallest(values, Nth, count, bits);
   }
-  float values[N] = {};
+  ETLMON_INLINE uint32_t result(const detail::Nearest&) const noexcept {
+    return detail::observe(values[Nth - 1]);
+  }
+  float values[Nth] = {};
   uint32_t count = 0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The kernel that runs: best<...>(). Gives: where the machine has vectors, what vectors/ has; else
-// `baseline`, the kernel that measures row after row, element after element. Keeps true: here, and
-// for views.hpp, is where the runtime includes vectors/; firmware without vectors never does.
+// Selects the kernel: best<...>(). Gives: the kernels of vectors/ if the machine has vectors,
+// otherwise `baseline`, which measures element by element. Keeps true: only this file and views.hpp
+// include vectors/, and not on machines without vectors.
 #pragma once
 
 #include "etlmon/distance/storage.hpp"
@@ -32,14 +32,14 @@ namespace baseline {
 #undef ETLMON_WIDE
 #undef ETLMON_TARGET
 
-template <class Metric, class Aggregation, class Size, bool InColumns, class G>
-ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, Size size,
+template <class Metric, class Aggregation, class Size, bool InColumns, class Elements>
+ETLMON_INLINE Measured best_of(const float* z, Elements targets, const float* weights, Size size,
                                Aggregation aggregation) noexcept {
-  return unpacked(baseline::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size,
-                                                                         aggregation));
+  return unpacked(baseline::run<Metric, Aggregation, Size, InColumns, Elements>(z, targets, weights,
+                                                                                size, aggregation));
 }
 
-/// 1 / |z|, or 0: inverse_length in run.inc.
+/// Returns 1 / |z|, or 0: inverse_length in run.inc.
 template <class Size>
 ETLMON_INLINE float best_inverse_length(const float* z) noexcept {
   return baseline::inverse_length_of<Size>(z);
@@ -55,10 +55,10 @@ namespace etlmon {
 inline namespace ETLMON_BUILD {
 namespace detail {
 
-/// The kernel on rows, or columns, of T; on int8 with their scale.
-template <class Metric, class Aggregation, class Size, bool InColumns, class T>
-ETLMON_INLINE Measured best(const float* z, const T* targets, const float* weights, Size size,
-                            Aggregation aggregation) noexcept {
+/// Runs the kernel on rows or columns; on int8 with their scale.
+template <class Metric, class Aggregation, class Size, bool InColumns, class Elements>
+ETLMON_INLINE Measured best(const float* z, const Elements* targets, const float* weights,
+                            Size size, Aggregation aggregation) noexcept {
   return best_of<Metric, Aggregation, Size, InColumns>(z, targets, weights, size, aggregation);
 }
 template <class Metric, class Aggregation, class Size, bool InColumns>

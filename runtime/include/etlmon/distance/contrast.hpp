@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The difference of two distances that are known within bounds.
-// Takes: two intervals of enclosed.hpp. Gives: the interval of the difference in float32. Keeps
-// true: rounding keeps the order of numbers, so the ends are the least and the greatest that any
-// build computes; where a distance is unknown, so is the difference.
+// The difference of two distances with bounds. Takes: two intervals of enclosed.hpp. Gives: the
+// interval of the difference in float32. Keeps true: rounding is monotonic, so the ends are the
+// least and the greatest number that any build computes; if a distance is unknown, so is the
+// difference.
 #pragma once
 
 #include "etlmon/distance/enclosed.hpp"

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The distances: how their sums are kept and what a sum over all elements means. What one element
-// adds stands in terms.inc, which is compiled once per instruction set. Gives: per distance a
-// struct that the kernels run over rows. Keeps true: the difference z - g comes first, always, so
-// a small distance is as exact as the difference is; |z|^2 + |g|^2 - 2 z.g decides nothing. Error
-// bounds: error_bounds.hpp. Each struct has
-//   Partial<V>     the running sums, V a float or a vector of them
-//   Point          what is computed once from z
+// The distances: their running sums, and the meaning of a sum over all elements. The term of one
+// element is in terms.inc, which is compiled once per instruction set. Gives: a struct per
+// distance, which the kernels run over rows. Keeps true: the difference z - g is computed first, so
+// a small distance is as exact as the difference; |z|^2 + |g|^2 - 2 z.g is not used. Error bounds:
+// error_bounds.hpp. Each struct has
+//   Partial<Vec>   the running sums; Vec is a float or a vector of them
+//   Point          values computed once from z
 //   row(sums)      a row's value, >= 0, ordered as the distance is
 //   finish(value)  the distance
-//   k...           what it reads, where it is sound, and kHighest: its range is [0, kHighest]
+//   k...           what it reads, where it is accurate, and its range [0, kHighest]
 #pragma once
 
 #include "etlmon/bits.hpp"
@@ -19,41 +19,50 @@ inline namespace ETLMON_BUILD {
 namespace detail {
 
 /// Sums of squares below this may have lost terms to underflow (to flush to zero under
-/// -ffast-math); they are computed again in scaled form. 2^-80: what a term of D <= 2^20 can lose
-/// is below one rounding of the sum.
+/// -ffast-math); they are recomputed in scaled form. 2^-80: the loss of at most 2^20 terms is below
+/// one rounding of the sum.
 constexpr uint32_t kLeastSquare = 0x17800000u;
 /// 2^100: the reciprocal of the root is a normal float.
 constexpr uint32_t kGreatestSquare = 0x71800000u;
 constexpr uint32_t kGreatest = 0x7f7fffffu;  ///< FLT_MAX
 
+/// Returns atan of a finite float, from the library.
+ETLMON_INLINE float arc_tangent(float x) noexcept {
+#if defined(__GNUC__)
+  return __builtin_atanf(x);
+#else
+  return atanf(x);
+#endif
+}
+
 struct NoPoint {};
 
 /// One running sum, or two.
-template <class V>
+template <class Vec>
 struct Sum {
-  V sum;
+  Vec sum;
 };
-template <class V>
+template <class Vec>
 struct TwoSums {
-  V apart, along;
+  Vec apart, along;
 };
 
-/// A distance that is a plain sum over elements needs no more than its term.
+/// The defaults of a distance that is a plain sum over elements.
 struct Additive {
-  template <class V>
-  using Partial = Sum<V>;
+  template <class Vec>
+  using Partial = Sum<Vec>;
   using Point = NoPoint;
   /// Reads one weight per element.
   static constexpr bool kWeighted = false;
-  /// Reads D x D weights.
+  /// Reads Dim x Dim weights.
   static constexpr bool kQuadratic = false;
-  /// Only the direction of z counts: z is scaled to length 1.
+  /// Depends only on the direction of z, which is scaled to length 1.
   static constexpr bool kDirection = false;
-  /// 1 / |z| stands in the place of weights.
+  /// Takes 1 / |z| in place of weights.
   static constexpr bool kLengthGiven = false;
-  /// A square: outside [kLeastSquare, FLT_MAX] the scaled form decides.
+  /// Its sum is a square: outside [kLeastSquare, FLT_MAX] the scaled form is used.
   static constexpr bool kRescales = false;
-  /// A row's value is its sum.
+  /// The value of a row is its sum.
   static constexpr bool kSum = true;
   static constexpr float kHighest = kInfinite;
   ETLMON_INLINE static float row(const Sum<float>& s) noexcept { return s.sum; }
@@ -65,7 +74,7 @@ struct UnitPoint {
   float scale;
 };
 
-// Sums that the kernels need besides the distances.
+// Other sums of the kernels.
 struct SquaredLength : Additive {};  ///< sum z^2
 struct Product : Additive {};        ///< sum x g
 
@@ -74,7 +83,7 @@ struct Product : Additive {};        ///< sum x g
 struct PowerOfTwo {
   float down, up;
 };
-/// Sum of squares of differences that are scaled first.
+/// Sum of squares of scaled differences.
 struct ScaledL2Sq : Additive {
   using Point = PowerOfTwo;
 };
@@ -101,7 +110,7 @@ struct MahalanobisDiagonal : L2 {
   static constexpr bool kWeighted = true;
 };
 
-/// sqrt of (z - g)^T W (z - g), W symmetric positive definite, D x D. Its sum is run.inc's
+/// sqrt of (z - g)^T W (z - g), W symmetric positive definite, Dim x Dim. Its sum is run.inc's
 /// quadratic_form.
 struct Mahalanobis : L2 {
   static constexpr bool kQuadratic = true;
@@ -127,10 +136,11 @@ struct Angular : detail::Additive {
   using Point = detail::UnitPoint;
   static constexpr bool kDirection = true;
   static constexpr bool kSum = false;
-  static constexpr float kHighest = 3.14159274f;  // the float32 nearest to pi lies above it
-  template <class V>
-  using Partial = detail::TwoSums<V>;
-  /// tan^2 of half the angle. Below 2^-60, |u + g|^2 is 0 but for rounding, and the angle pi.
+  static constexpr float kHighest = 3.14159274f;  // the float32 nearest to pi is above pi
+  template <class Vec>
+  using Partial = detail::TwoSums<Vec>;
+  /// Returns tan^2 of half the angle. If |u + g|^2 is below 2^-60, it is 0 but for rounding, and
+  /// the angle is pi.
   ETLMON_INLINE static float row(const detail::TwoSums<float>& p) noexcept {
     constexpr float kLeast = 8.67361738e-19f;
     return p.apart / (p.along > kLeast ? p.along : kLeast);
@@ -142,9 +152,8 @@ struct Angular : detail::Additive {
 };
 
 namespace detail {
-/// A mean of distances, or an end of an interval around one, that rounding may have carried beyond
-/// the greatest distance. A monitor's bounds are made from the range that the distance has; nothing
-/// may leave it.
+/// Clamps a mean of distances, or an end of an interval around one, that rounding may have carried
+/// beyond the greatest distance. The bounds of monitors rely on the range of the distance.
 template <class Metric>
 ETLMON_INLINE float capped(float distance) noexcept {
   if constexpr (Metric::kHighest <= FLT_MAX) {
@@ -154,7 +163,7 @@ ETLMON_INLINE float capped(float distance) noexcept {
   }
 }
 
-/// The same distance where 1 / |z| has been found already.
+/// The same distance for a given 1 / |z|.
 template <class Metric>
 struct LengthGiven : Metric {
   static constexpr bool kLengthGiven = true;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A distance known within bounds: what measuring a narrow copy of the targets says about the
-// targets themselves. Takes: the distance from z to rows in float16 or int8, and how far the
-// narrowing moved a row. Gives: an interval in which the distance to the float32 rows lies, in real
-// arithmetic and as any build computes it; whether a comparison can be told from it. Keeps true: an
-// interval is never too small, whatever -ffast-math does, and never leaves the distance's range, of
-// which a monitor's bounds are made; where it leaves a comparison open, or the distance is not
-// finite, doubtful() says so, and the float32 rows have to be measured.
+// A distance with bounds, measured on a narrow copy of the targets. Takes: the distance from z to
+// rows in float16 or int8, and how far narrowing moved a row. Gives: an interval that contains the
+// distance to the float32 rows, in real arithmetic and as any build computes it; whether it decides
+// a comparison. Keeps true: an interval is never too small, even under -ffast-math, and stays in
+// the range of the distance, on which bounds of monitors rely; if it does not decide a comparison,
+// or the distance is not finite, doubtful() is true, and the float32 rows have to be measured.
 #pragma once
 
 #include "etlmon/distance/aggregate.hpp"
@@ -16,24 +15,24 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// Numbers that a comparison may turn on: all of [low, high]. A threshold is one of a single
-/// number.
+/// The numbers [low, high] at which a comparison may change; a threshold is a single number.
 struct Cut {
   float low, high;
   constexpr Cut(float at) noexcept : low(at), high(at) {}
   constexpr Cut(float least, float greatest) noexcept : low(least), high(greatest) {}
 };
 
-/// The distance to the float32 rows lies in [low, high]; `measured` is what is reported.
+/// The distance to the float32 rows is in [low, high]; `measured` is reported.
 struct Enclosed {
   Measured measured = kUnmeasured;
   float low = kMissing;
   float high = kMissing;
 
-  /// Whether some comparison with a number of the cuts might come out otherwise for the float32
-  /// rows. A least normal number is kept clear of them, so that no difference is flushed to zero.
-  template <size_t N>
-  ETLMON_INLINE bool doubtful(const Cut (&cuts)[N]) const noexcept {
+  /// Returns whether some comparison with a number of the cuts might differ on the float32 rows.
+  /// The interval is at least a normal number away from the cuts, so that no difference is flushed
+  /// to zero.
+  template <size_t Count>
+  ETLMON_INLINE bool doubtful(const Cut (&cuts)[Count]) const noexcept {
     if (!is_finite(measured.delta) || !is_finite(high)) return true;
     const Key least = key_of(detail::rounded(low - 2.0f * FLT_MIN));
     const Key greatest = key_of(detail::rounded(high + 2.0f * FLT_MIN));
@@ -43,7 +42,7 @@ struct Enclosed {
   }
 };
 
-/// A distance that is exact.
+/// Returns an exact distance.
 ETLMON_INLINE Enclosed exactly(const Measured& measured) noexcept {
   Enclosed exact;
   exact.measured = measured;
@@ -62,12 +61,12 @@ struct RoundingError {
   }
 };
 
-template <class A, class B>
+template <class First, class Second>
 constexpr bool is() noexcept {
-  return Same<A, B>::value;
+  return Same<First, Second>::value;
 }
 
-/// The distances that rounding_error() and change() speak of.
+/// The distances for which rounding_error() and change() are defined.
 template <class Metric>
 constexpr bool is_bounded() noexcept {
   return is<Metric, L2>() || is<Metric, L2Sq>() || is<Metric, L1>() || is<Metric, Linf>() ||
@@ -89,17 +88,16 @@ constexpr RoundingError rounding_error(uint32_t dimension) noexcept {
   return {(0.25f * d + 7.0f) * FLT_EPSILON, 0.0f, lost};  // l2 and mahalanobis, diagonal
 }
 
-/// How far a distance d changes where a row moves by `moved`: in the norm of the distance itself,
-/// for l2sq, cosine and angular in the Euclidean one. Triangle inequality; of squares, |a^2 - b^2|
-/// = |a - b| (a + b); cosine is half the square of a chord. Angular is f = 2 atan(a / b) with a =
-/// |u - g|, b = |u + g|, |u| = 1: neither a nor b changes faster than g moves, so |df| = 2 |b da -
-/// a db| / (a^2 + b^2) <= 2 sqrt(2) / sqrt(a^2 + b^2) |dg|, and a^2 + b^2 = 2 + 2 |g|^2 >= 2 + 2 (1
-/// - moved)^2 all the way from a g of length 1: at most 2 / sqrt(1 + (3/4)^2) = 1.6 times as much
-/// as g moves up to 1/4; beyond, nothing is claimed.
-///
-/// Rounding leaves u with a length off by s <= (D / 4 + 5) FLT_EPSILON. An angle changes by 2 s |g|
-/// / (1 + |g|^2) at most, no more than for |g| = 1. |u - g|^2 / 2 changes by s (d + (1 - |g|^2) /
-/// 2): what cosine's bound lacks for rows of other lengths is length_error().
+/// Returns how much a distance d changes if a row moves by `moved`, in the norm of the distance,
+/// for l2sq, cosine and angular in the Euclidean norm. By the triangle inequality; of squares, |a^2
+/// - b^2| = |a - b| (a + b); cosine is half the square of a chord. Angular is f = 2 atan(a / b)
+/// with a = |u - g|, b = |u + g|, |u| = 1: neither a nor b changes faster than g moves, so |df| = 2
+/// |b da - a db| / (a^2 + b^2) <= 2 sqrt(2) / sqrt(a^2 + b^2) |dg|, and a^2 + b^2 = 2 + 2 |g|^2 >=
+/// 2 + 2 (1 - moved)^2 all the way from a g of length 1: at most 2 / sqrt(1 + (3/4)^2) = 1.6 times
+/// the move of g up to 1/4; beyond, there is no bound.  Rounding leaves u with a length off by s <=
+/// (D / 4 + 5) FLT_EPSILON. An angle changes by 2 s |g| / (1 + |g|^2) at most, no more than for |g|
+/// = 1. |u - g|^2 / 2 changes by s (d + (1 - |g|^2) / 2): for rows of other lengths, length_error()
+/// is added to cosine's bound.
 template <class Metric>
 ETLMON_INLINE float length_error(float moved, uint32_t dimension) noexcept {
   if (!is<Metric, Cosine>()) return 0.0f;
@@ -116,10 +114,10 @@ ETLMON_INLINE float change(float moved, float its_root) noexcept {
 
 }  // namespace detail
 
-/// What `narrow`, measured on rows of which none moved by more than `moved`, says about the rows.
-/// `dimension` of the rows; `averaged`: how many rows a mean is over, 0 for other aggregations (all
-/// are monotonic in every row's distance, and the bounds are concave in it, so what holds of rows
-/// holds of the aggregate).
+/// Returns the bounds that `narrow` gives, measured on rows of which none moved by more than
+/// `moved`. `dimension` of the rows; `averaged`: number of rows of a mean, 0 for other
+/// aggregations. (All are monotonic in every row's distance, and the bounds are concave in it, so a
+/// bound for rows is one for the aggregate.)
 template <class Metric>
 ETLMON_INLINE Enclosed enclose(const Measured& narrow, float moved, uint32_t dimension,
                                uint32_t averaged = 0) noexcept {
@@ -128,10 +126,10 @@ ETLMON_INLINE Enclosed enclose(const Measured& narrow, float moved, uint32_t dim
   static_assert(detail::is_bounded<Metric>(),
                 "rounding_error() and change() have to say how far this distance may be off");
   constexpr float kSlack =
-      1.0001f;  // of the arithmetic below, each operation of which is off by 4 roundings at most
+      1.0001f;  // covers the arithmetic below, each operation within 4 roundings
   Enclosed result;
   result.measured = narrow;
-  // Nothing below may overflow: -ffast-math lets a compiler take what does for anything at all.
+  // Nothing below may overflow, which is undefined under -ffast-math.
   constexpr float kGreatestDelta = 1.3e36f, kGreatestMove = 1.1e18f;
   if (!is_finite(narrow.delta) || narrow.delta > kGreatestDelta || moved > kGreatestMove)
     return result;
@@ -161,13 +159,13 @@ ETLMON_INLINE Enclosed enclose(const Measured& narrow, float moved, uint32_t dim
   return result;
 }
 
-/// The robustness of delta <= epsilon and delta < epsilon, with what is left open about delta.
+/// Returns the robustness of delta <= epsilon and delta < epsilon, over the interval of delta.
 ETLMON_INLINE Value at_most(const Enclosed& delta, const float& epsilon, Value range) noexcept {
   if (is_nan(delta.measured.delta)) return range;
   return between(detail::rounded(epsilon - delta.high), detail::rounded(epsilon - delta.low));
 }
 
-/// The robustness of delta >= epsilon and delta > epsilon, with what is left open about delta.
+/// Returns the robustness of delta >= epsilon and delta > epsilon, over the interval of delta.
 ETLMON_INLINE Value at_least(const Enclosed& delta, const float& epsilon, Value range) noexcept {
   if (is_nan(delta.measured.delta)) return range;
   return between(detail::rounded(delta.low - epsilon), detail::rounded(delta.high - epsilon));

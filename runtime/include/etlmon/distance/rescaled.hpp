@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The same distances where squares, or a sum of distances, leave the range of float32: huge, tiny,
-// or exactly zero. Takes: what kernel.hpp takes. Gives: distances computed from differences scaled
-// by a power of two, one row at a time. Keeps true: a distance that float32 can represent does not
-// overflow on the way, a tiny one does not vanish on the way, and a vector of zeros has no
-// direction. Kept out of line, one function for every K and D.
+// Distances whose squares, or sum, leave the range of float32: huge, tiny, or exactly zero. Takes:
+// the arguments of kernel.hpp. Gives: distances computed from differences scaled by a power of two,
+// row by row. Keeps true: a distance that float32 can represent neither overflows nor vanishes in
+// between; a zero vector has no direction. Not inlined; one function for all sizes.
 #pragma once
 
 #include "etlmon/distance/best.hpp"
@@ -18,8 +17,8 @@ ETLMON_INLINE PowerOfTwo power_of_two(uint32_t bits_of_x) noexcept {
   return {from_bits((254 - exponent) << 23), from_bits(exponent << 23)};
 }
 
-template <class G>
-ETLMON_INLINE uint32_t greatest_magnitude(G x, uint32_t n) noexcept {
+template <class Elements>
+ETLMON_INLINE uint32_t greatest_magnitude(Elements x, uint32_t n) noexcept {
   uint32_t greatest = 0;
   for (uint32_t i = 0; i < n; ++i) {
     const uint32_t bits = observe(element(x, i)) & ~kSignBit;
@@ -28,7 +27,7 @@ ETLMON_INLINE uint32_t greatest_magnitude(G x, uint32_t n) noexcept {
   return greatest;
 }
 
-/// Bits of |z - g|. Short, here and below: of rows that Size::is_short() says.
+/// Computes the bits of |z - g|. Short, here and below: Size::is_short() of the rows.
 template <bool Short>
 class RescaledL2 {
  public:
@@ -36,8 +35,8 @@ class RescaledL2 {
       : z_(z), dimension_(dimension) {}
   static constexpr bool known() noexcept { return true; }
 
-  template <class G>
-  uint32_t row(G g) const noexcept {
+  template <class Elements>
+  uint32_t row(Elements g) const noexcept {
     const uint32_t greatest =
         observe(baseline::one_row<Linf>({}, z_, g, z_, RowSize<Short>{{1, dimension_}}));
     if (greatest == 0 || greatest >= kInfinityBits) return greatest;
@@ -52,9 +51,9 @@ class RescaledL2 {
   uint32_t dimension_;
 };
 
-/// Bits of sqrt((z - g)^T W (z - g)); W a diagonal or full. With s = sqrt(diag W) and a = s (z -
-/// g), every |W_ij / (s_i s_j)| <= 1 (W is positive definite), so scaling a by its largest element
-/// bounds every term.
+/// Computes the bits of sqrt((z - g)^T W (z - g)); W a diagonal or full. With s = sqrt(diag W) and
+/// a = s (z - g), every |W_ij / (s_i s_j)| <= 1 (W is positive definite), so scaling a by its
+/// largest element bounds every term.
 template <class Metric>
 class RescaledRoot {
  public:
@@ -62,8 +61,8 @@ class RescaledRoot {
       : z_(z), weights_(weights), dimension_(dimension) {}
   static constexpr bool known() noexcept { return true; }
 
-  template <class G>
-  uint32_t row(G g) const noexcept {
+  template <class Elements>
+  uint32_t row(Elements g) const noexcept {
     constexpr uint32_t kQuarterOfMost =
         0x7e800000u;  // 2^126: differences of larger elements may overflow
     const uint32_t size_z = greatest_magnitude(z_, dimension_),
@@ -88,16 +87,16 @@ class RescaledRoot {
   }
 
  private:
-  template <class G>
-  float difference(G g, uint32_t i, float half) const noexcept {
+  template <class Elements>
+  float difference(Elements g, uint32_t i, float half) const noexcept {
     return rounded(rounded(z_[i] * half) - rounded(element(g, i) * half));
   }
   float stretch(uint32_t i) const noexcept {
     return square_root(weights_[Metric::kQuadratic ? static_cast<size_t>(i) * dimension_ + i : i]);
   }
-  /// Element i of W (z - g) / s_i, scaled.
-  template <class G>
-  float weighted(G g, uint32_t i, float half, float down) const noexcept {
+  /// Returns element i of W (z - g) / s_i, scaled.
+  template <class Elements>
+  float weighted(Elements g, uint32_t i, float half, float down) const noexcept {
     const float* row = weights_ + static_cast<size_t>(i) * dimension_;
     const float s = stretch(i);
     if (!(s > 0.0f)) return 0.0f;
@@ -113,8 +112,8 @@ class RescaledRoot {
   uint32_t dimension_;
 };
 
-/// Bits of cosine and angular distance for a z whose squared length is out of range: z is scaled
-/// first, then to length 1.
+/// Computes the bits of cosine and angular distance for a z whose squared length is out of range:
+/// scales z by a power of two, then to length 1.
 template <class Metric>
 class RescaledDirection {
  public:
@@ -128,14 +127,14 @@ class RescaledDirection {
       const float x = rounded(z[i] * down_);
       square += x * x;
     }
-    known_ = (observe(square) & kInfinityBits) !=
-             0;  // zero also where the denormals of z were flushed to zero
+    known_ =
+        (observe(square) & kInfinityBits) != 0;  // also zero if denormals of z were flushed to zero
     point_.scale = known_ ? 1.0f / square_root(square) : 0.0f;
   }
   bool known() const noexcept { return known_; }
 
-  template <class G>
-  uint32_t row(G g) const noexcept {
+  template <class Elements>
+  uint32_t row(Elements g) const noexcept {
     typename Metric::template Partial<float> sums{};
     for (uint32_t i = 0; i < dimension_; ++i) {
       baseline::accumulate(Metric{}, sums, point_, baseline::at(point_, rounded(z_[i] * down_)),
@@ -152,15 +151,15 @@ class RescaledDirection {
   UnitPoint point_{};
 };
 
-/// Bits of a distance that needs no scaling itself; only the mean over its rows does.
+/// Computes the bits of a distance that needs no scaling, except in the mean over rows.
 template <class Metric, bool Short>
 class Unscaled {
  public:
   Unscaled(const float* z, const float*, uint32_t dimension) noexcept
       : z_(z), dimension_(dimension) {}
   static constexpr bool known() noexcept { return true; }
-  template <class G>
-  uint32_t row(G g) const noexcept {
+  template <class Elements>
+  uint32_t row(Elements g) const noexcept {
     return observe(baseline::one_row<Metric>({}, z_, g, z_, RowSize<Short>{{1, dimension_}}));
   }
 
@@ -169,13 +168,13 @@ class Unscaled {
   uint32_t dimension_;
 };
 
-template <bool First, class A, class B>
+template <bool First, class IfTrue, class IfFalse>
 struct Choose {
-  using Type = A;
+  using Type = IfTrue;
 };
-template <class A, class B>
-struct Choose<false, A, B> {
-  using Type = B;
+template <class IfTrue, class IfFalse>
+struct Choose<false, IfTrue, IfFalse> {
+  using Type = IfFalse;
 };
 template <class Metric, bool Short>
 using RescaledSquare = typename Choose<Metric::kWeighted || Metric::kQuadratic,
@@ -187,19 +186,19 @@ template <class Metric, bool Short>
 using Rescaled = typename Choose<Metric::kDirection, RescaledDirection<Metric>,
                                  RescaledOrNot<Metric, Short>>::Type;
 
-template <class Metric, bool Short, class Aggregation, bool InColumns, class G>
-MeasuredBits measure_rescaled(const float* z, const Set<InColumns, G>& set, const float* weights,
-                              Aggregation aggregation) noexcept {
+template <class Metric, bool Short, class Aggregation, bool InColumns, class Elements>
+MeasuredBits measure_rescaled(const float* z, const Set<InColumns, Elements>& set,
+                              const float* weights, Aggregation aggregation) noexcept {
   const Rescaled<Metric, Short> distance(z, weights, set.dimension);
   if (!distance.known()) return packed(kUnmeasured);
   Nearest nearest;
-  typename Set<InColumns, G>::Buffer buffer;
+  typename Set<InColumns, Elements>::Buffer buffer;
   for (uint32_t row = 0; row < set.rows; ++row) {
     const uint32_t bits = distance.row(set.row(row, buffer));
     nearest.add(bits, row);
     if constexpr (Aggregation::kOfDistances) {
-      aggregation.add(rounded(from_bits(bits) /
-                              static_cast<float>(set.rows)));  // so that the sum cannot overflow
+      aggregation.add(
+          rounded(from_bits(bits) / static_cast<float>(set.rows)));  // prevents overflow of the sum
     } else {
       aggregation.add(bits);
     }
@@ -211,20 +210,21 @@ MeasuredBits measure_rescaled(const float* z, const Set<InColumns, G>& set, cons
   }
 }
 
-/// z is row k of the set, element by element.
-template <bool Short, bool InColumns, class G>
-ETLMON_INLINE bool is_row(const float* z, const Set<InColumns, G>& set, uint32_t k) noexcept {
-  typename Set<InColumns, G>::Buffer buffer;
+/// Returns whether z equals row k of the set.
+template <bool Short, bool InColumns, class Elements>
+ETLMON_INLINE bool is_row(const float* z, const Set<InColumns, Elements>& set,
+                          uint32_t k) noexcept {
+  typename Set<InColumns, Elements>::Buffer buffer;
   const auto row = set.row(k, buffer);
-  if ((observe(z[0] - element(row, 0)) & ~kSignBit) != 0) return false;  // most rows end here
+  if ((observe(z[0] - element(row, 0)) & ~kSignBit) != 0) return false;  // most rows differ here
   return observe(baseline::one_row<Linf>({}, z, row, z, RowSize<Short>{{1, set.dimension}})) == 0;
 }
 
-template <class Metric, class Aggregation, class Size, bool InColumns, class G>
-MeasuredBits measure_again(const float* z, G targets, const float* weights, Size size,
+template <class Metric, class Aggregation, class Size, bool InColumns, class Elements>
+MeasuredBits measure_again(const float* z, Elements targets, const float* weights, Size size,
                            Aggregation aggregation) noexcept {
   if (z == nullptr || !all_finite(z, size.dimension())) return packed(kUnmeasured);
-  const Set<InColumns, G> set{targets, size.rows(), size.dimension(), size.stride()};
+  const Set<InColumns, Elements> set{targets, size.rows(), size.dimension(), size.stride()};
   if constexpr (Metric::kRescales && Aggregation::kNearest) {
     for (uint32_t row = 0; row < set.rows; ++row) {
       if (is_row<Size::is_short()>(z, set, row)) return packed({0.0f, row});
@@ -233,8 +233,8 @@ MeasuredBits measure_again(const float* z, G targets, const float* weights, Size
   return measure_rescaled<Metric, Size::is_short()>(z, set, weights, aggregation);
 }
 
-template <bool Short, bool InColumns, class G>
-bool is_equal(const float* z, const Set<InColumns, G>& set, uint32_t row) noexcept {
+template <bool Short, bool InColumns, class Elements>
+bool is_equal(const float* z, const Set<InColumns, Elements>& set, uint32_t row) noexcept {
   return is_row<Short>(z, set, row);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The values of rows by the best version of the kernel, with sizes known at run time. Gives:
-// best_row_values(...). Keeps true: the order of additions is layout.hpp's, so a row has the same
-// value as in measure(...).
+// The values of rows, by the best version of the kernel, with sizes known at run time. Gives:
+// best_row_values(...). Keeps true: the order of additions is that of layout.hpp, so a row has the
+// same value as in measure(...).
 #pragma once
 
 #include "etlmon/distance/best.hpp"
@@ -21,9 +21,9 @@ namespace baseline {
 #undef ETLMON_WIDE
 #undef ETLMON_TARGET
 
-template <class Metric, class G>
-bool best_row_values(const float* z, G targets, const float* weights, uint32_t row, uint32_t end,
-                     Sizes size, float* values) noexcept {
+template <class Metric, class Elements>
+bool best_row_values(const float* z, Elements targets, const float* weights, uint32_t row,
+                     uint32_t end, Sizes size, float* values) noexcept {
   return baseline::row_values<Metric>(z, targets, weights, row, end, size, values);
 }
 

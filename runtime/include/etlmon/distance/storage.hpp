@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Embeddings and targets in narrow storage, widened to float32.
-// Takes: float16 as their IEEE bits, or int8 and a scale. Gives: one element.
-// Keeps true: float16 widens exactly, subnormals, infinities and NaN included; int8 is scale x
-// integer, rounded once. Machines that widen by an instruction and those that do not get the same
-// bits.
+// Embeddings and targets in narrow storage, widened to float32. Takes: float16 as their IEEE bits,
+// or int8 and a scale. Gives: one element. Keeps true: float16 is widened exactly, with subnormals,
+// infinities and NaN; int8 is scale x integer, rounded once. The bits are the same with and without
+// an instruction for it.
 #pragma once
 
 #include "etlmon/bits.hpp"
 
-// ARM machines that convert float16 by an instruction, and a compiler that was not told to mean
-// something else by it.
+// ARM machines with an instruction for IEEE float16.
 #if defined(__ARM_FP16_FORMAT_IEEE) && defined(__ARM_FP) && (__ARM_FP & 2)
 #define ETLMON_HAS_HALVES 1
 #endif
@@ -17,8 +15,8 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// The float32 bits of a float16. Subnormals are scaled by integer arithmetic: no float operation
-/// could flush them to zero.
+/// Returns the float32 bits of a float16. Subnormals are scaled by integer arithmetic, so no float
+/// operation flushes them to zero.
 ETLMON_INLINE uint32_t widened_bits(uint16_t half) noexcept {
   const uint32_t sign = (half & 0x8000u) << 16;
   uint32_t exponent = (half >> 10) & 0x1fu;
@@ -27,7 +25,7 @@ ETLMON_INLINE uint32_t widened_bits(uint16_t half) noexcept {
   if (exponent == 0) {
     if (mantissa == 0) return sign;
     for (exponent = 1; (mantissa & 0x400u) == 0; --exponent)
-      mantissa <<= 1;  // wraps below 0, the sum below does not
+      mantissa <<= 1;  // may wrap below 0; the sum below does not
     mantissa &= 0x3ffu;
   }
   return sign | ((exponent + 112u) << 23) | (mantissa << 13);
@@ -35,7 +33,16 @@ ETLMON_INLINE uint32_t widened_bits(uint16_t half) noexcept {
 
 namespace detail {
 
-/// Rows of int8, each worth `scale` times itself: what a pointer is to other rows.
+#if !defined(ETLMON_GNU)
+/// Returns x. In gnu.hpp it also keeps x in a separate register, for speed.
+template <class Type>
+ETLMON_INLINE Type in_register(Type x) noexcept {
+  return x;
+}
+ETLMON_INLINE void keep_apart(uint32_t&, uint32_t&, uint32_t&, uint32_t&) noexcept {}
+#endif
+
+/// Rows of int8, each element times `scale`, with the interface of a pointer.
 struct ScaledRows {
   const int8_t* values;
   float scale;
@@ -51,7 +58,7 @@ ETLMON_INLINE ScaledRows& operator+=(ScaledRows& rows, size_t n) noexcept {
   return rows;
 }
 
-/// Element i of rows of any storage, as float32.
+/// Returns element i of rows of any storage, as float32.
 ETLMON_INLINE float element(const float* rows, size_t i) noexcept { return rows[i]; }
 ETLMON_INLINE float element(const uint16_t* rows, size_t i) noexcept {
 #if defined(ETLMON_HAS_HALVES)
@@ -66,14 +73,14 @@ ETLMON_INLINE float element(ScaledRows rows, size_t i) noexcept {
   return rounded(rows.scale * static_cast<float>(rows.values[i]));
 }
 
-/// One row of a set in columns.
-template <class G>
+/// A row of a set in columns.
+template <class Elements>
 struct Strided {
-  G first;
+  Elements first;
   size_t stride;
 };
-template <class G>
-ETLMON_INLINE float element(const Strided<G>& row, size_t i) noexcept {
+template <class Elements>
+ETLMON_INLINE float element(const Strided<Elements>& row, size_t i) noexcept {
   return element(row.first, i * row.stride);
 }
 

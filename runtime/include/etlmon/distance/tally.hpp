@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// From the values of K rows to the distance of a predicate, and whether they can be trusted.
-// Takes: the values of all rows in row order. Gives: the aggregated distance and the nearest row.
-// Keeps true: where a square left [2^-80, FLT_MAX] and that could matter, the scaled form
-// (rescaled.hpp) decides; a distance of exactly 0 is recognised without it; where an element of z
-// is not finite, which makes the value of every row not finite, the distance is unknown.
+// The distance of a predicate from the values of rows, and whether these are accurate. Takes: the
+// values of all rows in row order. Gives: the aggregated distance and the nearest row. Keeps true:
+// if a square left [2^-80, FLT_MAX] and that could matter, the scaled form (rescaled.hpp) is used;
+// a distance of exactly 0 is recognised without it; if an element of z is not finite, so is the
+// value of every row, and the distance is unknown.
 #pragma once
 
 #include "etlmon/distance/aggregate.hpp"
@@ -16,25 +16,35 @@ namespace etlmon {
 inline namespace ETLMON_BUILD {
 namespace detail {
 
-/// K rows of D elements, one after the other, `stride` elements apart.
-template <bool InColumns, class G>
+/// Returns the bits of a sum. The sum stays a float until here: g++ for RISC-V would otherwise keep
+/// it in an integer register, and move it for every addition.
+ETLMON_INLINE uint32_t observe_sum(const float& x) noexcept {
+#if !defined(ETLMON_GNU) || defined(__riscv_flen)
+  return observe(opaque(x));
+#else
+  return observe(x);
+#endif
+}
+
+/// Rows of `dimension` elements, `stride` elements apart.
+template <bool InColumns, class Elements>
 struct Set {
-  G values;
+  Elements values;
   uint32_t rows, dimension, stride;
 
   struct Buffer {};
-  ETLMON_INLINE G row(uint32_t k, Buffer&) const noexcept {
+  ETLMON_INLINE Elements row(uint32_t k, Buffer&) const noexcept {
     return values + static_cast<size_t>(k) * stride;
   }
 };
 
-/// The same in columns.
-template <class G>
-struct Set<true, G> {
-  G values;
+/// A set in columns.
+template <class Elements>
+struct Set<true, Elements> {
+  Elements values;
   uint32_t rows, dimension, stride;
 
-  ETLMON_INLINE Strided<G> elements_of(uint32_t k) const noexcept {
+  ETLMON_INLINE Strided<Elements> elements_of(uint32_t k) const noexcept {
     const Place place = place_in_columns(k, rows, dimension);
     return {values + place.first, place.stride};
   }
@@ -42,20 +52,19 @@ struct Set<true, G> {
   struct Buffer {
     float elements[4 * kLanes];
   };
-  /// Row k, gathered in `to`, for those who read it by vectors.
+  /// Returns row k, gathered in a buffer to be read by vectors.
   ETLMON_INLINE const float* row(uint32_t k, Buffer& to) const noexcept {
-    const Strided<G> from = elements_of(k);
+    const Strided<Elements> from = elements_of(k);
     for (uint32_t i = 0; i < dimension; ++i) to.elements[i] = element(from, i);
     return to.elements;
   }
 #else
   struct Buffer {};
-  ETLMON_INLINE Strided<G> row(uint32_t k, Buffer&) const noexcept { return elements_of(k); }
+  ETLMON_INLINE Strided<Elements> row(uint32_t k, Buffer&) const noexcept { return elements_of(k); }
 #endif
 };
 
-/// Everything about one measurement but its sizes and its rows: the nearest row, the aggregate,
-/// what they say together.
+/// The state of one measurement: the nearest row and the aggregate.
 template <class Metric, class Aggregation>
 struct Tally {
   Nearest nearest;
@@ -73,7 +82,7 @@ struct Tally {
       aggregation.add(bits);
     }
   }
-  /// Bits of the aggregate: of a distance for the mean, else of a value.
+  /// Returns the bits of the aggregate: of a distance for the mean, otherwise of a value.
   ETLMON_INLINE uint32_t result(uint32_t rows) const noexcept {
     if constexpr (Aggregation::kOfDistances) {
       return observe(capped<Metric>(aggregation.result(rows)));
@@ -81,67 +90,68 @@ struct Tally {
       return aggregation.result(nearest);
     }
   }
-  /// No element of z can have been other than finite, no square that matters was lost, and no sum
-  /// of distances overflowed that may have a representable mean. Weights can make a far row near:
-  /// with them no row may have overflowed.
+  /// Returns whether all elements of z are finite, no square that matters was lost, and no sum of
+  /// distances overflowed that may have a representable mean. With weights, which can make a far
+  /// row near, no row may have overflowed.
   ETLMON_INLINE bool sound(uint32_t result) const noexcept {
-    // Values decide, not their roots: clang's -ffast-math takes the root of a NaN for 0.
+    // Checks values, not their roots: under clang's -ffast-math the root of a NaN may be 0.
     if (Aggregation::kOfDistances && nearest.least > kGreatest) return false;
     if (!Metric::kRescales) return result <= kGreatest;
     return nearest.least >= kLeastSquare && result <= kGreatest && greatest <= kGreatest;
   }
-  /// The same, for other aggregations than min, where the nearest row turns out to be z itself: its
-  /// 0 is exact, and no other row's underflow can matter.
+  /// Returns the same for other aggregations than min, if the nearest row equals z: its 0 is exact,
+  /// and underflow of other rows does not matter.
   ETLMON_INLINE bool sound_if_equal(uint32_t result) const noexcept {
-    constexpr uint32_t kLeastRoot = 0x2b800000u;  // 2^-40, in doubt whether a square or a root
+    constexpr uint32_t kLeastRoot = 0x2b800000u;  // 2^-40, for a square or a root
     return nearest.least == 0 && result >= kLeastRoot && result <= kGreatest &&
            greatest <= kGreatest;
   }
 };
 
-/// Every element of z is finite; out of line, since it is asked where a distance is not.
+/// Returns whether every element of z is finite. Not inlined, since it is rarely called.
 ETLMON_COLD inline bool all_finite(const float* z, uint32_t dimension) noexcept {
   return finite(z, dimension);
 }
 
-/// `measured`, or unknown where an element of z is not finite.
+/// Returns `measured`, or unknown if an element of z is not finite.
 ETLMON_COLD inline MeasuredBits unless_unknown(const float* z, uint32_t dimension,
                                                MeasuredBits measured) noexcept {
   return all_finite(z, dimension) ? measured : packed(kUnmeasured);
 }
 
-/// The measurement where its values cannot be trusted: a row that equals z decides, or else the
-/// scaled form. Unknown where z is missing or an element of it is not finite.
-template <class Metric, class Aggregation, class Size, bool InColumns, class G>
-ETLMON_COLD MeasuredBits measure_again(const float* z, G targets, const float* weights, Size size,
-                                       Aggregation aggregation) noexcept;
+/// Measures again if values are inaccurate: uses a row that equals z, or else the scaled form.
+/// Unknown if z is missing or an element of it is not finite.
+template <class Metric, class Aggregation, class Size, bool InColumns, class Elements>
+ETLMON_COLD MeasuredBits measure_again(const float* z, Elements targets, const float* weights,
+                                       Size size, Aggregation aggregation) noexcept;
 
-/// Whether a row that is nearest at 0 equals z, so that its 0 is exact.
-template <bool Short, bool InColumns, class G>
-ETLMON_COLD bool is_equal(const float* z, const Set<InColumns, G>& set, uint32_t row) noexcept;
+/// Returns whether the nearest row, at 0, equals z, so that its 0 is exact.
+template <bool Short, bool InColumns, class Elements>
+ETLMON_COLD bool is_equal(const float* z, const Set<InColumns, Elements>& set,
+                          uint32_t row) noexcept;
 
-/// What the values say together. `aggregation`: as it was before it saw any.
-template <bool InColumns, class Metric, class Aggregation, class Size, class G>
+/// Returns the result of all values. `aggregation`: its initial state.
+template <bool InColumns, class Metric, class Aggregation, class Size, class Elements>
 ETLMON_INLINE MeasuredBits conclude(const Tally<Metric, Aggregation>& tally, const float* z,
-                                    G targets, const float* weights, Size size,
+                                    Elements targets, const float* weights, Size size,
                                     Aggregation aggregation) noexcept {
   const uint32_t result = tally.result(size.rows());
   bool sound = tally.sound(result);
   if constexpr (Metric::kRescales && !Aggregation::kNearest) {
     if (!sound && tally.sound_if_equal(result)) {
-      sound = is_equal<Size::is_short(), InColumns, G>(
+      sound = is_equal<Size::is_short(), InColumns, Elements>(
           z, {targets, size.rows(), size.dimension(), size.stride()}, tally.nearest.row);
     }
   }
   if constexpr (Metric::kRescales || Aggregation::kOfDistances) {
     if (!sound)
-      return measure_again<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size,
-                                                                    aggregation);
+      return measure_again<Metric, Aggregation, Size, InColumns, Elements>(z, targets, weights,
+                                                                           size, aggregation);
   }
   const float delta =
       Aggregation::kOfDistances ? from_bits(result) : Metric::finish(from_bits(result));
   const MeasuredBits measured = packed({delta, tally.nearest.row});
-  if constexpr (!Metric::kDirection) {  // else the length of z has said so
+  if constexpr (!Metric::kDirection) {  // otherwise the length of z shows it
     if (!sound) return unless_unknown(z, size.dimension(), measured);
   }
   return measured;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Target sets that lie beside the program: the bytes of a file NAME.targets.bin, mapped or linked
-// in. Takes: bytes at a multiple of 64, which must stay as they are while a monitor uses them.
-// Gives: Targets, which says whether they are the ones that the monitor was made with. Keeps true:
-// rows are handed out only where size and checksum are right; a Targets of one file is another type
-// than that of any other.
+// Target sets outside the program: the bytes of a file NAME.targets.bin, mapped or linked in.
+// Takes: bytes at a multiple of 64, which must not change while a monitor uses them. Gives:
+// Targets, which checks that they are those that the monitor was generated with. Keeps true: rows
+// are returned only if size and checksum are right; the Targets of each file has a separate type.
 #pragma once
 
 #include "etlmon/checksum.hpp"
@@ -13,11 +12,11 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// What is known of a file of targets.
+/// The state of a file of targets.
 enum class TargetsState : uint8_t {
   ready,
-  absent,         ///< there are no bytes
-  misaligned,     ///< they do not begin at a multiple of 64
+  absent,         ///< no bytes
+  misaligned,     ///< they do not begin at a multiple of 64 bytes
   wrong_size,     ///< another file, or a truncated one
   wrong_checksum  ///< another file of that size, or a damaged one
 };
@@ -38,13 +37,13 @@ inline const char* words(TargetsState state) noexcept {
   return "the targets are not those that the monitor was made with, or are damaged";
 }
 
-/// The bytes of the file with this size and this XXH64. It owns nothing: what it views must outlive
-/// the monitors that take it.
+/// A view of the bytes of the file with this size and XXH64. They must outlive the monitors that
+/// use them.
 template <uint64_t Size, uint64_t Xxh64>
 class Targets {
  public:
   static constexpr uint64_t kSize = Size;    ///< in bytes, a multiple of 64
-  static constexpr uint64_t kXxh64 = Xxh64;  ///< of all of them
+  static constexpr uint64_t kXxh64 = Xxh64;  ///< of all bytes
 
   constexpr Targets() noexcept = default;
   /// Reads all bytes once, for the checksum.
@@ -54,7 +53,7 @@ class Targets {
 
   constexpr bool ready() const noexcept { return state_ == TargetsState::ready; }
   constexpr TargetsState state() const noexcept { return state_; }
-  /// The first row; nullptr where they are not ready.
+  /// Returns the first row, nullptr if they are not ready.
   constexpr const float* rows() const noexcept { return rows_; }
 
  private:
@@ -76,11 +75,12 @@ class Targets {
   TargetsState state_ = TargetsState::absent;
 };
 
-/// measure() for rows that each begin at a multiple of 64 bytes; the same bits.
-template <class Metric, class Aggregation, uint32_t K, uint32_t D>
+/// Measures rows that each begin at a multiple of 64 bytes, with the bits of measure().
+template <class Metric, class Aggregation, uint32_t Rows, uint32_t Dim>
 ETLMON_INLINE Measured measure_stored(const float* z, const float* rows,
                                       const float* weights = nullptr) noexcept {
-  return detail::best<Metric, Aggregation, detail::Padded<K, D>, false>(z, rows, weights, {}, {});
+  return detail::best<Metric, Aggregation, detail::Padded<Rows, Dim>, false>(z, rows, weights, {},
+                                                                             {});
 }
 
 }  // namespace ETLMON_BUILD

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Whole embeddings in narrow storage, widened to float32 before they are measured.
-// Takes: n float16 as their IEEE bits, or n int8 and what one of them is worth. Gives: n floats.
-// Keeps true: the bits of storage.hpp's element(), by the instructions that the CPU has (vcvtph2ps,
-// vpmovsxbd), chosen as kernels are.
+// Widens embeddings in narrow storage to float32 before they are measured. Takes: n float16 as IEEE
+// bits, or n int8 and their scale. Gives: n floats. Keeps true: the bits of element() in
+// storage.hpp, by instructions of the CPU (vcvtph2ps, vpmovsxbd), which are selected as for
+// kernels.
 #pragma once
 
 #include "etlmon/distance/storage.hpp"
@@ -15,13 +15,13 @@ inline namespace ETLMON_BUILD {
 namespace detail {
 
 #if defined(ETLMON_VECTORS)
-template <class G>
-ETLMON_INLINE void widen(G from, float* to, uint32_t n) noexcept {
+template <class Elements>
+ETLMON_INLINE void widen(Elements from, float* to, uint32_t n) noexcept {
   best_widen(from, to, n);
 }
 #else
-template <class G>
-ETLMON_INLINE void widen(G from, float* to, uint32_t n) noexcept {
+template <class Elements>
+ETLMON_INLINE void widen(Elements from, float* to, uint32_t n) noexcept {
   for (uint32_t i = 0; i < n; ++i) to[i] = element(from, i);
 }
 #endif

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The kernel with sizes, distance and aggregation known at run time: for `etlc run`, calibration
-// and tools on a host. Takes: ids of distances.def, targets K x D row-major. Gives: what
-// measure<Metric, Aggregation, K, D> gives, bit for bit under equal flags, since both inline the
-// same rows. Keeps true: only the values of rows are compiled once per instruction set, for every
-// distance; aggregation follows. Allocates nothing; not part of generated headers.
+// and tools on a host. Takes: ids of distances.def, targets K x D, row-major. Gives: the results of
+// measure<Metric, Aggregation, K, D>, bit for bit under equal flags, since both inline the same
+// code. Keeps true: only the values of rows are compiled once per instruction set and distance, not
+// the aggregation. Allocates nothing; not part of generated headers.
 #pragma once
 
 #include "etlmon/distance/kernel.hpp"
@@ -28,7 +28,7 @@ struct KthOf {
 
 namespace detail {
 
-/// `row_values`: best_row_values, or one version's.
+/// Aggregates rows. `row_values`: best_row_values, or that of one version.
 template <class Metric, class Aggregation, class G, class RowValues>
 Measured aggregate_rows(RowValues row_values, const float* z, G targets, uint32_t K, uint32_t D,
                         const float* weights, Aggregation aggregation) noexcept {
@@ -87,17 +87,17 @@ Measured measure_as(MetricId metric, AggregationId aggregation, uint32_t n, cons
 
 }  // namespace detail
 
-/// The aggregated distance from z (D floats; NaN where one is not finite) to K prepared targets.
-/// weights: D x D for mahalanobis, D for mahalanobis_diagonal, else unread. kth takes n in [1, K]
-/// and scratch of n floats, else unread.
+/// Returns the aggregated distance from z (D floats) to K prepared targets; NaN if an element of z
+/// is not finite. weights: D x D for mahalanobis, D for mahalanobis_diagonal, otherwise unused. n
+/// in [1, K] and scratch of n floats: for kth, otherwise unused.
 inline Measured measure(MetricId metric, AggregationId aggregation, uint32_t n, const float* z,
                         const float* targets, uint32_t K, uint32_t D, const float* weights,
                         float* scratch) noexcept {
   return detail::measure_as(metric, aggregation, n, z, targets, K, D, weights, scratch);
 }
 
-/// A (z - m) in y, R floats, with `centred`, D floats, as scratch where there is an offset (else
-/// null): what project<R, D> gives. False: it is unknown.
+/// Stores A (z - m) in y, R floats, as project<R, D> does. `centred`: scratch of D floats if there
+/// is an offset, otherwise null. Returns false if the result is unknown.
 inline bool project(const float* z, const float* matrix, const float* offset, uint32_t R,
                     uint32_t D, float* centred, float* y) noexcept {
   if (offset != nullptr) detail::subtract(z, offset, D, centred);

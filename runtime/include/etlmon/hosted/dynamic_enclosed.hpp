@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// enclosed.hpp with distance and aggregation known at run time: for `etlc run` and tests.
-// Takes: ids of distances.def, and what was measured on narrow rows, or on float32 rows that hold
-// what the narrow ones widen to: the kernels give both the same bits. Gives: the interval that
-// enclose<Metric>() gives. Keeps true: not part of generated headers.
+// enclosed.hpp with distance and aggregation known at run time: for `etlc run` and tests. Takes:
+// ids of distances.def, and the distance to narrow rows, or to the float32 rows that they widen to,
+// which has the same bits. Gives: the interval of enclose<Metric>(). Not part of generated headers.
 #pragma once
 
 #include "etlmon/distance/enclosed.hpp"
@@ -11,7 +10,7 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// enclose() of enclosed.hpp; not for mahalanobis, of which nothing is known.
+/// Calls enclose() of enclosed.hpp; not for mahalanobis, which has no bound.
 inline Enclosed enclose(MetricId metric, AggregationId aggregation, const Measured& narrow,
                         float moved, uint32_t K, uint32_t D) noexcept {
   const uint32_t averaged = aggregation == AggregationId::mean ? K : 0;

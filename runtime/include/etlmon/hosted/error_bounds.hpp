@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// How far a computed distance may be from the exact one: what calibration adds to a score, and what
-// the tests hold kernels to. Takes: a distance of distances.def, D, the exact distance. Gives: the
-// largest |computed - exact| on any compiler and CPU that adds in any order, fuses or not, and
-// takes reciprocals and roots to 2 units in the last place. Exact means: real arithmetic on the
-// given float32 embedding, targets (before prepare()) and weights. Keeps true: no bound is below
-// the true error; D <= 2^20. In the comments u = FLT_EPSILON / 2 is one rounding. For hosts: double
-// arithmetic, not part of generated headers.
+// Bounds on the error of computed distances, which calibration adds to scores, and tests check
+// kernels against. Takes: a distance of distances.def, the dimension D, the exact distance. Gives:
+// the largest |computed - exact| for any compiler and CPU that adds in any order, with or without
+// fusing, and computes reciprocals and roots to 2 units in the last place. Exact: real arithmetic
+// on the given float32 embedding, targets (before prepare()) and weights. Keeps true: no bound is
+// below the true error; D <= 2^20. In the comments u = FLT_EPSILON / 2 is one rounding. In double
+// arithmetic, for hosts; not part of generated headers.
 #pragma once
 
 #include <math.h>
@@ -15,12 +15,12 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// Whether denormal numbers may have been flushed to zero, as -ffast-math arranges on some hosts at
+/// Returns whether denormal numbers are flushed to zero, as -ffast-math does on some hosts at
 /// start-up.
 enum class Denormals : uint8_t { kept, flushed };
 
-/// |computed - exact| for one row. `magnitude`, for mahalanobis alone: sum over i, j of |d_i|
-/// |W_ij| |d_j|, d = z - g.
+/// Returns the bound on |computed - exact| for one row. `magnitude`, only for mahalanobis: sum over
+/// i, j of |d_i| |W_ij| |d_j|, d = z - g.
 inline double rounding_bound(MetricId metric, uint32_t D, double exact, double magnitude = 0,
                              Denormals denormals = Denormals::flushed) noexcept {
   constexpr double eps = static_cast<double>(FLT_EPSILON);
@@ -35,7 +35,7 @@ inline double rounding_bound(MetricId metric, uint32_t D, double exact, double m
       return eps * exact + lost;
     case MetricId::l2sq:  // two u from each difference, one from its square, D + 1 from additions
       return (d / 2 + 3) * eps * exact + lost;
-    case MetricId::l2:  // half of that, and the root
+    case MetricId::l2:  // half of the above, and the root
       return (d / 4 + 4) * eps * exact + lost;
     case MetricId::mahalanobis_diagonal:  // one more product
       return (d / 4 + 5) * eps * exact + lost;
@@ -58,9 +58,9 @@ inline double rounding_bound(MetricId metric, uint32_t D, double exact, double m
   return 0;
 }
 
-/// |computed - exact| of one element i of A (z - m), as project.hpp computes it. `magnitude`: sum
-/// over j of |A_ij| |z_j - m_j|; `size`: sum over j of |A_ij| + |z_j - m_j|, by which flushed
-/// denormals count.
+/// Returns the bound on |computed - exact| of element i of A (z - m) in project.hpp. `magnitude`:
+/// sum over j of |A_ij| |z_j - m_j|; `size`: sum over j of |A_ij| + |z_j - m_j|, for flushed
+/// denormals.
 inline double projection_bound(uint32_t D, double magnitude, double size,
                                Denormals denormals = Denormals::flushed) noexcept {
   constexpr double kLeastDenormal = 1.401298464324817e-45;
@@ -71,7 +71,7 @@ inline double projection_bound(uint32_t D, double magnitude, double size,
   return (d / 2 + 2) * static_cast<double>(FLT_EPSILON) * magnitude + 2 * (d + size) * lost;
 }
 
-/// What a mean over K rows adds to the mean of their bounds.
+/// Returns the error that a mean over K rows adds to the mean of their bounds.
 inline double mean_bound(uint32_t K, double exact,
                          Denormals denormals = Denormals::flushed) noexcept {
   constexpr double kLeastDenormal = 1.401298464324817e-45;

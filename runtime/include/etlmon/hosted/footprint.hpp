@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What windows and delays take: bytes, and operations a step.
-// Takes: a length known at run time. Gives: sizeof(Window<Monoid, n>) and sizeof(Delay<V, n>), for
-// planning a monitor. Keeps true: the same on every target, as the classes have no padding that
-// depends on one.
+// The cost of windows and delays: bytes, and operations per step. Takes: a length known at run
+// time. Gives: sizeof(Window<Monoid, n>) and sizeof(Delay<Value, n>), for the plan of a monitor.
+// Keeps true: the sizes are the same on every target.
 #pragma once
 
 #include "etlmon/temporal/boolean_window.hpp"
@@ -13,14 +12,13 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// The most combinations that any step of a window over the last n >= 1 performs. Long runs reach
-/// it.
+/// Returns the most combinations in a step of a window over the last n >= 1. Long runs reach it.
 constexpr uint32_t window_operations(uint32_t n) noexcept { return n == 1 ? 0 : n < 4 ? n : 4; }
 
-/// Bytes of a cursor and the values that follow it, up to the next cursor.
+/// Returns the bytes of a cursor and its values, up to the next cursor.
 constexpr uint32_t storage_bytes(uint32_t values) noexcept { return (4 + values + 3) / 4 * 4; }
 
-/// sizeof(Delay<V, n>).
+/// Returns sizeof(Delay<Value, n>).
 template <class V>
 constexpr uint32_t delay_bytes(uint32_t n) noexcept {
   return storage_bytes(n * static_cast<uint32_t>(sizeof(V)));
@@ -67,13 +65,13 @@ template <>
 struct WindowBytes<Trigger<Truth>> : WindowBytes<Greatest<Truth>> {};
 template <>
 struct WindowBytes<Until<Truth>> {
-  /// Three counts, and a byte a position and for what was decided and answered last.
+  /// Three counts, a byte per position, and one each for the last decision and result.
   static constexpr uint32_t of(uint32_t n) noexcept { return 12 + (n + 2 + 3) / 4 * 4; }
 };
 template <>
 struct WindowBytes<Release<Truth>> : WindowBytes<Until<Truth>> {};
 
-/// sizeof(Window<Monoid, n>).
+/// Returns sizeof(Window<Monoid, n>).
 template <class Monoid>
 constexpr uint32_t window_bytes(uint32_t n) noexcept {
   return WindowBytes<Monoid>::of(n);

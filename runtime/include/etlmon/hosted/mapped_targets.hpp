@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A file of targets, mapped into memory: for programs on a POSIX host; generated code does not
-// include this. Takes: a path. Gives: the Targets in it, for the monitor's constructor, or why
-// there are none. Keeps true: the file is mapped as long as this object lives and unmapped with it;
-// size and checksum are right, or targets() are not ready; nothing is thrown. A file that is
-// shortened while it is mapped kills who reads it (SIGBUS): replace it by renaming another one to
-// its name, as etlc does.
+// Maps a file of targets into memory, for programs on a POSIX host; generated code does not include
+// this. Takes: a path. Gives: its Targets, for the constructor of a monitor, or the reason for
+// their absence. Keeps true: the file stays mapped for the lifetime of this object; targets() are
+// ready only if size and checksum are right; nothing is thrown. Shortening a mapped file kills its
+// readers (SIGBUS): replace it by renaming another file to its name, as etlc does.
 #pragma once
 
 #include <errno.h>
@@ -19,12 +18,12 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// `Targets`: that of the generated header.
+/// `Targets`: the type in the generated header.
 template <class Targets>
 class MappedTargets {
  public:
   explicit MappedTargets(const char* path) noexcept {
-    // Of a pipe, open would wait for a writer.
+    // open() of a pipe would wait for a writer.
     const int file = ::open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0) {
       error_ = errno;
@@ -49,8 +48,8 @@ class MappedTargets {
 
   bool ready() const noexcept { return targets_.ready(); }
   const Targets& targets() const noexcept { return targets_; }
-  /// What keeps them from being ready; `absent` where the file could not be read: error() then says
-  /// why.
+  /// Returns why they are not ready; `absent` if the file could not be read, for the reason in
+  /// error().
   TargetsState state() const noexcept { return state_; }
   int error() const noexcept { return error_; }  ///< an errno, or 0
   const char* message() const noexcept { return error_ != 0 ? ::strerror(error_) : words(state_); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The distances as a table, and what is made of their targets: for etlc and tools on a host.
-// Takes: ids of distances.def. Gives: the rows of the table; prepare(...). Keeps true: not part of
-// generated headers.
+// The table of distances, and the preparation of their targets, for etlc and tools on a host.
+// Takes: ids of distances.def. Gives: the rows of the table; prepare(...). Not part of generated
+// headers.
 #pragma once
 
 #include <math.h>
@@ -23,10 +23,10 @@ enum class Prepared : uint8_t { as_given, unit_rows };
 
 /// A row of distances.def.
 struct Distance {
-  const char* name;   ///< the struct that computes it, `L2` for etlmon::L2
-  const char* word;   ///< its id
-  float highest;      ///< its range is [0, highest]
-  Prepared prepared;  ///< what prepare() makes of targets
+  const char* name;   ///< struct that computes it, `L2` for etlmon::L2
+  const char* word;   ///< word of the language
+  float highest;      ///< the range is [0, highest]
+  Prepared prepared;  ///< form of prepared targets
   bool zero_is_unknown;
 };
 
@@ -41,10 +41,9 @@ constexpr const Distance& distance(MetricId metric) noexcept {
   return kDistances[static_cast<size_t>(metric)];
 }
 
-/// Brings targets, K x D row-major, into the form that measure() takes, in place: cosine and
-/// angular want rows of length 1. In double and in fixed order, so every machine makes the same
-/// constants. Returns the first row that has no direction, K if all have one (or the distance needs
-/// none); such a row is left as it is.
+/// Prepares targets, K x D, row-major, for measure(), in place: scales rows to length 1 for cosine
+/// and angular. Uses double and a fixed order, so every machine makes the same constants. Returns
+/// the first row without a direction, which is not changed; K if all have one or need none.
 inline uint32_t prepare(MetricId metric, float* targets, uint32_t K, uint32_t D) noexcept {
   if (distance(metric).prepared == Prepared::as_given) return K;
   uint32_t bad = K;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The parameters of a retargetable class: the numbers of its spec (target sets, thresholds,
 // projections, weights) in one block of bytes, NAME.params.bin, in flash or in memory. Takes: bytes
-// at a multiple of 64, which must stay as they are while a monitor uses them. Gives: Params, which
-// says whether a class may take them, and if not, why. Keeps true: numbers are handed out only
-// where every byte is as etlc wrote it, for a class of this shape and its encoder, and every number
-// is one that the kernels may be given; the Params of one class are another type than those of any
-// other.
+// at a multiple of 64, which must not change while a monitor uses them. Gives: Params, which checks
+// whether a class may use them, and if not, why. Keeps true: numbers are returned only if every
+// byte is as etlc wrote it, for a class of this shape and encoder, and every number is valid for
+// the kernels; the Params of each class has a separate type.
 #pragma once
 
 #include "etlmon/checksum.hpp"
@@ -15,18 +14,18 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// What is known of a block of parameters.
+/// The state of a block of parameters.
 enum class ParamsState : uint8_t {
   ready,
-  absent,          ///< there are no bytes
-  misaligned,      ///< they do not begin at a multiple of 64
-  not_params,      ///< they do not begin as parameters do, or are too few
-  wrong_version,   ///< written in another format than this runtime reads
+  absent,          ///< no bytes
+  misaligned,      ///< they do not begin at a multiple of 64 bytes
+  not_params,      ///< not the head of parameters, or too short
+  wrong_version,   ///< a format that this runtime does not read
   wrong_shape,     ///< for a class of another shape: other formulas, inputs, rows or elements
-  wrong_size,      ///< more or fewer bytes than the class takes
+  wrong_size,      ///< another size than that of the class
   wrong_encoder,   ///< made with another encoder than the class
   wrong_checksum,  ///< damaged
-  bad_number       ///< some number cannot be what it stands for
+  bad_number       ///< a number violates its rule
 };
 
 inline const char* words(ParamsState state) noexcept {
@@ -55,27 +54,27 @@ inline const char* words(ParamsState state) noexcept {
   return "a number among the parameters cannot be what it stands for";
 }
 
-/// What a monitor does with what it remembers as it takes other parameters.
+/// The state of a monitor when its parameters are replaced.
 enum class Past : uint8_t {
-  kept,      ///< the verdicts go on; steps that were measured keep what was measured then
+  kept,      ///< verdicts go on; measured steps keep their values
   forgotten  ///< a new episode
 };
 
-/// What parameters were made from, as XXH64: log it with the verdicts. 0 where there are none.
+/// XXH64 of what parameters were made from; log them with the verdicts. 0 without parameters.
 struct MadeFrom {
-  uint64_t spec = 0;        ///< the file of the spec, and constants that were set
+  uint64_t spec = 0;        ///< file of the spec, and constants set by --set
   uint64_t data = 0;        ///< target sets, projections, weights
   uint64_t thresholds = 0;  ///< of named predicates
 };
 
-/// Numbers that lie together.
+/// A contiguous part of the parameters.
 struct ParamsPart {
-  /// What must hold for each of them, besides that it is finite.
+  /// The rule for each number, which is also finite.
   enum Rule : uint8_t {
-    any,           ///< nothing more
+    any,           ///< no other rule
     not_negative,  ///< a threshold on a distance
     positive,      ///< the diagonal of a metric
-    unit_rows,     ///< rows of length 1, up to rounding: of directions
+    unit_rows,     ///< rows of length 1, up to rounding
     symmetric      ///< a square matrix with a positive diagonal: a metric
   };
   uint32_t begin;  ///< in floats from the first byte
@@ -90,12 +89,12 @@ namespace detail {
 struct ParamsHead {
   uint8_t magic[8];
   uint32_t version;
-  uint32_t size;     ///< of everything, a multiple of 64
-  uint64_t shape;    ///< of the class that takes them
-  uint64_t encoder;  ///< XXH64 of a line an encoder, NAME FINGERPRINT; 0: there is none
-  // What they were made from: MadeFrom.
+  uint32_t size;     ///< of the block, a multiple of 64
+  uint64_t shape;    ///< of the class
+  uint64_t encoder;  ///< XXH64 of a line per encoder, NAME FINGERPRINT; 0: no encoder
+  // The hashes of MadeFrom.
   uint64_t spec, data, thresholds;
-  uint64_t checksum;  ///< XXH64 of everything, with 0 in this place
+  uint64_t checksum;  ///< XXH64 of the block, with 0 in this place
 };
 static_assert(sizeof(ParamsHead) == 64, "as it lies in the file");
 
@@ -109,7 +108,7 @@ inline ParamsHead params_head(const uint8_t* bytes) noexcept {
   return head;
 }
 
-/// Of `size` bytes, a multiple of 64 and at least that.
+/// Returns the checksum of `size` bytes, a multiple of 64 and at least 64.
 inline uint64_t params_checksum(const uint8_t* bytes, size_t size) noexcept {
   constexpr size_t kHalf = sizeof(ParamsHead) / 2;
   uint8_t half[kHalf];
@@ -122,7 +121,7 @@ inline uint64_t params_checksum(const uint8_t* bytes, size_t size) noexcept {
   return checksum.value();
 }
 
-/// A row that was scaled to length 1, rounded: its sum of squares is off by a few roundings.
+/// Returns whether a row has length 1, up to a few roundings of its sum of squares.
 inline bool has_unit_length(const float* row, uint32_t width) noexcept {
   constexpr float kRoundings = 1.0f / 256;
   float sum = 0.0f;
@@ -157,15 +156,15 @@ inline bool is_sound(const float* numbers, const ParamsPart& part) noexcept {
 
 }  // namespace detail
 
-/// Of what Params::numbers() gave.
+/// Returns the hashes of the parameters that Params::numbers() returned.
 inline MadeFrom made_from(const float* numbers) noexcept {
   if (numbers == nullptr) return {};
   const detail::ParamsHead head = detail::params_head(reinterpret_cast<const uint8_t*>(numbers));
   return {head.spec, head.data, head.thresholds};
 }
 
-/// The bytes of a block for the class with this layout: kShape, kEncoder, kSize and kParts. It owns
-/// nothing: what it views must outlive the monitors that take it.
+/// A view of a block for the class with this layout: kShape, kEncoder, kSize and kParts. The bytes
+/// must outlive the monitors that use them.
 template <class Layout>
 class Params {
  public:
@@ -180,8 +179,7 @@ class Params {
 
   constexpr bool ready() const noexcept { return state_ == ParamsState::ready; }
   constexpr ParamsState state() const noexcept { return state_; }
-  /// The first byte, as floats, in which Layout says where each number lies; nullptr where they are
-  /// not ready.
+  /// Returns the block as floats, with the offsets of Layout; nullptr if it is not ready.
   constexpr const float* numbers() const noexcept { return numbers_; }
 
   MadeFrom origin() const noexcept { return made_from(numbers_); }

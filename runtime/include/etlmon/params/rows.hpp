@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The distance kernel on rows whose place is known when the program runs: those of a retargetable
-// class. Takes: what measure() of distance/kernel.hpp takes, and a pointer to K rows of D floats.
-// Gives: the same distances, bit for bit. Keeps true: what kernel.hpp does; rows are read as they
-// lie, one after the other.
+// The distance kernel on the rows of a retargetable class, whose address is known at run time.
+// Takes: the arguments of measure() in distance/kernel.hpp, and a pointer to Rows x Dim floats,
+// row-major. Gives: the same distances, bit for bit.
 #pragma once
 
 #include "etlmon/distance/kernel.hpp"
@@ -10,34 +9,34 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-template <class Metric, class Aggregation, uint32_t K, uint32_t D>
+template <class Metric, class Aggregation, uint32_t Rows, uint32_t Dim>
 ETLMON_INLINE Measured measure_rows(const float* z, const float* rows,
                                     const float* weights = nullptr) noexcept {
-  return detail::best<Metric, Aggregation, detail::Fixed<K, D>, false>(detail::unforeseen(z), rows,
-                                                                       weights, {}, {});
+  return detail::best<Metric, Aggregation, detail::Fixed<Rows, Dim>, false>(detail::unforeseen(z),
+                                                                            rows, weights, {}, {});
 }
 
-/// For a sample of this step, or a point made of some: unmeasured where it, or one of them, is
+/// Measures a sample of this step, or a point of scalars; unmeasured if it, or one of them, is
 /// missing.
-template <class Metric, class Aggregation, uint32_t K, uint32_t D>
-ETLMON_INLINE Measured measure_rows(Vector<float, D> z, const float* rows,
+template <class Metric, class Aggregation, uint32_t Rows, uint32_t Dim>
+ETLMON_INLINE Measured measure_rows(Vector<float, Dim> z, const float* rows,
                                     const float* weights = nullptr) noexcept {
-  return z.present() ? measure_rows<Metric, Aggregation, K, D>(z.data(), rows, weights)
+  return z.present() ? measure_rows<Metric, Aggregation, Rows, Dim>(z.data(), rows, weights)
                      : kUnmeasured;
 }
-template <class Metric, class Aggregation, uint32_t K, uint32_t D>
-ETLMON_INLINE Measured measure_rows(const Point<D>& point, const float* rows,
+template <class Metric, class Aggregation, uint32_t Rows, uint32_t Dim>
+ETLMON_INLINE Measured measure_rows(const Point<Dim>& point, const float* rows,
                                     const float* weights = nullptr) noexcept {
-  return measure_rows<Metric, Aggregation, K, D>(point.elements, rows, weights);
+  return measure_rows<Metric, Aggregation, Rows, Dim>(point.elements, rows, weights);
 }
 
-/// For a direction that was found once for several distances.
-template <class Metric, class Aggregation, uint32_t K, uint32_t D>
-ETLMON_INLINE Measured measure_rows(const Direction<D>& z, const float* rows) noexcept {
+/// Measures a direction, which several distances may share.
+template <class Metric, class Aggregation, uint32_t Rows, uint32_t Dim>
+ETLMON_INLINE Measured measure_rows(const Direction<Dim>& z, const float* rows) noexcept {
   static_assert(Metric::kDirection, "this distance does not need the length of z");
   if (z.elements == nullptr) return kUnmeasured;
-  return measure_rows<detail::LengthGiven<Metric>, Aggregation, K, D>(z.elements, rows,
-                                                                      &z.inverse_length);
+  return measure_rows<detail::LengthGiven<Metric>, Aggregation, Rows, Dim>(z.elements, rows,
+                                                                           &z.inverse_length);
 }
 
 }  // namespace ETLMON_BUILD

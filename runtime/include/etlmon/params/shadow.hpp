@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Other parameters on trial: a second monitor runs beside the one that answers, with them, and what
-// differs is counted, before they take over. Takes: the inputs of each step, once. Gives: the
-// answers of the first monitor, and the counts. Keeps true: the two share nothing, so the counts
-// are those of two monitors that are stepped side by side; nothing is allocated.
+// A trial of new parameters: a second monitor with them runs beside the active one, and differences
+// are counted before they are adopted. Takes: the inputs of each step, once. Gives: the verdicts of
+// the active monitor, and the counts. Keeps true: the monitors share nothing; nothing is allocated.
 #pragma once
 
 #include "etlmon/params/params.hpp"
@@ -10,32 +9,32 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// What differed of one monitor of the spec since the trial began. All saturate.
+/// The differences of one monitor of the spec since the trial began. All counters saturate.
 struct ShadowCount {
-  uint32_t steps = 0;   ///< that both have answered
-  uint32_t status = 0;  ///< of these, with another status: satisfied, violated, decided or final
-  uint32_t alarm = 0;   ///< of these, with an alarm of one alone
+  uint32_t steps = 0;   ///< steps of both
+  uint32_t status = 0;  ///< of these, with a different status: satisfied, violated, decided or
+                        ///< final
+  uint32_t alarm = 0;   ///< of these, with an alarm of only one
 };
 
-/// `Monitor`: a retargetable class, with its inputs, its verdicts, and how many these are.
+/// `Monitor`: a retargetable class, with its inputs, its verdicts, and their number.
 template <class Monitor, class Inputs, class Verdicts, uint32_t monitors>
 class Shadow {
  public:
   constexpr Shadow() noexcept = default;
   constexpr explicit Shadow(const Monitor& active) noexcept : active_(active) {}
 
-  /// The monitor that answers, and the one on trial. What is called on one that the other must
-  /// know, such as restart_M(), is called on both.
+  /// The active monitor and the candidate. Call restart_M() and the like on both.
   Monitor& active() noexcept { return active_; }
   const Monitor& active() const noexcept { return active_; }
   Monitor& candidate() noexcept { return candidate_; }
   const Monitor& candidate() const noexcept { return candidate_; }
   bool on_trial() const noexcept { return on_trial_; }
 
-  /// Begins a trial of these, with new counts: the candidate is a copy of the monitor that answers,
-  /// and takes them. Where they are refused nothing changes.
-  template <class P>
-  ParamsState try_out(const P& params, Past past) noexcept {
+  /// Begins a trial with new counts: the candidate is a copy of the active monitor with these
+  /// parameters. If they are not ready, nothing changes.
+  template <class Params>
+  ParamsState try_out(const Params& params, Past past) noexcept {
     if (!params.ready()) return params.state();
     candidate_ = active_;
     candidate_.retarget(params, past);
@@ -43,35 +42,37 @@ class Shadow {
     on_trial_ = true;
     return params.state();
   }
-  /// Ends the trial: the candidate answers from the next step on. False where there is none.
+  /// Ends the trial: the candidate becomes active from the next step on. Returns false if there is
+  /// no trial.
   bool promote() noexcept {
     if (!on_trial_) return false;
     active_ = candidate_;
     on_trial_ = false;
     return true;
   }
-  /// Ends the trial without consequences.
+  /// Ends the trial, and keeps the active monitor.
   void drop() noexcept { on_trial_ = false; }
 
-  /// One step of both; the answers of the active one.
+  /// Steps both, and returns the verdicts of the active one.
   Verdicts step(const Inputs& in) noexcept {
     const Verdicts answers = active_.step(in);
     if (on_trial_) count(answers, candidate_.step(in));
     return answers;
   }
-  /// The same after the trace has ended; only with sliding monitors.
+  /// Calls finish() of both; only with sliding monitors.
   Verdicts finish() noexcept {
     const Verdicts answers = active_.finish();
     if (on_trial_) count(answers, candidate_.finish());
     return answers;
   }
-  /// A new episode for both; a trial goes on, with its counts.
+  /// Starts a new episode of both; a trial goes on, with its counts.
   void reset() noexcept {
     active_.reset();
     candidate_.reset();
   }
 
-  /// Of monitor m in the order of the spec, below `monitors`; they stay until the next trial.
+  /// Returns the differences of monitor m, in the order of the spec; they are kept until the next
+  /// trial.
   const ShadowCount& count_of(uint32_t m) const noexcept { return counts_[m]; }
 
  private:

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a Boolean monitor answers after a step.
-// Takes: truth values at the end of a step. Gives: the status that follows from them. Keeps true: a
-// BooleanVerdict is one byte on every target, and undecided unless made by one of the two functions
-// below.
+// The verdict of a Boolean monitor after a step. Takes: truth values at the end of a step. Gives:
+// the status of a verdict. Keeps true: a BooleanVerdict is one byte on every target, and undecided
+// unless made by one of the two functions below.
 #pragma once
 
 #include <stdint.h>
@@ -13,7 +12,7 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// The answer of a Boolean monitor: the same questions, no numbers.
+/// The verdict of a Boolean monitor: the questions of Verdict, without numbers.
 struct BooleanVerdict : Answers<BooleanVerdict> {
   uint8_t status = 0;  ///< bits of Answers
 };

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Windows over truth values.
-// Takes: one truth value a step, or the two sides of a since or an until. Gives: what Window gives
-// for any value type. Keeps true: the same results as the general window, in constant time a step.
-// Of a yes and no only the age of the last one that matters is remembered, in two counters whatever
-// N; of an until, which is asked at its oldest position, a byte a position.
+// Windows over truth values. Takes: a truth value per step, or both operands of since or until.
+// Gives: the results of the general Window. Keeps true: constant time per step. The state is the
+// age of the last value that matters, two counters for any length; of an until, which is evaluated
+// at its oldest position, a byte per position.
 #pragma once
 
 #include "etlmon/temporal/delay.hpp"
@@ -14,25 +13,27 @@ namespace etlmon {
 inline namespace ETLMON_BUILD {
 namespace detail {
 
-/// Steps since something last happened, at most N: then it is out of the window.
-template <uint32_t N>
+/// Counts the steps since something last happened, up to Length, where it has left the window.
+template <uint32_t Length>
 class Age {
  public:
-  constexpr void reset() noexcept { steps_ = N; }
-  void next(bool happened) noexcept { steps_ = happened ? 0 : steps_ + (steps_ < N ? 1u : 0u); }
-  /// It no longer counts.
-  constexpr void forget() noexcept { steps_ = N; }
-  bool within() const noexcept { return steps_ < N; }
+  constexpr void reset() noexcept { steps_ = Length; }
+  void next(bool happened) noexcept {
+    steps_ = happened ? 0 : steps_ + (steps_ < Length ? 1u : 0u);
+  }
+  /// Removes it from the window.
+  constexpr void forget() noexcept { steps_ = Length; }
+  bool within() const noexcept { return steps_ < Length; }
 
  private:
   uint32_t steps_;
 };
 
-/// What fails where W holds: both sides and the answer are negated.
-template <class W>
+/// The dual of Wrapped: operands and result are negated.
+template <class Wrapped>
 class Dual {
  public:
-  using Element = typename W::Element;
+  using Element = typename Wrapped::Element;
 
   constexpr void reset() noexcept { failed_.reset(); }
   Element push(Span<Truth> now) noexcept {
@@ -40,14 +41,14 @@ class Dual {
   }
 
  private:
-  W failed_;
+  Wrapped failed_;
 };
 
 }  // namespace detail
 
-/// Or over the last N: some step was true.
-template <uint32_t N>
-class Window<Greatest<Truth>, N> {
+/// Or over the last Length values.
+template <uint32_t Length>
+class Window<Greatest<Truth>, Length> {
  public:
   constexpr void reset() noexcept {
     low_.reset();
@@ -61,24 +62,24 @@ class Window<Greatest<Truth>, N> {
   }
 
  private:
-  detail::Age<N> low_;   ///< of the last step that was surely true
-  detail::Age<N> high_;  ///< of the last one that perhaps was
+  detail::Age<Length> low_;   ///< age of the last surely true value
+  detail::Age<Length> high_;  ///< age of the last possibly true value
 };
 
-/// And over the last N.
-template <uint32_t N>
-class Window<Least<Truth>, N> {
+/// And over the last Length values.
+template <uint32_t Length>
+class Window<Least<Truth>, Length> {
  public:
   constexpr void reset() noexcept { failed_.reset(); }
   Truth push(Truth now) noexcept { return negate(failed_.push(negate(now))); }
 
  private:
-  Window<Greatest<Truth>, N> failed_;
+  Window<Greatest<Truth>, Length> failed_;
 };
 
-/// f S g over the last N: the newest g counts, while f has held since.
-template <uint32_t N>
-class Window<Since<Truth>, N> {
+/// f S g over the last Length positions: true if f has held since the newest g.
+template <uint32_t Length>
+class Window<Since<Truth>, Length> {
  public:
   struct Element {
     Truth value;
@@ -98,29 +99,29 @@ class Window<Since<Truth>, N> {
   }
 
  private:
-  detail::Age<N> low_;
-  detail::Age<N> high_;
+  detail::Age<Length> low_;
+  detail::Age<Length> high_;
 };
 
 /// The dual of Since.
-template <uint32_t N>
-class Window<Trigger<Truth>, N> : public detail::Dual<Window<Since<Truth>, N>> {};
+template <uint32_t Length>
+class Window<Trigger<Truth>, Length> : public detail::Dual<Window<Since<Truth>, Length>> {};
 
-/// f U g at the oldest of the last N. The first position from there on where g holds, or where
-/// neither f nor g does, decides; before it f holds and g does not. Each decision is about a run of
-/// positions up to its own, so it is enough to keep where the answer turns. The ends of a truth are
-/// bits here, 1 the low one and 2 the high one; and nothing branches on them: signs of distances
-/// are what no processor predicts.
-template <uint32_t N>
-class Window<Until<Truth>, N> {
-  static_assert(N >= 1 && N <= 0x7fffffffu, "a window holds at least this step");
+/// f U g at the oldest of the last Length positions. The first position from there on where g
+/// holds, or where neither f nor g holds, decides; before it f holds and g does not. A decision
+/// applies to all undecided positions up to its own, so only changes of the result are stored. The
+/// ends of a truth value are bits, 1 for low and 2 for high, and no branch depends on them, since
+/// they are unpredictable.
+template <uint32_t Length>
+class Window<Until<Truth>, Length> {
+  static_assert(Length >= 1 && Length <= 0x7fffffffu, "a window holds at least this step");
 
  public:
-  using Element = typename Window<Since<Truth>, N>::Element;
+  using Element = typename Window<Since<Truth>, Length>::Element;
 
   constexpr void reset() noexcept {
     cursor_ = 0;
-    open_ = N - 1;
+    open_ = Length - 1;
     more_open_ = 0;
     decided_ = answer_ = 0;
     for (uint8_t& turns : turns_) turns = 0;
@@ -131,9 +132,9 @@ class Window<Until<Truth>, N> {
     const uint32_t decides = g | (ends(now.guard) ^ 3u), turns = decides & (g ^ decided_);
     decided_ = static_cast<uint8_t>(decided_ ^ turns);
     turns_[slot] = 0;
-    cursor_ = slot + 1 == N ? 0 : slot + 1;
+    cursor_ = slot + 1 == Length ? 0 : slot + 1;
 
-    uint32_t leaving = 0;  // ends that nothing has decided about the oldest position
+    uint32_t leaving = 0;  // ends that are undecided at the oldest position
     if (more_open_ == 0 && (decides == 0 || decides == 3)) {
       turns_[first_open(slot, open_ + 1)] = static_cast<uint8_t>(turns);
       leaving = close(open_, decides) * 3;
@@ -148,20 +149,20 @@ class Window<Until<Truth>, N> {
  private:
   static uint32_t ends(Truth t) noexcept { return (t.low ? 1u : 0u) | (t.high ? 2u : 0u); }
 
-  /// The slot of the first of `open` positions, of which the last is in `slot`.
+  /// Returns the slot of the first of `open` positions, the last of which is in `slot`.
   static uint32_t first_open(uint32_t slot, uint32_t open) noexcept {
     const uint32_t first = slot + 1 - open;
-    return first + (N & (0u - (first >> 31)));
+    return first + (Length & (0u - (first >> 31)));
   }
 
-  /// One more is open, or none any more; 1 where the oldest leaves the window open.
+  /// Adds an open position, or closes all. Returns 1 if the oldest leaves the window undecided.
   static uint32_t close(uint32_t& open, uint32_t decides) noexcept {
-    const uint32_t left = (open + 1) & ((decides & 1u) - 1u), leaves = left == N ? 1u : 0u;
+    const uint32_t left = (open + 1) & ((decides & 1u) - 1u), leaves = left == Length ? 1u : 0u;
     open = left - leaves;
     return leaves;
   }
 
-  /// Where a missing sample is in the window, the ends may be decided at different positions.
+  /// With a missing sample in the window, the ends may be decided at different positions.
   ETLMON_COLD uint32_t push_apart(uint32_t slot, uint32_t decides, uint32_t turns) noexcept {
     uint32_t high = open_ + more_open_;
     uint8_t& of_low = turns_[first_open(slot, open_ + 1)];
@@ -173,22 +174,22 @@ class Window<Until<Truth>, N> {
     return leaving;
   }
 
-  uint32_t cursor_;     ///< slot of the next position; it is the oldest one's
-  uint32_t more_open_;  ///< so many more are open for the high end, modulo 2^32
-  uint8_t turns_[N];    ///< ends whose answer is not that of the slot before
-  uint8_t decided_;     ///< the last decisions
-  uint8_t answer_;      ///< at the oldest position; while that is open, at the one before
-  uint32_t open_;       ///< positions, the newest ones, about which nothing has decided the low end
+  uint32_t cursor_;        ///< slot of the next position, and of the oldest
+  uint32_t more_open_;     ///< additional open positions of the high end, modulo 2^32
+  uint8_t turns_[Length];  ///< ends whose result differs from that of the slot before
+  uint8_t decided_;        ///< last decisions
+  uint8_t answer_;         ///< result at the oldest position, or before it while it is undecided
+  uint32_t open_;          ///< newest positions whose low end is undecided
 };
 
 /// The dual of Until.
-template <uint32_t N>
-class Window<Release<Truth>, N> : public detail::Dual<Window<Until<Truth>, N>> {};
+template <uint32_t Length>
+class Window<Release<Truth>, Length> : public detail::Dual<Window<Until<Truth>, Length>> {};
 
-/// A delay of truth values, sixteen to a word.
-template <uint32_t N>
-class Delay<Truth, N> {
-  static_assert(N >= 1, "a delay by nothing is the value itself");
+/// A delay of truth values, 16 per word.
+template <uint32_t Length>
+class Delay<Truth, Length> {
+  static_assert(Length >= 1, "a delay by nothing is the value itself");
 
  public:
   constexpr void reset(Truth fill) noexcept {
@@ -203,13 +204,13 @@ class Delay<Truth, N> {
     const uint32_t past = pairs >> shift;
     pairs =
         (pairs & ~(3u << shift)) | (value.low ? 1u << shift : 0u) | (value.high ? 2u << shift : 0u);
-    cursor_ = cursor_ + 1 == N ? 0 : cursor_ + 1;
+    cursor_ = cursor_ + 1 == Length ? 0 : cursor_ + 1;
     return {(past & 1u) != 0, (past & 2u) != 0};
   }
 
  private:
   uint32_t cursor_;
-  uint32_t pairs_[(N + 15) / 16];  ///< low in the even bits, high in the odd ones
+  uint32_t pairs_[(Length + 15) / 16];  ///< low in even bits, high in odd bits
 };
 
 }  // namespace ETLMON_BUILD

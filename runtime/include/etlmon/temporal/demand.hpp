@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Measuring only what a verdict still depends on.
-// Takes: a way to find a value out. Gives: values that are found out when somebody first asks in a
-// step, and "and", "or" and "not" of such values, which ask their operands from left to right and
-// stop at the first that decides. Keeps true: a value is found out at most once; what comes out is
-// the min, max or negation of all operands, asked or not: kNo decides a min and kYes a max whatever
-// the others are.
+// Evaluation on demand: measures only what a verdict still depends on. Takes: a function that
+// computes a value. Gives: values that are computed at their first use in a step, and "and", "or"
+// and "not" of them, which evaluate operands from left to right and stop at the first that decides.
+// Keeps true: a value is computed at most once; the result is the min, max or negation of all
+// operands, since kNo decides a min and kYes a max.
 #pragma once
 
 #include "etlmon/temporal/truth.hpp"
@@ -12,7 +11,7 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// What `find()` gives, found out on the first call. Lives in one step and is not copied.
+/// The result of `find()`, computed at the first use. Lives in one step and is not copied.
 template <class Find>
 class Lazy {
   using Result = decltype(static_cast<const Find*>(nullptr)->operator()());
@@ -42,20 +41,20 @@ Lazy(Find) -> Lazy<Find>;
 
 namespace detail {
 
-/// What a combination keeps of an operand: a reference to a variable, a temporary itself.
-template <class A>
+/// How a combination stores an operand: a variable by reference, a temporary by value.
+template <class Operand>
 struct Kept {
-  using Type = const A;
+  using Type = const Operand;
 };
-template <class A>
-struct Kept<A&> {
-  using Type = const A&;
+template <class Operand>
+struct Kept<Operand&> {
+  using Type = const Operand&;
 };
 
-template <class A, class B>
+template <class Left, class Right>
 struct Both {
-  typename Kept<A>::Type first;
-  typename Kept<B>::Type second;
+  typename Kept<Left>::Type first;
+  typename Kept<Right>::Type second;
   operator Truth() const noexcept {
     const Truth known = first;
     if (!known.high) return kNo;
@@ -63,10 +62,10 @@ struct Both {
   }
 };
 
-template <class A, class B>
+template <class Left, class Right>
 struct Either {
-  typename Kept<A>::Type first;
-  typename Kept<B>::Type second;
+  typename Kept<Left>::Type first;
+  typename Kept<Right>::Type second;
   operator Truth() const noexcept {
     const Truth known = first;
     if (known.low) return kYes;
@@ -74,13 +73,13 @@ struct Either {
   }
 };
 
-template <class A>
+template <class Operand>
 struct Negation {
-  typename Kept<A>::Type of;
+  typename Kept<Operand>::Type of;
   operator Truth() const noexcept { return negate(static_cast<Truth>(of)); }
 };
 
-template <class A>
+template <class Operand>
 struct IsLazy {
   static constexpr bool value = false;
 };
@@ -88,22 +87,22 @@ template <class Find>
 struct IsLazy<Lazy<Find>> {
   static constexpr bool value = true;
 };
-template <class A, class B>
-struct IsLazy<Both<A, B>> {
+template <class Left, class Right>
+struct IsLazy<Both<Left, Right>> {
   static constexpr bool value = true;
 };
-template <class A, class B>
-struct IsLazy<Either<A, B>> {
+template <class Left, class Right>
+struct IsLazy<Either<Left, Right>> {
   static constexpr bool value = true;
 };
-template <class A>
-struct IsLazy<Negation<A>> {
+template <class Operand>
+struct IsLazy<Negation<Operand>> {
   static constexpr bool value = true;
 };
-template <class A>
-struct IsLazy<A&> : IsLazy<A> {};
-template <class A>
-struct IsLazy<const A> : IsLazy<A> {};
+template <class Operand>
+struct IsLazy<Operand&> : IsLazy<Operand> {};
+template <class Operand>
+struct IsLazy<const Operand> : IsLazy<Operand> {};
 
 template <bool>
 struct Where {};
@@ -114,19 +113,21 @@ struct Where<true> {
 
 }  // namespace detail
 
-/// `a`, then `b` unless a decides; the same for more.
-template <class A, class B,
-          typename detail::Where<detail::IsLazy<A>::value || detail::IsLazy<B>::value>::Type = 0>
-ETLMON_INLINE detail::Both<A, B> min_of(A&& a, B&& b) noexcept {
+/// Evaluates `a`, then `b` unless a decides; likewise for more operands.
+template <
+    class Left, class Right,
+    typename detail::Where<detail::IsLazy<Left>::value || detail::IsLazy<Right>::value>::Type = 0>
+ETLMON_INLINE detail::Both<Left, Right> min_of(Left&& a, Right&& b) noexcept {
   return {a, b};
 }
-template <class A, class B,
-          typename detail::Where<detail::IsLazy<A>::value || detail::IsLazy<B>::value>::Type = 0>
-ETLMON_INLINE detail::Either<A, B> max_of(A&& a, B&& b) noexcept {
+template <
+    class Left, class Right,
+    typename detail::Where<detail::IsLazy<Left>::value || detail::IsLazy<Right>::value>::Type = 0>
+ETLMON_INLINE detail::Either<Left, Right> max_of(Left&& a, Right&& b) noexcept {
   return {a, b};
 }
-template <class A, typename detail::Where<detail::IsLazy<A>::value>::Type = 0>
-ETLMON_INLINE detail::Negation<A> negate(A&& a) noexcept {
+template <class Operand, typename detail::Where<detail::IsLazy<Operand>::value>::Type = 0>
+ETLMON_INLINE detail::Negation<Operand> negate(Operand&& a) noexcept {
   return {a};
 }
 

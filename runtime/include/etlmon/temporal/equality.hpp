@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// == and != between scalars: yes or no, without a margin.
-// Takes: delta (a sample or an expression), NaN where it is unknown; epsilon; all that the
-// comparison may come to. Gives: +inf or -inf as a value, or a truth; the whole range where delta
-// is unknown. Keeps true: exact under any compiler flags; -0 equals 0.
+// == and != of scalars: true or false, without a margin. Takes: delta (a sample or an expression),
+// NaN if unknown; epsilon; the range of the comparison. Gives: +inf or -inf as a value, or a truth
+// value; the range if delta is unknown. Keeps true: exact under any compiler flags; -0 equals 0.
 #pragma once
 
 #include "etlmon/temporal/truth.hpp"
@@ -11,7 +10,7 @@ namespace etlmon {
 inline namespace ETLMON_BUILD {
 
 namespace detail {
-/// By keys, which order the numbers: none is both at most and at least another.
+/// Compares keys, which are ordered as the numbers are.
 ETLMON_INLINE bool same(const float& a, const float& b) noexcept { return key_of(a) == key_of(b); }
 }  // namespace detail
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Arithmetic of EXPR predicates: each operation rounded once to float32, and a NaN operand always
-// gives NaN. Takes: floats, any of them NaN (unknown) or infinite. Gives: + - * / abs sqrt min max
-// as IEEE 754 says, in the order written. Keeps true: no fusing, no reassociation, no assumption
-// that a value is finite, whatever the flags: every result passes through rounded(), which the
-// optimiser cannot see into. So inf - inf and 0 / 0 are NaN, 1 / 0 is inf, under -ffast-math too,
-// and `etlc run` and generated code agree bit for bit. With -ffast-math at link time denormals are
-// flushed to zero: that, and nothing else, still changes results.
+// Arithmetic of EXPR predicates: each operation is rounded once to float32, and a NaN operand gives
+// NaN. Takes: floats, which may be NaN (unknown) or infinite. Gives: + - * / abs sqrt min max as
+// IEEE 754 defines them, in the order written. Keeps true: under any flags nothing is fused,
+// reassociated or assumed finite, since every result passes through rounded(), which is opaque to
+// the optimiser. So inf - inf and 0 / 0 are NaN, 1 / 0 is inf, under -ffast-math too, and `etlc
+// run` and generated code agree bit for bit. Only -ffast-math at link time changes results: it
+// flushes denormals to zero.
 #pragma once
 
 #include "etlmon/bits.hpp"
@@ -35,8 +35,8 @@ ETLMON_INLINE float absolute(const float& x) noexcept {
   return detail::from_bits(detail::observe(x) & ~detail::kSignBit);
 }
 
-/// sqrt; NaN below zero. Infinity and -0 are returned as they are: estimates that -ffast-math may
-/// use lose them.
+/// Returns sqrt, NaN below zero. Infinity and -0 are returned directly: approximations under
+/// -ffast-math lose them.
 ETLMON_INLINE float root(const float& x) noexcept {
   const uint32_t bits = detail::observe(x);
   if ((bits & ~detail::kSignBit) == 0 || bits == detail::kInfinityBits)
@@ -46,14 +46,16 @@ ETLMON_INLINE float root(const float& x) noexcept {
   return detail::rounded(detail::square_root(detail::rounded(x)));
 }
 
-/// The smaller of two; NaN if either is. -0 counts as equal to +0, and then the first is returned.
+/// Returns the smaller of two, or NaN if either is NaN. -0 equals +0; of equals, the first is
+/// returned.
 ETLMON_INLINE float smaller(const float& a, const float& b) noexcept {
   const uint32_t x = detail::observe(a), y = detail::observe(b);
   if (is_nan(a) || is_nan(b)) return detail::from_bits(detail::kMissingBits);
   return detail::from_bits(detail::ordered(y) < detail::ordered(x) ? y : x);
 }
 
-/// The greater of two; NaN if either is. -0 counts as equal to +0, and then the first is returned.
+/// Returns the greater of two, or NaN if either is NaN. -0 equals +0; of equals, the first is
+/// returned.
 ETLMON_INLINE float greater(const float& a, const float& b) noexcept {
   const uint32_t x = detail::observe(a), y = detail::observe(b);
   if (is_nan(a) || is_nan(b)) return detail::from_bits(detail::kMissingBits);

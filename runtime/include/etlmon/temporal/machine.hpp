@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A weighted state machine over (max, min), as constant tables and one loop.
-// Takes: the guards' values at this step. Gives: the reading of the formula. Keeps true: next[t] is
-// the max over the transitions into t of min(now[source], guard), so that the max over the states
-// that owe nothing is rho on the prefix; the work is the same at every step: one min and one max a
-// transition.
+// A weighted state machine over (max, min), as constant tables and one loop. Takes: the guards'
+// values at this step. Gives: the reading of the formula. Keeps true: next[t] is the max over the
+// transitions into t of min(now[source], guard), so that the max over the states without pending
+// obligations is rho on the prefix. Every step takes one min and one max per transition.
 #pragma once
 
 #include <stdint.h>
@@ -18,31 +17,32 @@ struct Transition {
   uint16_t guard;
 };
 
-/// What a state is worth where the prefix ends: indices into this step's lists of keys.
+/// The pending obligations of a state at the end of the prefix, as indices into this step's keys.
 struct Owed {
-  uint16_t weak;  ///< lowest unseen value of what it owes weakly; kStrongly: it owes something that
-                  ///< must still come
-  uint16_t strong;  ///< highest unseen value of what it owes strongly; 0 is kTop: nothing
+  uint16_t weak;  ///< lowest unseen value of weak obligations; kStrongly: some obligation is strong
+  uint16_t strong;  ///< highest unseen value of strong obligations; 0 is kTop: none
 };
 constexpr uint16_t kStrongly = 0xffff;
 
-/// The transitions into state t end at ends[t]; those of t follow those of t - 1.
-template <class V>
-void machine_advance(const V* now, V* next, uint32_t states, const Transition* transitions,
-                     const uint32_t* ends, const V* guards) noexcept {
+/// Computes next. The transitions into state t follow those into t - 1, and end before index
+/// ends[t].
+template <class Value>
+void machine_advance(const Value* now, Value* next, uint32_t states, const Transition* transitions,
+                     const uint32_t* ends, const Value* guards) noexcept {
   uint32_t at = 0;
   for (uint32_t target = 0; target < states; ++target) {
-    V best = Lattice<V>::bottom();
+    Value best = Lattice<Value>::bottom();
     for (; at < ends[target]; ++at)
       best = max_of(best, min_of(now[transitions[at].source], guards[transitions[at].guard]));
     next[target] = best;
   }
 }
 
-/// rho: the best state that owes nothing strongly. lower: what it owes weakly is worth its lowest
-/// unseen value. upper: any state, what it owes strongly is worth its highest unseen value.
-template <class V, class End>
-auto machine_read(const V* now, uint32_t states, const Owed* owed, const End* weak,
+/// Reads the machine. rho: max over states without strong obligations. lower: the same, with weak
+/// obligations at their lowest unseen value. upper: max over all states, with strong obligations at
+/// their highest unseen value.
+template <class Value, class End>
+auto machine_read(const Value* now, uint32_t states, const Owed* owed, const End* weak,
                   const End* strong) noexcept {
   using Result = decltype(reading_of(*now));
   Result reading = Lattice<Result>::bottom();
@@ -56,30 +56,30 @@ auto machine_read(const V* now, uint32_t states, const Owed* owed, const End* we
   return reading;
 }
 
-/// The registers of a machine with its tables elsewhere; state 0 is the initial one.
-template <class V, uint32_t States>
+/// The registers of a machine; its tables are arguments. State 0 is the initial state.
+template <class Value, uint32_t States>
 class Machine {
-  using End = typename Lattice<V>::End;
+  using End = typename Lattice<Value>::End;
 
  public:
   constexpr void reset() noexcept {
     turn_ = 0;
     for (uint32_t q = 0; q < States; ++q)
-      registers_[0][q] = q == 0 ? Lattice<V>::top() : Lattice<V>::bottom();
+      registers_[0][q] = q == 0 ? Lattice<Value>::top() : Lattice<Value>::bottom();
   }
 
-  void advance(const Transition* transitions, const uint32_t* ends, const V* guards) noexcept {
+  void advance(const Transition* transitions, const uint32_t* ends, const Value* guards) noexcept {
     machine_advance(registers_[turn_], registers_[1 - turn_], States, transitions, ends, guards);
     turn_ = 1 - turn_;
   }
 
-  BasicReading<V> read(const Owed* owed, const End* weak, const End* strong) const noexcept {
+  BasicReading<Value> read(const Owed* owed, const End* weak, const End* strong) const noexcept {
     return machine_read(registers_[turn_], States, owed, weak, strong);
   }
 
  private:
   uint32_t turn_;
-  V registers_[2][States];
+  Value registers_[2][States];
 };
 
 }  // namespace ETLMON_BUILD

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
-// What a window aggregates: the temporal operators as associative combinations of neighbouring
-// segments of a stream. Takes: elements of two segments, the older first. Gives: the element of
-// their union, and that of the empty segment. Keeps true: combine is associative and identity
-// neutral. Segments may overlap (kMayOverlap): for a <= b <= c + 1 and c <= d, combine(element of
-// [a, c], element of [b, d]) is that of [a, d]; what the overlap counts twice is absorbed.
-// kNewestLast says which of (older, middle), newest and older, (middle, newest) costs less; the
-// result is the same.
-//
-// The pending half of G(p -> F[0,w] q) on a prefix, the min over the last w positions k of
-// max(!p(k), q over [k, now]), is Trigger over w elements {max(!p, q), q}, whose guard q settles
-// all older positions at once. It needs no window where the positions before are settled each by
-// its own window: the unbounded z = max(min(z, !p), q) then differs only in the terms of settled
-// positions, and these are not below what they were settled at.
+// The aggregates of windows: temporal operators as associative combinations of adjacent segments of
+// a stream. Takes: elements of two segments, the older first. Gives: the element of their union,
+// and of the empty segment. Keeps true: combine is associative and identity is neutral. Segments
+// may overlap (kMayOverlap): for a <= b <= c + 1 and c <= d, combine(element of [a, c], element of
+// [b, d]) is the element of [a, d]. kNewestLast: (older, middle), newest costs less than older,
+// (middle, newest); the results are equal.  The pending half of G(p -> F[0,w] q) on a prefix, the
+// min over the last w positions k of max(!p(k), q over [k, now]), is Trigger over w elements
+// {max(!p, q), q}, whose guard q settles all older positions at once. No window is needed if
+// earlier positions are settled each by its own window: the unbounded z = max(min(z, !p), q) then
+// differs only in the terms of settled positions, which are not below their settled values.
 #pragma once
 
 #include "etlmon/temporal/value.hpp"
@@ -19,50 +16,52 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// The aggregate of the last N elements: window.hpp, and boolean_window.hpp for truth values.
-template <class Monoid, uint32_t N>
+/// The aggregate of the last Length elements: window.hpp, and boolean_window.hpp for truth values.
+template <class Monoid, uint32_t Length>
 class Window;
 
-/// Greatest value of the segment: O over the last N, F over the next N.
-template <class V>
+/// Greatest value of a segment: O and F.
+template <class Value>
 struct Greatest {
-  using Element = V;
+  using Element = Value;
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = true;
-  static constexpr Element identity() noexcept { return Lattice<V>::bottom(); }
+  static constexpr Element identity() noexcept { return Lattice<Value>::bottom(); }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return max_of(older, newer);
   }
 };
 
-/// Least value of the segment: H over the last N, G over the next N.
-template <class V>
+/// Least value of a segment: H and G.
+template <class Value>
 struct Least {
-  using Element = V;
+  using Element = Value;
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = true;
-  static constexpr Element identity() noexcept { return Lattice<V>::top(); }
+  static constexpr Element identity() noexcept { return Lattice<Value>::top(); }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return min_of(older, newer);
   }
 };
 
-/// A binary operator over a segment of positions. One position: value is the right operand g, guard
-/// the left operand f.
-template <class V>
+/// A binary operator over a segment of positions. At one position, value is the right operand g and
+/// guard the left operand f.
+template <class Value>
 struct Span {
-  V value;  ///< the operator's value at the end of the segment that the operator looks from
-  V guard;  ///< what the segment lets through from beyond its other end: min of f (since, until),
-            ///< max of f (duals)
+  Value value;  ///< the operator at the end of the segment that it is evaluated at
+  Value guard;  ///< guard for values beyond the other end: min of f (since, until), max of f
+                ///< (duals)
 };
 
-/// f S g seen from the newest position: max over j of min(g(j), min of f over (j, newest]).
-template <class V>
+/// f S g at the newest position: max over j of min(g(j), min of f over (j, newest]).
+template <class Value>
 struct Since {
-  using Element = Span<V>;
+  using Element = Span<Value>;
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = true;
-  static constexpr Element identity() noexcept { return {Lattice<V>::bottom(), Lattice<V>::top()}; }
+  static constexpr Element identity() noexcept {
+    return {Lattice<Value>::bottom(), Lattice<Value>::top()};
+  }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return {max_of(min_of(older.value, newer.guard), newer.value),
             min_of(older.guard, newer.guard)};
@@ -70,25 +69,29 @@ struct Since {
 };
 
 /// The dual of Since: min over j of max(g(j), max of f over (j, newest]).
-template <class V>
+template <class Value>
 struct Trigger {
-  using Element = Span<V>;
+  using Element = Span<Value>;
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = true;
-  static constexpr Element identity() noexcept { return {Lattice<V>::top(), Lattice<V>::bottom()}; }
+  static constexpr Element identity() noexcept {
+    return {Lattice<Value>::top(), Lattice<Value>::bottom()};
+  }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return {min_of(max_of(older.value, newer.guard), newer.value),
             max_of(older.guard, newer.guard)};
   }
 };
 
-/// f U g seen from the oldest position: max over j of min(g(j), min of f over [oldest, j)).
-template <class V>
+/// f U g at the oldest position: max over j of min(g(j), min of f over [oldest, j)).
+template <class Value>
 struct Until {
-  using Element = Span<V>;
+  using Element = Span<Value>;
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = false;
-  static constexpr Element identity() noexcept { return {Lattice<V>::bottom(), Lattice<V>::top()}; }
+  static constexpr Element identity() noexcept {
+    return {Lattice<Value>::bottom(), Lattice<Value>::top()};
+  }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return {max_of(older.value, min_of(older.guard, newer.value)),
             min_of(older.guard, newer.guard)};
@@ -96,28 +99,30 @@ struct Until {
 };
 
 /// f R g, the dual of Until: min over j of max(g(j), max of f over [oldest, j)).
-template <class V>
+template <class Value>
 struct Release {
-  using Element = Span<V>;
+  using Element = Span<Value>;
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = false;
-  static constexpr Element identity() noexcept { return {Lattice<V>::top(), Lattice<V>::bottom()}; }
+  static constexpr Element identity() noexcept {
+    return {Lattice<Value>::top(), Lattice<Value>::bottom()};
+  }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return {min_of(older.value, max_of(older.guard, newer.value)),
             max_of(older.guard, newer.guard)};
   }
 };
 
-/// The two ends of an element over pairs of keys. The ends never meet: no combination negates.
+/// The two ends of an element over pairs of keys. They never mix, since no combination negates.
 constexpr Key low_of(Value v) noexcept { return v.low; }
 constexpr Key high_of(Value v) noexcept { return v.high; }
 constexpr Value pair_of(Key low, Key high) noexcept { return {low, high}; }
-template <class V>
-constexpr Span<typename Lattice<V>::End> low_of(Span<V> s) noexcept {
+template <class Value>
+constexpr Span<typename Lattice<Value>::End> low_of(Span<Value> s) noexcept {
   return {s.value.low, s.guard.low};
 }
-template <class V>
-constexpr Span<typename Lattice<V>::End> high_of(Span<V> s) noexcept {
+template <class Value>
+constexpr Span<typename Lattice<Value>::End> high_of(Span<Value> s) noexcept {
   return {s.value.high, s.guard.high};
 }
 template <class End>
@@ -126,8 +131,8 @@ constexpr auto pair_of(Span<End> low, Span<End> high) noexcept
   return {pair_of(low.value, high.value), pair_of(low.guard, high.guard)};
 }
 constexpr bool same_ends(Value v) noexcept { return v.low == v.high; }
-template <class V>
-constexpr bool same_ends(Span<V> s) noexcept {
+template <class Value>
+constexpr bool same_ends(Span<Value> s) noexcept {
   return same_ends(s.value) && same_ends(s.guard);
 }
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Formulas at the last positions of a prefix, whose windows still reach past its end.
-// Takes: readings of the operands at n positions, oldest first, the last one being the present.
-// Gives: readings of the formula there, by the definitions of robustness and of the bounds, every
-// window cut at the present. Keeps true: position p tells exactly what rho and the bounds of the
-// operator are there on this prefix; the work is in proportion to n, whatever the windows. R:
-// Reading or BasicReading<Truth>.
+// Formulas at the last positions of a prefix, whose windows extend beyond its end. Takes: readings
+// of the operands at the last n positions, oldest first. Gives: readings of the formula there, by
+// the definitions of robustness and bounds, with every window cut at the last position. Keeps true:
+// the result at each position is exact for this prefix; the work is proportional to n for any
+// windows. Reading: etlmon::Reading or BasicReading<Truth>.
 #pragma once
 
 #include <stdint.h>
@@ -15,110 +14,110 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// The last N values of a stream.
-template <class V, uint32_t N>
+/// The last Length values of a stream.
+template <class Value, uint32_t Length>
 class Recent {
  public:
   constexpr void reset() noexcept { next_ = 0; }
 
-  void push(V value) noexcept {
+  void push(Value value) noexcept {
     values_[next_] = value;
-    next_ = next_ + 1 == N ? 0 : next_ + 1;
+    next_ = next_ + 1 == Length ? 0 : next_ + 1;
   }
 
-  /// The last n <= N, oldest first, as readings of settled values.
-  void list(BasicReading<V>* out, uint32_t n) const noexcept {
-    uint32_t at = next_ >= n ? next_ - n : next_ + N - n;
+  /// Lists the last n <= Length values, oldest first, as settled readings.
+  void list(BasicReading<Value>* out, uint32_t n) const noexcept {
+    uint32_t at = next_ >= n ? next_ - n : next_ + Length - n;
     for (uint32_t p = 0; p < n; ++p) {
       out[p] = settled(values_[at]);
-      at = at + 1 == N ? 0 : at + 1;
+      at = at + 1 == Length ? 0 : at + 1;
     }
   }
 
  private:
   uint32_t next_;
-  V values_[N];
+  Value values_[Length];
 };
 
 namespace detail {
-/// A parameter that follows the others' type: nullptr may stand for it.
-template <class T>
+/// A parameter whose type is deduced from the others, so that nullptr may be passed.
+template <class Same>
 struct As {
-  using Type = T;
+  using Type = Same;
 };
 }  // namespace detail
 
-/// The two senses of a future operator. F and U seek: the best over a window, and beyond its end
-/// something better may come.
+/// The two kinds of future operators. F and U are max over a window, which later positions may
+/// raise.
 struct Seeking {
-  template <class V>
-  static constexpr V gain(V a, V b) noexcept {
+  template <class Value>
+  static constexpr Value gain(Value a, Value b) noexcept {
     return max_of(a, b);
   }
-  template <class V>
-  static constexpr V keep(V a, V b) noexcept {
+  template <class Value>
+  static constexpr Value keep(Value a, Value b) noexcept {
     return min_of(a, b);
   }
-  template <class V>
-  static constexpr V nothing() noexcept {
-    return Lattice<V>::bottom();
+  template <class Value>
+  static constexpr Value nothing() noexcept {
+    return Lattice<Value>::bottom();
   }
-  template <class V>
-  static constexpr V all() noexcept {
-    return Lattice<V>::top();
+  template <class Value>
+  static constexpr Value all() noexcept {
+    return Lattice<Value>::top();
   }
-  /// The bound that what is unseen moves.
-  template <class R>
-  static constexpr auto& open_end(R& reading) noexcept {
+  /// The bound that unseen values affect.
+  template <class Reading>
+  static constexpr auto& open_end(Reading& reading) noexcept {
     return reading.upper;
   }
 };
 
-/// G and R guard: the dual.
+/// G and R are the dual.
 struct Guarding {
-  template <class V>
-  static constexpr V gain(V a, V b) noexcept {
+  template <class Value>
+  static constexpr Value gain(Value a, Value b) noexcept {
     return min_of(a, b);
   }
-  template <class V>
-  static constexpr V keep(V a, V b) noexcept {
+  template <class Value>
+  static constexpr Value keep(Value a, Value b) noexcept {
     return max_of(a, b);
   }
-  template <class V>
-  static constexpr V nothing() noexcept {
-    return Lattice<V>::top();
+  template <class Value>
+  static constexpr Value nothing() noexcept {
+    return Lattice<Value>::top();
   }
-  template <class V>
-  static constexpr V all() noexcept {
-    return Lattice<V>::bottom();
+  template <class Value>
+  static constexpr Value all() noexcept {
+    return Lattice<Value>::bottom();
   }
-  template <class R>
-  static constexpr auto& open_end(R& reading) noexcept {
+  template <class Reading>
+  static constexpr auto& open_end(Reading& reading) noexcept {
     return reading.lower;
   }
 };
 
-/// The upper bound of a window without one.
+/// The end of an unbounded window.
 constexpr uint32_t kWithoutEnd = 0xffffffffu;
 
-template <class R>
-void pending_and(const R* f, const R* g, R* out, uint32_t n) noexcept {
+template <class Reading>
+void pending_and(const Reading* f, const Reading* g, Reading* out, uint32_t n) noexcept {
   for (uint32_t p = 0; p < n; ++p) out[p] = min_of(f[p], g[p]);
 }
 
-template <class R>
-void pending_or(const R* f, const R* g, R* out, uint32_t n) noexcept {
+template <class Reading>
+void pending_or(const Reading* f, const Reading* g, Reading* out, uint32_t n) noexcept {
   for (uint32_t p = 0; p < n; ++p) out[p] = max_of(f[p], g[p]);
 }
 
-/// Combines into out[p] what `in` is over the `length` positions from p + first on, cut at the
-/// present. Cut into blocks of that length, a window is a suffix of one and a prefix of the next.
-template <class R, class Combine>
-void pending_windows(const R* in, R* out, uint32_t n, uint32_t first, uint32_t length,
+/// Combines into out[p] the values of `in` over `length` positions from p + first on, cut at the
+/// last one. In blocks of that length, a window is a suffix of one block and a prefix of the next.
+template <class Reading, class Combine>
+void pending_windows(const Reading* in, Reading* out, uint32_t n, uint32_t first, uint32_t length,
                      Combine combine) noexcept {
   if (first >= n || length == 0) return;
-  const uint32_t last_block = (n - 1) / length * length;  // where it begins
-  R part = in[n - 1];
+  const uint32_t last_block = (n - 1) / length * length;  // begin of the last block
+  Reading part = in[n - 1];
   for (uint32_t at = n, begin = last_block; at-- > first;) {  // suffixes
     const bool ends = at + 1 == begin;
     if (ends) begin -= length;
@@ -130,29 +129,31 @@ void pending_windows(const R* in, R* out, uint32_t n, uint32_t first, uint32_t l
     if (begins) begin += length;
     part = begins ? in[at] : combine(part, in[at]);
     if (at + 1 < first + length) continue;
-    R& whole = out[at + 1 - first - length];
+    Reading& whole = out[at + 1 - first - length];
     whole = combine(whole, part);
   }
-  // Windows that the present cuts, where they reach into the last block.
+  // Windows that extend beyond the last position.
   uint32_t p = n + 1 > first + length ? n + 1 - first - length : 0;
   for (; p + first < last_block; ++p) out[p] = combine(out[p], part);
 }
 
-/// f U[low,high] g (Seeking) or f R[low,high] g (Guarding) at each position; without f (nullptr), F
-/// and G. unseen: the highest, or lowest, unseen value of g. f U[low,high] g is f at the first low
-/// positions, and behind them F[0,high-low] g and f U g, also where the prefix ends before.
-template <class Sense, class R>
-void pending_at_each(const typename detail::As<R>::Type* f, const R* g, R* out, uint32_t n,
-                     uint32_t low, uint32_t high, decltype(R::lower) unseen) noexcept {
-  const auto gain = [](R a, R b) noexcept { return Sense::gain(a, b); };
-  const auto keep = [](R a, R b) noexcept { return Sense::keep(a, b); };
-  R beyond = Sense::template nothing<R>();
+/// Computes f U[low,high] g (Seeking) or f R[low,high] g (Guarding) at each position; without f
+/// (nullptr), F and G. unseen: highest or lowest unseen value of g. f U[low,high] g is f at the
+/// first low positions, then F[0,high-low] g and f U g, even if the prefix ends before.
+template <class Sense, class Reading>
+void pending_at_each(const typename detail::As<Reading>::Type* f, const Reading* g, Reading* out,
+                     uint32_t n, uint32_t low, uint32_t high,
+                     decltype(Reading::lower) unseen) noexcept {
+  const auto gain = [](Reading a, Reading b) noexcept { return Sense::gain(a, b); };
+  const auto keep = [](Reading a, Reading b) noexcept { return Sense::keep(a, b); };
+  Reading beyond = Sense::template nothing<Reading>();
   Sense::open_end(beyond) = unseen;
-  for (uint32_t p = 0; p < n; ++p) out[p] = high < n - p ? Sense::template nothing<R>() : beyond;
+  for (uint32_t p = 0; p < n; ++p)
+    out[p] = high < n - p ? Sense::template nothing<Reading>() : beyond;
   low = low < n ? low : n;
   pending_windows(g, out, n, low, (high < n ? high : n) - low + 1, gain);
   if (f == nullptr) return;
-  R until = beyond;
+  Reading until = beyond;
   for (uint32_t p = n; p-- > 0;) {
     if (p < n - low) until = gain(g[p + low], keep(f[p + low], until));
     out[p] = keep(out[p], until);
@@ -160,15 +161,15 @@ void pending_at_each(const typename detail::As<R>::Type* f, const R* g, R* out, 
   pending_windows(f, out, n, 0, low, keep);
 }
 
-/// The same from position 0 alone, the operands settled `horizon` steps late. n readings of them,
-/// the last at `step`. best and held: the operator and its left side up to the last settled
-/// position; both are moved on by one.
-template <class Sense, class V>
-BasicReading<V> pending_from_start(V& best, V& held,
-                                   const typename detail::As<BasicReading<V>>::Type* f,
-                                   const BasicReading<V>* g, uint32_t n, uint32_t step,
-                                   uint32_t horizon, uint32_t low, uint32_t high,
-                                   typename Lattice<V>::End unseen) noexcept {
+/// Computes the operator at position 0 only, from operands that are settled `horizon` steps late: n
+/// readings of them, the last at `step`. best and held: the operator and its left operand up to the
+/// last settled position; both advance by one position.
+template <class Sense, class Value>
+BasicReading<Value> pending_from_start(Value& best, Value& held,
+                                       const typename detail::As<BasicReading<Value>>::Type* f,
+                                       const BasicReading<Value>* g, uint32_t n, uint32_t step,
+                                       uint32_t horizon, uint32_t low, uint32_t high,
+                                       typename Lattice<Value>::End unseen) noexcept {
   const auto open = [&](uint32_t position) { return low <= position && position <= high; };
   uint32_t p = 0;
   uint32_t position = step + 1 - n;
@@ -178,8 +179,8 @@ BasicReading<V> pending_from_start(V& best, V& held,
     ++p;
     ++position;
   }
-  BasicReading<V> result = settled(best);
-  BasicReading<V> left = settled(held);
+  BasicReading<Value> result = settled(best);
+  BasicReading<Value> left = settled(held);
   for (; p < n; ++p, ++position) {
     if (open(position)) result = Sense::gain(result, Sense::keep(left, g[p]));
     if (f != nullptr) left = Sense::keep(left, f[p]);
@@ -190,55 +191,56 @@ BasicReading<V> pending_from_start(V& best, V& held,
   return result;
 }
 
-/// A state machine whose guards are settled some steps late. guards: n rows of `width`, the first
-/// one settled where `settles`; scratch: 2 * states readings; settled_guards: width + states
-/// values. Its registers are moved on by the settled row.
-template <class V, class End>
-BasicReading<V> pending_machine(V* registers, uint32_t states, const BasicReading<V>* guards,
-                                uint32_t width, uint32_t n, bool settles,
-                                const Transition* transitions, const uint32_t* ends,
-                                const Owed* owed, const End* weak, const End* strong,
-                                BasicReading<V>* scratch, V* settled_guards) noexcept {
-  BasicReading<V>* now = scratch;
-  BasicReading<V>* next = scratch + states;
+/// Runs a state machine whose guards are settled some steps late. guards: n rows of `width`, the
+/// first of which is settled if `settles`; scratch: 2 * states readings; settled_guards: width +
+/// states values. The settled row advances the registers.
+template <class Value, class End>
+BasicReading<Value> pending_machine(Value* registers, uint32_t states,
+                                    const BasicReading<Value>* guards, uint32_t width, uint32_t n,
+                                    bool settles, const Transition* transitions,
+                                    const uint32_t* ends, const Owed* owed, const End* weak,
+                                    const End* strong, BasicReading<Value>* scratch,
+                                    Value* settled_guards) noexcept {
+  BasicReading<Value>* now = scratch;
+  BasicReading<Value>* next = scratch + states;
   if (settles) {
     for (uint32_t g = 0; g < width; ++g) settled_guards[g] = guards[g].rho;
-    V* moved = settled_guards + width;
+    Value* moved = settled_guards + width;
     machine_advance(registers, moved, states, transitions, ends, settled_guards);
     for (uint32_t q = 0; q < states; ++q) registers[q] = moved[q];
   }
   for (uint32_t q = 0; q < states; ++q) now[q] = settled(registers[q]);
   for (uint32_t p = settles ? 1 : 0; p < n; ++p) {
     machine_advance(now, next, states, transitions, ends, guards + p * width);
-    BasicReading<V>* const other = now;
+    BasicReading<Value>* const other = now;
     now = next;
     next = other;
   }
   return machine_read(now, states, owed, weak, strong);
 }
 
-/// Its registers, with room on the stack for the rest.
-template <class V, uint32_t States, uint32_t Width>
+/// The registers of such a machine; the rest is on the stack.
+template <class Value, uint32_t States, uint32_t Width>
 class PendingMachine {
-  using End = typename Lattice<V>::End;
+  using End = typename Lattice<Value>::End;
 
  public:
   constexpr void reset() noexcept {
     for (uint32_t q = 0; q < States; ++q)
-      registers_[q] = q == 0 ? Lattice<V>::top() : Lattice<V>::bottom();
+      registers_[q] = q == 0 ? Lattice<Value>::top() : Lattice<Value>::bottom();
   }
 
-  BasicReading<V> read(const BasicReading<V> (*guards)[Width], uint32_t n, bool settles,
-                       const Transition* transitions, const uint32_t* ends, const Owed* owed,
-                       const End* weak, const End* strong) noexcept {
-    BasicReading<V> scratch[2 * States];
-    V values[Width + States];
+  BasicReading<Value> read(const BasicReading<Value> (*guards)[Width], uint32_t n, bool settles,
+                           const Transition* transitions, const uint32_t* ends, const Owed* owed,
+                           const End* weak, const End* strong) noexcept {
+    BasicReading<Value> scratch[2 * States];
+    Value values[Width + States];
     return pending_machine(registers_, States, guards[0], Width, n, settles, transitions, ends,
                            owed, weak, strong, scratch, values);
   }
 
  private:
-  V registers_[States];
+  Value registers_[States];
 };
 
 }  // namespace ETLMON_BUILD

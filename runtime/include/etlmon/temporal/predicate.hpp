@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// From what was measured to robustness: the comparison of a predicate.
-// Takes: delta (a distance or an expression), NaN where it is unknown; epsilon; what stands for it
-// then: the range of the robustness, or what the spec lets it count as. Gives: epsilon - delta or
-// delta - epsilon as a value, or what stands for it. Keeps true: one float32 subtraction; a NaN is
-// found by its bits and never becomes a verdict.
+// The comparison of a predicate: from a distance or expression to robustness. Takes: delta (a
+// distance or an expression), NaN if unknown; epsilon; the value for that case: the range of the
+// robustness, or the one that the spec declares. Gives: epsilon - delta or delta - epsilon as a
+// value, or that value. Keeps true: one float32 subtraction; a NaN is detected by its bits and
+// never becomes a verdict.
 #pragma once
 
 #include "etlmon/bits.hpp"
@@ -14,8 +14,8 @@ namespace etlmon {
 inline namespace ETLMON_BUILD {
 
 namespace detail {
-/// The compiler sees that x is zero. A threshold of zero is common where the input is a robustness
-/// itself, and leaves nothing to subtract.
+/// Returns whether the compiler knows that x is zero, so that nothing is subtracted. Thresholds of
+/// zero are common for inputs that are robustness themselves.
 ETLMON_INLINE bool surely_zero(const float& x) noexcept {
 #if defined(__GNUC__)
   uint32_t bits = 0;
@@ -28,7 +28,8 @@ ETLMON_INLINE bool surely_zero(const float& x) noexcept {
 }
 }  // namespace detail
 
-/// delta <= epsilon and delta < epsilon (Definition "Embedding Predicate").
+/// Returns the robustness of delta <= epsilon and delta < epsilon (Definition "Embedding
+/// Predicate").
 ETLMON_INLINE Value at_most(const float& delta, const float& epsilon, Value range) noexcept {
   if (is_nan(delta)) return range;
   const Key robustness =
@@ -36,7 +37,7 @@ ETLMON_INLINE Value at_most(const float& delta, const float& epsilon, Value rang
   return {robustness, robustness};
 }
 
-/// delta >= epsilon and delta > epsilon.
+/// Returns the robustness of delta >= epsilon and delta > epsilon.
 ETLMON_INLINE Value at_least(const float& delta, const float& epsilon, Value range) noexcept {
   if (is_nan(delta)) return range;
   const Key robustness =
@@ -44,13 +45,14 @@ ETLMON_INLINE Value at_least(const float& delta, const float& epsilon, Value ran
   return {robustness, robustness};
 }
 
-/// A bool input: true is +inf, false is -inf, missing is anything in between, or `missing`.
+/// Returns the value of a bool input: +inf for true, -inf for false, `missing` (by default the
+/// whole range) if missing.
 ETLMON_INLINE Value value_of(Flag flag, Value missing = {kBottom, kTop}) noexcept {
   if (!flag.present()) return missing;
   return flag.value() ? kTrue : kFalse;
 }
 
-/// Some sample behind the value was missing.
+/// Returns whether a sample of the value was missing.
 constexpr bool unknown(Value value) noexcept { return value.low != value.high; }
 
 }  // namespace ETLMON_BUILD

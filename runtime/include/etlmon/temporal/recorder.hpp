@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The flight recorder: what the monitors saw and said around each alarm.
-// Takes: a row a step, with the status of every verdict. Gives: incidents, each the steps around an
-// alarm, as bytes of the form that docs/data.md describes. Keeps true: no heap; a step copies its
-// row once, and a row that an incident needs once more, BEFORE steps later; a complete incident
-// does not change until it is forgotten, so it may be written while steps go on; what is written
-// is little-endian and the same on every machine.
+// The flight recorder: inputs and verdicts around each alarm. Takes: a row per step, with the
+// status of every verdict. Gives: incidents, each the steps around an alarm, in the format of
+// docs/data.md. Keeps true: no heap; a step copies its row once, and a row of an incident once
+// more, BEFORE steps later; a complete incident does not change until it is removed, so it may be
+// written while the monitor steps; the bytes are little-endian and the same on every machine.
 #pragma once
 
 #include "etlmon/checksum.hpp"
@@ -14,32 +13,32 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// In a row: nobody asked for the predicate. A sample that is missing has kMissingBits.
+/// In a row: the predicate was not evaluated. A missing sample has kMissingBits.
 constexpr uint32_t kUnaskedBits = 0x7fc00001u;
-/// Of bools in a row: false, true, missing, and where nobody asked.
+/// Bools in a row: false, true, missing, not evaluated.
 constexpr uint8_t kRecordedFalse = 0, kRecordedTrue = 1, kRecordedMissing = 2, kRecordedUnasked = 3;
-/// Beside the bits of Answers in a recorded status: an alarm begins at this step.
+/// Added to the bits of Answers in a recorded status: an alarm begins at this step.
 constexpr uint8_t kAlarmBegins = 16;
 
-/// "\x89ETLINC\n": the byte that is no text shows what has been through a conversion of text.
+/// "\x89ETLINC\n": the first byte is not text, so text conversions are detected.
 constexpr uint8_t kIncidentMagic[8] = {0x89, 'E', 'T', 'L', 'I', 'N', 'C', '\n'};
 constexpr uint32_t kIncidentVersion = 1;
 constexpr uint32_t kIncidentHeadBytes = 96;
 constexpr uint32_t kIncidentChecksumBytes = 8;
 
-/// What a row of any size is told of a step: Self has its `words` and `bytes`.
+/// The setters of a row of any size; Self has `words` and `bytes`.
 template <class Self>
 struct RowCalls {
-  /// A distance, an expression or a threshold; every NaN is recorded alike.
+  /// Records a distance, an expression or a threshold. Every NaN is recorded with the same bits.
   void figure(uint32_t at, const float& x) noexcept {
     self().words[1 + at] = is_nan(x) ? detail::kMissingBits : detail::observe(x);
   }
-  /// A distance and the row of the nearest target.
+  /// Records a distance and the row of the nearest target.
   void figures(uint32_t at, const float& delta, uint32_t nearest) noexcept {
     figure(at, delta);
     this->nearest(at + 1, nearest);
   }
-  /// That row alone, beside an expression.
+  /// Records only that row, after an expression.
   void nearest(uint32_t at, uint32_t row) noexcept { self().words[1 + at] = row; }
   void flag(uint32_t at, const Flag& x) noexcept {
     self().bytes[at] =
@@ -50,8 +49,8 @@ struct RowCalls {
   Self& self() noexcept { return static_cast<Self&>(*this); }
 };
 
-/// What is recorded of a step: its number, a word for each figure of a predicate, a byte for each
-/// bool and each verdict.
+/// The record of a step: its number, a word per figure of a predicate, a byte per bool and per
+/// verdict.
 template <uint32_t Figures, uint32_t Bools, uint32_t Monitors>
 struct RecorderCells {
   static constexpr uint32_t kWords = 1 + Figures;
@@ -64,13 +63,13 @@ struct RecorderCells {
   uint8_t bytes[kPaddedBytes];
 };
 
-/// The row that a step fills.
+/// The row of a step.
 template <uint32_t Figures, uint32_t Bools, uint32_t Monitors>
 struct RecorderRow : RecorderCells<Figures, Bools, Monitors>,
                      RowCalls<RecorderRow<Figures, Bools, Monitors>> {
   using Cells = RecorderCells<Figures, Bools, Monitors>;
 
-  /// A step at which nobody asked for anything.
+  /// Starts as a step at which nothing was evaluated.
   RecorderRow() noexcept {
     this->words[0] = 0;
     for (uint32_t i = 1; i < Cells::kWords; ++i) this->words[i] = kUnaskedBits;
@@ -79,17 +78,17 @@ struct RecorderRow : RecorderCells<Figures, Bools, Monitors>,
   }
 };
 
-/// What the monitor was made from, as the head of an incident says it.
+/// The hashes of the monitor, in the head of an incident.
 struct IncidentOrigin {
   uint64_t spec;
   uint64_t data;
   uint64_t thresholds;
-  uint64_t columns;  ///< of what the rows hold
+  uint64_t columns;  ///< hash of the columns of rows
 };
 
 namespace detail {
 
-/// Bytes on their way out: 32 at a time, as the checksum takes them.
+/// Buffers the output: 32 bytes at a time, as the checksum needs them.
 template <class Sink>
 class IncidentWriter {
  public:
@@ -109,7 +108,7 @@ class IncidentWriter {
     word(static_cast<uint32_t>(x));
     word(static_cast<uint32_t>(x >> 32));
   }
-  /// Zeros up to a multiple of 32, and the checksum of all bytes so far.
+  /// Writes zeros up to a multiple of 32, and the checksum of all bytes so far.
   void finish() {
     while (count_ > 0) byte(0);
     const uint64_t sum = checksum_.value();
@@ -132,11 +131,11 @@ class IncidentWriter {
 struct RecordedIncident {
   uint32_t first;     ///< row in the log
   uint32_t length;    ///< in rows
-  uint32_t alarm_at;  ///< row of the alarm, counted from the first
+  uint32_t alarm_at;  ///< row of the alarm, from the first on
   uint32_t episode;
 };
 
-/// Where a recorder of fixed sizes keeps its rows.
+/// The storage of a recorder of fixed sizes.
 template <class RowOf, uint32_t Before, uint32_t After, uint32_t Incidents>
 struct RecorderArrays {
   using Row = RowOf;
@@ -156,7 +155,7 @@ struct RecorderArrays {
 };
 
 /// A ring of the last `before` steps and this one, and a log of the steps that incidents hold. A
-/// row leaves the ring for the log if an incident holds it; incidents that overlap share its rows.
+/// row moves from the ring to the log if an incident holds it; overlapping incidents share rows.
 /// The first `most_incidents` alarms are kept; later ones are counted as lost, until forget().
 template <class Storage>
 class RecorderIn {
@@ -165,13 +164,13 @@ class RecorderIn {
 
  public:
   constexpr RecorderIn() noexcept { end_episode(); }
-  /// In storage whose sizes are known at run time.
+  /// Uses storage whose sizes are known at run time.
   explicit RecorderIn(Storage&& storage) noexcept : kept_(static_cast<Storage&&>(storage)) {
     end_episode();
   }
 
-  /// After each step. `statuses`: of the verdicts, in the order of the spec. An alarm begins where
-  /// a verdict is one that was none at the step before.
+  /// Records a step. `statuses`: of the verdicts, in the order of the spec. An alarm begins if a
+  /// verdict is an alarm, and was none at the step before.
   void record(const Row& row, const typename Storage::Statuses& statuses) noexcept {
     if (count_ == ring_rows()) take_oldest();
     auto& here = kept_.ring[in_ring(count_)];
@@ -193,12 +192,12 @@ class RecorderIn {
     if (begins) begin_incident();
   }
 
-  /// Monitor m restarted: its next alarm is another one.
+  /// Monitor m was restarted: its next alarm is a new one.
   constexpr void restart(uint32_t m) noexcept {
     kept_.alarms[m / 32] &= ~(uint32_t{1} << (m % 32));
   }
 
-  /// A new episode: no step before it counts.
+  /// Starts a new episode, without earlier steps.
   constexpr void end_episode() noexcept {
     close();
     oldest_ = count_ = 0;
@@ -207,7 +206,7 @@ class RecorderIn {
     for (uint32_t i = 0; i < (kept_.monitors() + 31) / 32; ++i) kept_.alarms[i] = 0;
   }
 
-  /// Completes the incidents that wait for steps, with those that there are.
+  /// Completes the incidents that wait for steps, with the steps recorded so far.
   constexpr void close() noexcept {
     for (uint32_t i = 0; i < count_ && owed_ > 0; ++i, --owed_)
       kept_.log[logged_++] = kept_.ring[in_ring(i)];
@@ -216,10 +215,10 @@ class RecorderIn {
       kept_.incidents[n].length = logged_ - kept_.incidents[n].first;
   }
 
-  /// Room for new incidents.
+  /// Removes the incidents, to make room for new ones.
   void forget() noexcept { begun_ = logged_ = owed_ = lost_ = 0; }
 
-  /// How many are complete: their steps after the alarm, and Before more, are over.
+  /// Returns the number of complete incidents: BEFORE + AFTER steps after their alarm.
   constexpr uint32_t complete() const noexcept {
     uint32_t n = 0;
     while (n < begun_ && kept_.incidents[n].first + kept_.incidents[n].length <= logged_) ++n;
@@ -227,8 +226,8 @@ class RecorderIn {
   }
   uint32_t lost() const noexcept { return lost_; }
 
-  /// Hands sink(const uint8_t* bytes, size_t size) the bytes of complete incident n, at most 32 a
-  /// call. False, and no call, where there is no such incident.
+  /// Calls sink(const uint8_t* bytes, size_t size) for the bytes of complete incident n, at most 32
+  /// per call. Returns false, without a call, if there is no such incident.
   template <class Sink>
   bool write(uint32_t n, const IncidentOrigin& origin, Sink&& sink) const {
     if (n >= complete()) return false;
@@ -278,7 +277,7 @@ class RecorderIn {
     return at < ring_rows() ? at : at - ring_rows();
   }
 
-  /// The oldest row makes room, and goes to the log where an incident holds it.
+  /// Removes the oldest row, and copies it to the log if an incident holds it.
   void take_oldest() noexcept {
     if (owed_ > 0) {
       kept_.log[logged_++] = kept_.ring[oldest_];
@@ -288,7 +287,7 @@ class RecorderIn {
     --count_;
   }
 
-  /// At the newest row: all rows of the ring, and `after` to come, go to the log.
+  /// Begins an incident at the newest row: all rows of the ring and the next `after` go to the log.
   void begin_incident() noexcept {
     if (begun_ == kept_.most_incidents()) {
       if (lost_ != UINT32_MAX) ++lost_;
@@ -300,10 +299,10 @@ class RecorderIn {
 
   uint32_t oldest_ = 0;   ///< in the ring
   uint32_t count_ = 0;    ///< rows in the ring
-  uint32_t owed_ = 0;     ///< rows from the oldest on, those to come included, that go to the log
+  uint32_t owed_ = 0;     ///< rows from the oldest on, including future ones, that go to the log
   uint32_t logged_ = 0;   ///< rows in the log
   uint32_t begun_ = 0;    ///< incidents
-  uint32_t lost_ = 0;     ///< alarms without one; saturates
+  uint32_t lost_ = 0;     ///< alarms without an incident; saturates
   uint32_t step_ = 0;     ///< of the episode; saturates
   uint32_t episode_ = 0;  ///< saturates
   Storage kept_{};

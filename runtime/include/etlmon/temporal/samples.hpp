@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Why: the samples whose values verdicts have.
-// Takes: what verdicts are made from, in values that know their sample. Gives: the verdicts, and
-// the sample that decides each. Keeps true: one number a monitor, whatever the formula: its rank
-// says the predicate, the step and the row, and its key the robustness, from which the distance
+// Explanations: the samples that decide verdicts. Takes: values that carry their sample. Gives:
+// verdicts, and the sample that decides each. Keeps true: one number per monitor for any formula.
+// Its rank encodes predicate, step and row; its key is the robustness, from which the distance
 // follows.
 #pragma once
 
@@ -14,31 +13,31 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// Of a sample that names no nearest target.
+/// The row of a sample without a nearest target.
 constexpr uint32_t kNoRow = 0xffffffffu;
 
-/// A predicate or a bool at a step: why a verdict is what it is.
+/// A predicate or bool at a step, which decides a verdict.
 struct Sample {
-  const char* predicate = nullptr;  ///< its name, or its comparison; nullptr: there is no sample
-  uint32_t step = 0;                ///< of the episode; UINT32_MAX: too late to be counted
+  const char* predicate = nullptr;  ///< name, or comparison; nullptr: no sample
+  uint32_t step = 0;                ///< in the episode; UINT32_MAX: beyond the counter
   float robustness = kMissing;      ///< of the predicate at that step; NaN: a sample was missing
-  float distance = kMissing;        ///< or expression, to the last place; of a bool 1 or 0
-  float threshold = kMissing;       ///< NaN: it adapts, or is that of a bool
-  uint32_t row = kNoRow;            ///< of the target that was nearest; kNoRow: none is named
+  float distance = kMissing;        ///< or expression, within one ulp; 1 or 0 of a bool
+  float threshold = kMissing;       ///< NaN if adaptive, or of a bool
+  uint32_t row = kNoRow;            ///< of the nearest target, or kNoRow
 
   constexpr explicit operator bool() const noexcept { return predicate != nullptr; }
 };
 
-/// A predicate or bool of the spec: the codes of its samples.
+/// A predicate or bool of the spec, with the codes of its samples.
 struct Place {
   enum class Kind : uint8_t { at_most, at_least, truth };
   const char* name;
-  Kind kind;        ///< truth: of a bool, == and !=
-  float threshold;  ///< of one that adapts NaN
-  uint32_t first;   ///< its code, that of row 0 where it names rows
-  uint32_t rows;    ///< as many codes; then one of a sample that is missing
+  Kind kind;        ///< truth: a bool, == or !=
+  float threshold;  ///< NaN if adaptive
+  uint32_t first;   ///< first code: of row 0 if codes distinguish rows
+  uint32_t rows;    ///< number of these codes; the next one is of a missing sample
 
-  /// The distance at which the predicate has this robustness; NaN: that does not say it.
+  /// Returns the distance at which the predicate has this robustness, NaN if that is unknown.
   float distance_at(Key robustness) const noexcept {
     if (kind == Kind::truth) return !is_nan(threshold) ? kMissing : robustness > 0 ? 1.0f : 0.0f;
     if (is_nan(threshold) || robustness == kTop || robustness == kBottom) return kMissing;
@@ -47,18 +46,19 @@ struct Place {
   }
 };
 
-// What is taken from the rank of a step's first sample.
-/// Of a number; of the row that was nearest, where `rows` are told apart, else it is 0 of 1.
+// Offsets from the rank of the first sample of a step.
+/// Returns the offset of a number, and of its nearest row if `rows` are distinguished (otherwise
+/// row 0 of 1).
 ETLMON_INLINE uint32_t code_of(uint32_t first, const float& measured, uint32_t row = 0,
                                uint32_t rows = 1) noexcept {
   return 2 * (first + (is_nan(measured) ? rows : row));
 }
-/// Of a bool.
+/// Returns the offset of a bool.
 ETLMON_INLINE uint32_t code_of(uint32_t first, const Flag& flag) noexcept {
   return 2 * (first + (flag.present() ? 0 : 1));
 }
 
-/// Of the last verdict of each monitor, the value that decides it.
+/// The values that decide the last verdict of each monitor.
 template <uint32_t Monitors>
 class Deciding {
  public:
@@ -88,7 +88,7 @@ class Deciding {
   SourcedKey operator[](uint32_t m) const noexcept { return keys_[m]; }
 
  private:
-  /// Of one that is for good the bound that makes it so; of one that is unknown nothing.
+  /// Stores the bound that makes a verdict final, and nothing for an unknown verdict.
   ETLMON_STEP Verdict prefix(uint32_t m, const BasicReading<Sourced>& of, Reading said) noexcept {
     const int64_t holds = said.lower >= 0 ? of.lower.order : of.rho.low.order;
     const int64_t fails = said.upper < 0 ? of.upper.order : of.rho.high.order;
@@ -106,7 +106,8 @@ class Deciding {
   SourcedKey keys_[Monitors];
 };
 
-/// What a value is of: of predicates and bools in the order of the spec, with `Codes` in all.
+/// Returns the sample of a value. `places`: predicates and bools in the order of the spec, with
+/// `Codes` codes in all.
 template <uint32_t Codes, uint32_t Places>
 Sample sample_of(SourcedKey value, const Place (&places)[Places]) noexcept {
   using Order = Ranks<Codes>;
@@ -122,7 +123,7 @@ Sample sample_of(SourcedKey value, const Place (&places)[Places]) noexcept {
   result.threshold = place.threshold;
   const uint32_t row = code - place.first;
   const bool names_rows = place.rows > 0;
-  if (row == (names_rows ? place.rows : 1)) return result;  // it was missing
+  if (row == (names_rows ? place.rows : 1)) return result;  // the sample was missing
   const Key key = Order::is_negated(rank) ? -value.key() : value.key();
   result.robustness = float_of(key);
   result.distance = place.distance_at(key);

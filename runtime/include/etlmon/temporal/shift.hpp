@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Robustness shifted by what the calibration of a whole monitor found.
-// Takes: keys, and a finite shift. Gives: the key of rho - shift. Keeps true: one float32
-// subtraction, which is monotonic, so bounds stay bounds; true and false, which are infinite, stay
-// what they are.
+// Robustness shifted by the calibration of a whole monitor. Takes: keys, and a finite shift. Gives:
+// the key of rho - shift. Keeps true: one float32 subtraction, which is monotonic, so bounds stay
+// bounds; true and false, which are infinite, do not change.
 #pragma once
 
 #include "etlmon/temporal/reading.hpp"

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Robustness that knows which sample it is that of: the values of a class made with --explain.
-// Takes: values of one step, the step, and a code of each sample that says which predicate or bool
-// it is of and which row was nearest. Gives: a value type with which the temporal operators and
-// machines work as they do with robustness. Keeps true: the keys are those of robustness, so
-// verdicts are the same bits; values are totally ordered, so min and max give one of their
-// operands, with its sample. Of equal keys, that of the earlier sample is farther from 0, and at
-// one step that of the first in the spec; true and false themselves are farthest, and what is not
-// seen yet is nearest.
+// Robustness that carries its sample: the values of a class generated with --explain. Takes: values
+// of a step, the step, and a code per sample, which encodes its predicate or bool and the nearest
+// row. Gives: a value type for the temporal operators and machines. Keeps true: the keys are those
+// of robustness, so verdicts have the same bits; values are totally ordered, so min and max return
+// one of their operands, with its sample. Of equal keys, that of the earlier sample is farther from
+// 0, at one step that of the first in the spec; true and false are farthest, unseen values nearest.
 #pragma once
 
 #include <stdint.h>
@@ -19,16 +17,17 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// How early a sample is: its distance from the middle, above it where the key is not negative and
-/// below it where it is. So comparing keys, then ranks, puts equal keys of earlier samples farther
-/// from 0. Below it are the complements; what was negated is one less, which its lowest bit tells.
+/// The order of samples: earlier ones are farther from the middle, above it for keys >= 0 and below
+/// it for negative keys. So comparing keys, then ranks, puts equal keys of earlier samples farther
+/// from 0. Ranks below the middle are complements; a negated rank is one less, as its lowest bit
+/// shows.
 using Rank = uint32_t;
-constexpr Rank kUnseen = 0x80000000u;  ///< the middle: of what stands for samples to come
-constexpr Rank kItself = 0x7fffffffu;  ///< the distance of true and false: no sample is as early
+constexpr Rank kUnseen = 0x80000000u;  ///< the middle: of unseen values
+constexpr Rank kItself = 0x7fffffffu;  ///< distance of true and false: beyond any sample
 
-// Words, not a long one: state has no padding on any target.
+// Two words, so that state has no padding on any target.
 #pragma pack(push, 4)
-/// A key, and below it the rank of its sample, in one number. A key alone is that of no sample.
+/// A key and, in the lower half, the rank of its sample. A key alone has no sample.
 struct SourcedKey {
   int64_t order;
 
@@ -53,7 +52,7 @@ struct SourcedKey {
 };
 #pragma pack(pop)
 
-/// What is known of a robustness, each end with its sample.
+/// A range of robustness; each end carries its sample.
 struct Sourced {
   SourcedKey low;
   SourcedKey high;
@@ -68,7 +67,7 @@ static_assert(sizeof(Sourced) == 16 && alignof(Sourced) == 4, "twice a value");
 constexpr Sourced kTrueItself{kTrue};
 constexpr Sourced kFalseItself{kFalse};
 
-// Of numbers, which a compiler selects without a jump; not of structs.
+// On numbers, which compilers select without a branch, unlike structs.
 constexpr SourcedKey min_of(SourcedKey a, SourcedKey b) noexcept {
   return SourcedKey::of(b.order < a.order ? b.order : a.order);
 }
@@ -81,13 +80,13 @@ constexpr Sourced min_of(Sourced a, Sourced b) noexcept {
 constexpr Sourced max_of(Sourced a, Sourced b) noexcept {
   return {max_of(a.low, b.low), max_of(a.high, b.high)};
 }
-/// Both the key and the rank turn around.
+/// Negates both the key and the rank.
 constexpr SourcedKey negate(SourcedKey a) noexcept {
   return SourcedKey::of(int64_t{0xfffffffe} - a.order);
 }
 constexpr Sourced negate(Sourced a) noexcept { return {negate(a.high), negate(a.low)}; }
 
-/// A value that a monitor keeps from step to step; its ends are of two types, as a Register's are.
+/// A value kept between steps. Its ends have two types, as those of Register.
 struct SourcedRegister {
 #pragma pack(push, 4)
   struct End {
@@ -125,7 +124,7 @@ struct Lattice<Sourced> {
   static constexpr Sourced top() noexcept { return kTrueItself; }
 };
 
-/// A register that is settled by itself.
+/// Returns the reading of a settled register.
 constexpr BasicReading<Sourced> settled(SourcedRegister kept) noexcept {
   return settled<Sourced>(kept);
 }
@@ -135,10 +134,10 @@ constexpr SourcedKey high_of(Sourced v) noexcept { return v.high; }
 constexpr Sourced pair_of(SourcedKey low, SourcedKey high) noexcept { return {low, high}; }
 constexpr bool same_ends(Sourced v) noexcept { return v.low.order == v.high.order; }
 
-template <template <class> class Operator, uint32_t N>
-class Window<Operator<Sourced>, N> : public PairWindow<Operator, Sourced, N> {};
+template <template <class> class Operator, uint32_t Length>
+class Window<Operator<Sourced>, Length> : public PairWindow<Operator, Sourced, Length> {};
 
-/// A value of the sample of this rank, as it stands above the middle.
+/// Returns a value with the sample of this rank, which is above the middle.
 ETLMON_INLINE SourcedKey sourced(Key key, Rank rank) noexcept {
   return {key, rank ^ static_cast<uint32_t>(key >> 31)};
 }
@@ -146,14 +145,14 @@ ETLMON_INLINE Sourced sourced(Value value, Rank rank) noexcept {
   return {sourced(value.low, rank), sourced(value.high, rank)};
 }
 
-/// Where samples stand among all: `count` codes a step, in the order of the spec. Steps beyond the
-/// last that can be told apart count as that one: its samples say no step.
+/// The ranks of samples: `count` codes per step, in the order of the spec. Steps beyond the last
+/// distinct one share its ranks, and are not reported.
 template <uint32_t count>
 struct Ranks {
   static constexpr uint32_t kSamples = kItself / 2 - 1;
   static constexpr uint32_t kLastStep = kSamples / count - 1;
 
-  /// The rank of code 0 of a step; that of code n is 2 n less.
+  /// Returns the rank of code 0 of a step; that of code n is 2 n less.
   static constexpr Rank first(uint32_t step) noexcept {
     return kUnseen + 2 * (kSamples - (step < kLastStep ? step : kLastStep) * count);
   }
@@ -173,7 +172,7 @@ struct Ranks {
   static constexpr uint32_t number(Rank rank) noexcept { return kSamples - earliness(rank); }
 };
 
-/// The shift moves keys alone: the sample stays that of the formula.
+/// Shifts the keys, and keeps the samples.
 ETLMON_INLINE Value unsourced(Sourced value) noexcept {
   return {value.low.key(), value.high.key()};
 }

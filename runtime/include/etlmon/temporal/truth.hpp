@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Truth inside a Boolean monitor: what is known of a yes or no, in two bits.
-// Takes: comparisons. Gives: a value type with which the temporal operators and machines work as
-// they do with robustness: min is "and", max is "or". Keeps true: low implies high; where nothing
-// is missing the two are equal.
+// Truth values in a Boolean monitor: two bits for what is known. Takes: comparisons. Gives: a value
+// type for the temporal operators and machines: min is "and", max is "or". Keeps true: low implies
+// high; they differ only if a sample is missing.
 #pragma once
 
 #include "etlmon/bits.hpp"
@@ -14,7 +13,7 @@ inline namespace ETLMON_BUILD {
 
 struct Truth {
   bool low : 1;   ///< surely true
-  bool high : 1;  ///< perhaps true
+  bool high : 1;  ///< possibly true
 };
 static_assert(sizeof(Truth) == 1, "two bits in a byte");
 
@@ -45,8 +44,7 @@ constexpr Truth truth_of(Flag flag, Truth missing = kPerhaps) noexcept {
   return flag.present() ? truth_of(flag.value()) : missing;
 }
 
-/// The comparison itself decides, on keys: exact under any compiler flags. Where delta is NaN it is
-/// unknown: `range`, all that it may come to.
+/// Compares keys, which is exact under any compiler flags. Returns `range` if delta is NaN.
 ETLMON_INLINE Truth is_at_most(const float& delta, const float& epsilon,
                                Truth range = kPerhaps) noexcept {
   return is_nan(delta) ? range : truth_of(key_of(delta) <= key_of(epsilon));

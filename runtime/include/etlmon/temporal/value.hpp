@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Robustness inside a monitor: ordered integer keys, in pairs.
-// Takes: float32 robustness. Gives: values that min and max combine exactly, infinities included,
-// under any compiler flags. Keeps true: key order is float order; -0 and +0 share a key; a NaN
-// never becomes a key (predicates turn it into a range). A value type V of the temporal operators
-// is any type with min_of, max_of (here or found by argument; min and max are macros of windows.h)
-// and a Lattice<V>.
+// Robustness in a monitor: pairs of ordered integer keys. Takes: float32 robustness. Gives: values
+// that min and max combine exactly, infinities included, under any compiler flags. Keeps true: key
+// order is float order; -0 and +0 share a key; a NaN never becomes a key (predicates turn it into a
+// range). A value type of the temporal operators is any type with min_of, max_of (here or by
+// argument-dependent lookup; min and max are macros of windows.h) and a Lattice.
 #pragma once
 
 #include <stdint.h>
@@ -14,20 +13,20 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// float32 robustness as an integer whose order is the order of the floats. Comparing integers
-/// keeps -ffast-math, which assumes that infinities do not occur, from changing a verdict.
+/// float32 robustness as an integer in the order of the floats. Comparisons of integers are not
+/// affected by -ffast-math, which assumes that infinities do not occur.
 using Key = int32_t;
 
 ETLMON_INLINE uint32_t bits_of(const float& x) noexcept { return detail::observe(x); }
 
 ETLMON_INLINE float float_of_bits(uint32_t bits) noexcept { return detail::from_bits(bits); }
 
-/// The key of a robustness that is not NaN.
+/// Returns the key of a robustness, which is not NaN.
 ETLMON_INLINE Key key_of(const float& robustness) noexcept {
   return detail::ordered(bits_of(robustness));
 }
 
-/// The float of a key; 0 is +0. The order's own inverse is the order.
+/// Returns the float of a key; 0 is +0. ordered() is its own inverse.
 ETLMON_INLINE float float_of(Key key) noexcept {
   return float_of_bits(static_cast<uint32_t>(detail::ordered(static_cast<uint32_t>(key))));
 }
@@ -38,18 +37,18 @@ constexpr Key kBottom = -0x7f800000;  ///< -inf: false
 constexpr Key min_of(Key a, Key b) noexcept { return b < a ? b : a; }
 constexpr Key max_of(Key a, Key b) noexcept { return a < b ? b : a; }
 
-/// Of truth values: "and" and "or".
+/// "And" and "or" of truth values.
 constexpr bool min_of(bool a, bool b) noexcept { return a && b; }
 constexpr bool max_of(bool a, bool b) noexcept { return a || b; }
 
-/// Of floats that are not NaN, compared as keys: exact for infinities and denormals whatever the
-/// flags. Of two zeros, a.
+/// Min and max of floats that are not NaN. They are compared as keys, which is exact for infinities
+/// and denormals under any flags. Of two zeros, returns a.
 ETLMON_INLINE float min_of(float a, float b) noexcept { return key_of(b) < key_of(a) ? b : a; }
 ETLMON_INLINE float max_of(float a, float b) noexcept { return key_of(a) < key_of(b) ? b : a; }
 
-/// What is known of a robustness: low == high where every sample it depends on was there, else the
-/// ends of its range. The min-max algebra works on both ends alike, since formulas are in negation
-/// normal form (only predicates negate).
+/// The range of a robustness: low == high unless a sample that it depends on is missing. Min and
+/// max apply to both ends alike, since formulas are in negation normal form (only predicates
+/// negate).
 struct Value {
   Key low;
   Key high;
@@ -66,9 +65,8 @@ constexpr Value max_of(Value a, Value b) noexcept {
 }
 constexpr Value negate(Value a) noexcept { return {-a.high, -a.low}; }
 
-/// A value that a monitor keeps from step to step. Its ends are of two types: of one, g++ makes a
-/// vector of what two registers are assigned and stores that, and the next step, which reads them
-/// one by one, waits for the vector.
+/// A value kept between steps. Its ends have two types: with one type, g++ stores two registers as
+/// a vector, and the next step, which reads them one by one, waits for that store.
 struct Register {
   struct End {
     uint32_t bits;
@@ -85,31 +83,24 @@ struct Register {
   }
 };
 
-/// The value of a robustness that is known; not NaN.
-ETLMON_INLINE Value known(const float& robustness) noexcept {
-  const Key key = key_of(robustness);
-  return {key, key};
-}
-
-/// The value of a robustness that lies in [low, high]; neither is NaN, low <= high.
+/// Returns the value of a robustness in [low, high]; neither is NaN, low <= high.
 ETLMON_INLINE Value between(const float& low, const float& high) noexcept {
   return {key_of(low), key_of(high)};
 }
 
-/// Of more than two: values and registers, or all of another type.
-template <class A, class B, class C, class... More>
-constexpr auto min_of(A a, B b, C c, More... more) noexcept {
+/// Min and max of more than two: values and registers, or all of another type.
+template <class First, class Second, class Third, class... More>
+constexpr auto min_of(First a, Second b, Third c, More... more) noexcept {
   return min_of(min_of(a, b), c, more...);
 }
-template <class A, class B, class C, class... More>
-constexpr auto max_of(A a, B b, C c, More... more) noexcept {
+template <class First, class Second, class Third, class... More>
+constexpr auto max_of(First a, Second b, Third c, More... more) noexcept {
   return max_of(max_of(a, b), c, more...);
 }
 
-/// The least and the greatest element of a value type: bottom is false, top is true; End is the
-/// type of its two ends, low and high. A mode (truth.hpp, say) is a type with min_of and max_of
-/// found by argument-dependent lookup and a specialisation of this.
-template <class V>
+/// The least element (false) and the greatest (true) of a value type, and End, the type of its ends
+/// low and high.
+template <class Value>
 struct Lattice;
 
 template <>
@@ -117,12 +108,6 @@ struct Lattice<Key> {
   using End = Key;
   static constexpr Key bottom() noexcept { return kBottom; }
   static constexpr Key top() noexcept { return kTop; }
-};
-
-template <>
-struct Lattice<float> {
-  ETLMON_INLINE static float bottom() noexcept { return float_of(kBottom); }
-  ETLMON_INLINE static float top() noexcept { return float_of(kTop); }
 };
 
 template <>

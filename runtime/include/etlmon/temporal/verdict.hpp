@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What a monitor answers after a step.
-// Takes: values and keys at the end of a step. Gives: floats and the status that follows from them.
-// Keeps true: the status is decided on integer keys, never on floats, so compiler flags cannot
-// change it; a Verdict is 16 bytes on every target, trivially copyable, and undecided unless made
-// by one of the two functions below.
+// The verdict of a monitor after a step. Takes: values and keys at the end of a step. Gives: floats
+// and a status. Keeps true: the status is decided on integer keys, so compiler flags cannot change
+// it; a Verdict is 16 bytes on every target, trivially copyable, and undecided unless made by one
+// of the two functions below.
 #pragma once
 
 #include <stdint.h>
@@ -13,8 +12,8 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// What can be asked about one monitor after one step; Self has `status`, of the bits below.
-/// Undecided: every question but decided() is moot.
+/// The questions about a verdict; Self has `status`, made of the bits below. An undecided verdict
+/// answers only decided().
 template <class Self>
 struct Answers {
   static constexpr uint8_t kSatisfied = 1;
@@ -22,19 +21,19 @@ struct Answers {
   static constexpr uint8_t kDecided = 4;
   static constexpr uint8_t kFinal = 8;
 
-  // What a program acts on.
-  /// Violated for good: nothing that may come repairs it.
+  // A program acts on these.
+  /// Violated for good, whatever comes.
   constexpr bool alarm() const noexcept { return violated() && final(); }
-  /// Satisfied for good: on to the next task.
+  /// Satisfied for good, whatever comes.
   constexpr bool fulfilled() const noexcept { return satisfied() && final(); }
-  /// What comes may still change the answer.
+  /// Later steps may still change the answer.
   constexpr bool open() const noexcept { return decided() && !final(); }
 
-  // What the prefix says, were it to end now. Until it is final, `violated` mostly means "not yet":
-  // G F[0,6] p is violated at every step of a good run at which p does not hold.
+  // These judge the prefix as if the trace ended now. Until the verdict is final, `violated` often
+  // means "not yet": G F[0,6] p is violated at every step at which p does not hold.
   constexpr bool satisfied() const noexcept { return has(kSatisfied); }
   constexpr bool violated() const noexcept { return has(kViolated); }
-  /// A missing sample leaves it open.
+  /// A missing sample leaves it undetermined.
   constexpr bool unknown() const noexcept { return decided() && !satisfied() && !violated(); }
   /// False only before a sliding monitor has seen its horizon.
   constexpr bool decided() const noexcept { return has(kDecided); }
@@ -47,12 +46,12 @@ struct Answers {
   }
 };
 
-/// The answers of all monitors with their names, in the order of the spec, for loops over them.
-template <class V, uint32_t count>
+/// The verdicts of all monitors with their names, in the order of the spec, for loops.
+template <class Value, uint32_t count>
 struct Named {
   struct Entry {
     const char* name;
-    V verdict;
+    Value verdict;
   };
   Entry entries[count];
 
@@ -60,18 +59,18 @@ struct Named {
   constexpr const Entry* end() const noexcept { return entries + count; }
 };
 
-/// The answer about one monitor after one step. Undecided: the numbers are NaN.
+/// The verdict of a monitor after a step. If it is undecided, the numbers are NaN.
 struct Verdict : Answers<Verdict> {
-  float robustness = kMissing;  ///< rho; pessimistic where a sample is missing
-  float lower = kMissing;       ///< no continuation of the trace takes rho below this
-  float upper = kMissing;       ///< nor above this
+  float robustness = kMissing;  ///< rho; the lowest possible if a sample is missing
+  float lower = kMissing;       ///< lower bound of rho over every continuation
+  float upper = kMissing;       ///< upper bound of rho over every continuation
   uint32_t status = 0;          ///< bits of Answers
 };
 
 static_assert(sizeof(Verdict) == 16, "a verdict is three floats and its status");
 
-/// About position 0 of the prefix seen so far. rho: its robustness; lower, upper: its bounds over
-/// every continuation.
+/// Returns the verdict about position 0 of the prefix. rho: its robustness; lower, upper: its
+/// bounds over every continuation.
 inline Verdict prefix_verdict(Value rho, Key lower, Key upper) noexcept {
   uint32_t status = Verdict::kDecided;
   if (rho.low >= 0) status += Verdict::kSatisfied;
@@ -80,7 +79,8 @@ inline Verdict prefix_verdict(Value rho, Key lower, Key upper) noexcept {
   return {{}, float_of(rho.low), float_of(lower), float_of(upper), status};
 }
 
-/// About a position whose horizon has been seen: the only doubt left is a missing sample.
+/// Returns the verdict about a position whose horizon is complete; only a missing sample leaves
+/// doubt.
 inline Verdict sliding_verdict(Value rho) noexcept {
   const uint32_t satisfied = ~static_cast<uint32_t>(rho.low) >> 31;
   const uint32_t violated = static_cast<uint32_t>(rho.high) >> 31;

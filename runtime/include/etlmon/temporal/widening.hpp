@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Several windows that watch one signal, each made from a shorter one.
-// Takes: one aggregate of a shorter window a step. Gives: that of a longer one. Keeps true: the
-// results of a window of its own, in one combination a step.
+// Windows over one signal, each computed from a shorter one. Takes: the aggregate of a shorter
+// window at each step. Gives: that of a longer one. Keeps true: the results of a separate window,
+// with one combination per step.
 #pragma once
 
 #include "etlmon/temporal/delay.hpp"
@@ -10,27 +10,28 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// From the aggregate of the last M to that of the last N of one stream, M < N <= 2 M: one
-/// combination and a delay by N - M instead of a second window, where several windows watch one
-/// signal. Only for operators whose segments may overlap.
-template <class Monoid, uint32_t M, uint32_t N>
+/// Widens the aggregate of the last Shorter elements to the last Length, Shorter < Length <= 2
+/// Shorter, by a combination and a delay in place of a second window. For operators whose segments
+/// may overlap.
+template <class Monoid, uint32_t Shorter, uint32_t Length>
 class Widening {
-  static_assert(M < N && N - M <= M, "the two shorter windows must meet");
+  static_assert(Shorter < Length && Length - Shorter <= Shorter,
+                "the two shorter windows must meet");
   static_assert(Monoid::kMayOverlap, "an element that both windows hold would count twice");
 
  public:
   using Element = typename Monoid::Element;
 
-  /// Forgets all elements; time proportional to N - M.
+  /// Forgets all elements; takes time proportional to Length - Shorter.
   constexpr void reset() noexcept { past_.reset(Monoid::identity()); }
 
-  /// Takes this step's aggregate of the last M, gives that of the last N.
+  /// Takes this step's aggregate of the last Shorter elements, returns that of the last Length.
   ETLMON_STEP Element push(Element aggregate) noexcept {
     return Monoid::combine(past_.push(aggregate), aggregate);
   }
 
  private:
-  Delay<Element, N - M> past_;
+  Delay<Element, Length - Shorter> past_;
 };
 
 }  // namespace ETLMON_BUILD

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Sliding aggregates: the combination of the last N elements of a stream, for any monoid, in
-// constant time a step. Takes: one element a step. Gives: combine(oldest, ..., newest) over the
-// last N; identity stands before the first. Keeps true: at most window_operations(N) combinations
-// in any step, whatever the history; state N + 2 elements.
-//
-// The method cuts the stream into blocks of N / 2 (rounded down), so that the window is always
-//     a suffix of the oldest block  |  the middle block, whole  |  a prefix of the newest block
-// and, where N is odd, the newest block may be whole too. The suffix is read from a table, the
-// other two are running totals. The table for the middle block, which is the next oldest, is built
-// in place from its end while the newest block fills, one entry a step: it is complete when it is
-// due. The oldest block is given up from its front at the pace at which the newest grows, so these
-// two share their places, and the next entry to build mirrors the next slot to fill. (Suffix and
-// prefix tables: van Herk 1992, Gil and Werman 1993; half-blocks keep a step from building a whole
-// table.)
+// constant time a step. Takes: one element per step. Gives: combine(oldest, ..., newest) over the
+// last N, with identity before the first. Keeps true: at most window_operations(N) combinations in
+// any step; N + 2 elements of state.  The method cuts the stream into blocks of N / 2 (rounded
+// down), so that the window is always a suffix of the oldest block  |  the middle block, whole  |
+// a prefix of the newest block and, if N is odd, the newest block may be whole too. The suffix is
+// read from a table; the other two are running totals. The table of the middle block, the next
+// oldest, is built in place from its end while the newest block fills, one entry per step, so it is
+// complete in time. The oldest block shrinks from its front as fast as the newest grows, so they
+// share their slots, and the next entry to build mirrors the next slot to fill. (Suffix and prefix
+// tables: van Herk 1992, Gil and Werman 1993; half-blocks avoid building a whole table in one
+// step.)
 #pragma once
 
 #include <stdint.h>
@@ -22,10 +20,10 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// Elements of storage that a window over the last n >= 1 needs: two totals, two blocks.
+/// Returns the elements of storage of a window over the last n >= 1: two totals, two blocks.
 constexpr uint32_t window_elements(uint32_t n) noexcept { return (n & ~uint32_t{1}) + 2; }
 
-/// Empties a window: storage of window_elements(n).
+/// Empties a window with window_elements(n) elements of storage.
 template <class Monoid>
 constexpr void window_reset(typename Monoid::Element* storage, uint32_t& cursor,
                             uint32_t n) noexcept {
@@ -33,7 +31,7 @@ constexpr void window_reset(typename Monoid::Element* storage, uint32_t& cursor,
   for (uint32_t i = 0; i < window_elements(n); ++i) storage[i] = Monoid::identity();
 }
 
-/// oldest, middle and newest of a window together, in the order that is cheaper.
+/// Combines oldest, middle and newest, in the cheaper order.
 template <class Monoid>
 constexpr typename Monoid::Element window_total(typename Monoid::Element oldest,
                                                 typename Monoid::Element middle,
@@ -42,9 +40,9 @@ constexpr typename Monoid::Element window_total(typename Monoid::Element oldest,
                              : Monoid::combine(oldest, Monoid::combine(middle, newest));
 }
 
-/// One step of a window over the last n >= 1 elements: the combination of those, this one included.
-/// storage: window_elements(n) elements that window_reset prepared; cursor: the slot of the ring
-/// that this step fills.
+/// Takes a step of a window over the last n >= 1 elements, and returns their combination. storage:
+/// window_elements(n) elements, prepared by window_reset; cursor: the slot of the ring for this
+/// step.
 template <class Monoid>
 ETLMON_STEP typename Monoid::Element window_push(typename Monoid::Element* storage,
                                                  uint32_t& cursor, uint32_t n,
@@ -61,12 +59,12 @@ ETLMON_STEP typename Monoid::Element window_push(typename Monoid::Element* stora
   const Element total = Monoid::combine(newest, element);
   Element aggregate = total;
   if (odd)
-    aggregate =
-        window_total<Monoid>(ring[at], middle, total);  // the slot's suffix, before it is filled
+    aggregate = window_total<Monoid>(ring[at], middle, total);  // reads the slot's suffix before it
+                                                                // is overwritten
   ring[at] = element;
   uint32_t next = at + 1;
   if (n < 4 || next == places / 2 ||
-      next == places) {  // the newest block is full: every block is one older from here
+      next == places) {  // the newest block is full: every block becomes one older
     if (next == places) next = 0;
     middle = total;
     newest = Monoid::identity();
@@ -80,40 +78,40 @@ ETLMON_STEP typename Monoid::Element window_push(typename Monoid::Element* stora
   return aggregate;
 }
 
-/// The aggregate of the last N elements. Monoid::Element: trivially copyable, alignment at most 4.
-template <class Monoid, uint32_t N>
+/// The aggregate of the last Length elements. Monoid::Element: trivially copyable, alignment at
+/// most 4.
+template <class Monoid, uint32_t Length>
 class Window {
-  static_assert(N >= 1 && N <= 0x7fffffffu, "a window holds at least this step");
+  static_assert(Length >= 1 && Length <= 0x7fffffffu, "a window holds at least this step");
   static_assert(alignof(typename Monoid::Element) <= alignof(uint32_t),
                 "the cursor comes first, without padding");
 
  public:
   using Element = typename Monoid::Element;
 
-  /// Forgets all elements; time proportional to N.
-  constexpr void reset() noexcept { window_reset<Monoid>(storage_, cursor_, N); }
+  /// Forgets all elements; takes time proportional to Length.
+  constexpr void reset() noexcept { window_reset<Monoid>(storage_, cursor_, Length); }
 
-  /// Takes this step's element, gives the combination of the last N, oldest first.
+  /// Takes this step's element, returns the combination of the last Length, oldest first.
   Element push(Element element) noexcept {
-    return window_push<Monoid>(storage_, cursor_, N, element);
+    return window_push<Monoid>(storage_, cursor_, Length, element);
   }
 
  private:
   uint32_t cursor_;
-  Element storage_[window_elements(N)];
+  Element storage_[window_elements(Length)];
 };
 
-/// Where the highs of a window over pairs part from its lows: per block the first slot whose ends
-/// differ, kNowhere where all are the same. From that slot on the block's elements, in the oldest
-/// block its whole suffix table, stand among the highs; before it, and in the other blocks, the
-/// lows are the highs too.
+/// Where the highs of a window over pairs differ from its lows: per block the first slot whose ends
+/// differ, or kNowhere. From that slot on, the highs hold the elements of the block, of the oldest
+/// block its whole suffix table; elsewhere the lows are also the highs.
 struct Parting {
   static constexpr uint32_t kNowhere = 0xffffffffu;
   uint32_t newest, middle, oldest;
 
   constexpr void reset() noexcept { newest = middle = oldest = kNowhere; }
   bool nowhere() const noexcept { return (newest & middle & oldest) == kNowhere; }
-  /// The newest block is full: every block is one older.
+  /// The newest block is full: every block becomes one older.
   void next_block() noexcept {
     oldest = middle == kNowhere ? kNowhere : 0;
     middle = newest;
@@ -121,9 +119,9 @@ struct Parting {
   }
 };
 
-/// The highs' step of a window over pairs of keys, where they part from the lows; to be done before
-/// the lows' step. Both storages as in window_push; step by step the same, but for what is still
-/// read among the lows.
+/// Takes the step of the highs of a window over pairs of keys, once they differ from the lows; call
+/// it before the step of the lows. The same steps as window_push, but reads the lows where both are
+/// equal.
 template <class Ends>
 typename Ends::Element window_push_highs(const typename Ends::Element* lows,
                                          typename Ends::Element* highs, Parting& parting,
@@ -160,45 +158,45 @@ typename Ends::Element window_push_highs(const typename Ends::Element* lows,
   return aggregate;
 }
 
-/// Over pairs of keys. The lows and the highs never meet: these are two windows. While no sample in
-/// them is missing they are the same window twice, and only that of the lows is kept up.
-template <template <class> class Operator, class V, uint32_t N>
+/// A window over pairs of keys: two windows, of the lows and of the highs. While no sample in them
+/// is missing they are equal, and only that of the lows is updated.
+template <template <class> class Operator, class Value, uint32_t Length>
 class PairWindow {
  public:
-  using Element = typename Operator<V>::Element;
+  using Element = typename Operator<Value>::Element;
 
   constexpr void reset() noexcept {
-    window_reset<Ends>(lows_, cursor_, N);
+    window_reset<Ends>(lows_, cursor_, Length);
     parting_.reset();
   }
 
   ETLMON_STEP Element push(Element element) noexcept {
-    if (N == 1) return element;
+    if (Length == 1) return element;
     if (!same_ends(element) || !parting_.nowhere())
       return push_apart(low_of(element), high_of(element));
-    const EndElement both = window_push<Ends>(lows_, cursor_, N, low_of(element));
+    const EndElement both = window_push<Ends>(lows_, cursor_, Length, low_of(element));
     return pair_of(both, both);
   }
 
  private:
-  using Ends = Operator<typename Lattice<V>::End>;
+  using Ends = Operator<typename Lattice<Value>::End>;
   using EndElement = typename Ends::Element;
 
   ETLMON_COLD Element push_apart(EndElement low, EndElement high) noexcept {
     const bool parts = !same_ends(pair_of(low, high));
     const EndElement highs =
-        window_push_highs<Ends>(lows_, highs_, parting_, cursor_, N, high, parts);
-    return pair_of(window_push<Ends>(lows_, cursor_, N, low), highs);
+        window_push_highs<Ends>(lows_, highs_, parting_, cursor_, Length, high, parts);
+    return pair_of(window_push<Ends>(lows_, cursor_, Length, low), highs);
   }
 
   uint32_t cursor_;
   Parting parting_;
-  EndElement lows_[window_elements(N)];
-  EndElement highs_[window_elements(N)];  ///< written before they are read
+  EndElement lows_[window_elements(Length)];
+  EndElement highs_[window_elements(Length)];  ///< written before read
 };
 
-template <template <class> class Operator, uint32_t N>
-class Window<Operator<Value>, N> : public PairWindow<Operator, Value, N> {};
+template <template <class> class Operator, uint32_t Length>
+class Window<Operator<Value>, Length> : public PairWindow<Operator, Value, Length> {};
 
 }  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Which version of the kernel runs: the best that the CPU and the operating system have.
-// Gives: best_of(...), a call of that version's run(...), and the like of what else there is a
-// version of. Keeps true: no version runs on a CPU, or under an operating system, that lacks it;
-// nothing is written at run time: the compiler's own library (__cpu_model of libgcc or compiler-rt)
-// asks the CPU before main(). Without dispatch, under ETLMON_NO_DISPATCH too, a plain call.
+// Selects the best version of the kernel that the CPU and the operating system support. Gives:
+// best_of(...), which calls run(...) of that version, and likewise for other functions with
+// versions. Keeps true: no version runs on a CPU or operating system that does not support it;
+// nothing is written at run time, since the compiler's library (__cpu_model of libgcc or
+// compiler-rt) queries the CPU before main(). Without dispatch, also under ETLMON_NO_DISPATCH,
+// these are plain calls.
 #pragma once
 
 #include "etlmon/vectors/versions.hpp"
@@ -14,8 +15,8 @@ inline namespace ETLMON_BUILD {
 namespace detail {
 
 #if defined(ETLMON_DISPATCH)
-/// The x86-64 level of the CPU as far as the kernels use it: 1, 3 (AVX2 and FMA; no CPU has these
-/// without F16C) or 4 (AVX-512 F, VL, BW, DQ).
+/// Returns the x86-64 level of the CPU, as far as the kernels use it: 1, 3 (AVX2 and FMA; no CPU
+/// has these without F16C) or 4 (AVX-512 F, VL, BW, DQ).
 ETLMON_INLINE uint32_t x86_64_level() noexcept {
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return 1;
   const bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
@@ -24,34 +25,34 @@ ETLMON_INLINE uint32_t x86_64_level() noexcept {
 }
 #endif
 
-/// The kernel. Small sets have no third version.
-template <class Metric, class Aggregation, class Size, bool InColumns, class G>
-ETLMON_INLINE MeasuredBits best_run(const float* z, G targets, const float* weights, Size size,
-                                    Aggregation aggregation) noexcept {
+/// Runs the kernel. Small sets have no third version.
+template <class Metric, class Aggregation, class Size, bool InColumns, class Elements>
+ETLMON_INLINE MeasuredBits best_run(const float* z, Elements targets, const float* weights,
+                                    Size size, Aggregation aggregation) noexcept {
 #if defined(ETLMON_DISPATCH)
   const uint32_t level = x86_64_level();
   if constexpr (!Size::is_small(Metric::kDirection)) {
     if (level >= 4) {
-      return x86_64_v4::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size,
-                                                                     aggregation);
+      return x86_64_v4::run<Metric, Aggregation, Size, InColumns, Elements>(z, targets, weights,
+                                                                            size, aggregation);
     }
   }
   if (level >= 3) {
-    return x86_64_v3::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size,
-                                                                   aggregation);
+    return x86_64_v3::run<Metric, Aggregation, Size, InColumns, Elements>(z, targets, weights, size,
+                                                                          aggregation);
   }
 #endif
-  return baseline::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size,
-                                                                aggregation);
+  return baseline::run<Metric, Aggregation, Size, InColumns, Elements>(z, targets, weights, size,
+                                                                       aggregation);
 }
-template <class Metric, class Aggregation, class Size, bool InColumns, class G>
-ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, Size size,
+template <class Metric, class Aggregation, class Size, bool InColumns, class Elements>
+ETLMON_INLINE Measured best_of(const float* z, Elements targets, const float* weights, Size size,
                                Aggregation aggregation) noexcept {
   return unpacked(
       best_run<Metric, Aggregation, Size, InColumns>(z, targets, weights, size, aggregation));
 }
 
-/// 1 / |z|, or 0: inverse_length in run.inc.
+/// Returns 1 / |z|, or 0: inverse_length in run.inc.
 template <class Size>
 ETLMON_INLINE float best_inverse_length(const float* z) noexcept {
 #if defined(ETLMON_DISPATCH)
@@ -64,10 +65,10 @@ ETLMON_INLINE float best_inverse_length(const float* z) noexcept {
   return baseline::inverse_length_of<Size>(z);
 }
 
-/// The values of rows, for dynamic.hpp.
-template <class Metric, class G>
-bool best_row_values(const float* z, G targets, const float* weights, uint32_t row, uint32_t end,
-                     Sizes size, float* values) noexcept {
+/// Computes the values of rows, for dynamic.hpp.
+template <class Metric, class Elements>
+bool best_row_values(const float* z, Elements targets, const float* weights, uint32_t row,
+                     uint32_t end, Sizes size, float* values) noexcept {
 #if defined(ETLMON_DISPATCH)
   const uint32_t level = x86_64_level();
   if (level >= 4) return x86_64_v4::row_values<Metric>(z, targets, weights, row, end, size, values);
@@ -76,7 +77,7 @@ bool best_row_values(const float* z, G targets, const float* weights, uint32_t r
   return baseline::row_values<Metric>(z, targets, weights, row, end, size, values);
 }
 
-/// The search in a large set.
+/// Searches a large set.
 template <class Metric, class Size>
 ETLMON_INLINE Measured best_search(const float* z, const float* rows, SearchView state) noexcept {
 #if defined(ETLMON_DISPATCH)
@@ -87,9 +88,9 @@ ETLMON_INLINE Measured best_search(const float* z, const float* rows, SearchView
   return unpacked(baseline::search<Metric, Size>(z, rows, state));
 }
 
-/// n elements as float32. Few do without vectors of 64 bytes.
-template <class G>
-ETLMON_INLINE void best_widen(G from, float* to, uint32_t n) noexcept {
+/// Widens n elements to float32. Few elements do not use vectors of 64 bytes.
+template <class Elements>
+ETLMON_INLINE void best_widen(Elements from, float* to, uint32_t n) noexcept {
 #if defined(ETLMON_DISPATCH)
   const uint32_t level = x86_64_level();
   if (level >= 4 && n > 4 * kLanes) return x86_64_v4::widen(from, to, n);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Pack: four floats that are added, multiplied and compared together, where the machine has vectors
-// of 16 bytes. Gives: Pack; whether floats are finite, four at a time; float16 and int8, widened.
-// Keeps true: written with the vector extension because g++ before 12 vectorises no loop at -O2;
-// the same operations in the same order on every compiler.
+// Pack: four floats that are added, multiplied and compared together, on machines with vectors of
+// 16 bytes. Gives: Pack; whether floats are finite, four at a time; float16 and int8, widened.
+// Keeps true: the same operations in the same order on every compiler. The vector extension is used
+// because g++ before 12 does not vectorise loops at -O2.
 #pragma once
 
 #include "etlmon/bits.hpp"
@@ -12,8 +12,7 @@
 
 #if defined(ETLMON_VECTORS)
 
-// ARM machines that convert float16 by an instruction, and a compiler that was not told to mean
-// something else by it.
+// ARM machines with an instruction for IEEE float16.
 #if defined(__aarch64__) && defined(__ARM_FP16_FORMAT_IEEE) && (__ARM_FP & 2)
 #define ETLMON_WIDENS_HALVES 1
 #endif
@@ -25,7 +24,7 @@ namespace detail {
 using Pack = float __attribute__((vector_size(16)));
 using PackBits = int32_t __attribute__((vector_size(16)));
 
-/// Bits that have their sign set where one of four floats is not finite: one more carries an
+/// Returns bits whose sign is set if one of four floats is not finite: adding one carries an
 /// exponent of ones into it.
 ETLMON_INLINE PackBits not_finite(const float* x) noexcept {
   typedef uint32_t PackExponents __attribute__((vector_size(16)));
@@ -34,7 +33,7 @@ ETLMON_INLINE PackBits not_finite(const float* x) noexcept {
   return reinterpret_cast<PackBits>((bits & kInfinityBits) + 0x00800000u);
 }
 
-/// Every one of the first n / 4 x 4 floats, to before `i`, is finite.
+/// Returns whether the first n / 4 * 4 floats are finite, and sets `i` to their number.
 ETLMON_INLINE bool finite_packs(const float* x, size_t n, size_t& i) noexcept {
   PackBits a{}, b{}, c{}, d{};
   for (; i + 16 <= n; i += 16) {
@@ -48,9 +47,9 @@ ETLMON_INLINE bool finite_packs(const float* x, size_t n, size_t& i) noexcept {
   return (a[0] | a[1] | a[2] | a[3]) >= 0;
 }
 
-/// Four float16: as integers they are shifted to where float32 has exponent and mantissa, and the
-/// exponent is moved by the difference of the biases, 112; a subnormal one is its mantissa times
-/// 2^-24, which is exact and flushed by nothing.
+/// Widens four float16: shifts them as integers to the exponent and mantissa of float32, and adds
+/// the difference of the biases, 112, to the exponent; a subnormal is its mantissa times 2^-24,
+/// which is exact and never flushed.
 ETLMON_INLINE Pack widened(const uint16_t* from) noexcept {
 #if defined(ETLMON_WIDENS_HALVES)
   typedef __fp16 Halves __attribute__((vector_size(8)));
@@ -72,7 +71,7 @@ ETLMON_INLINE Pack scaled(const int8_t* from, float scale) noexcept {
   const PackBits integers = {from[0], from[1], from[2], from[3]};
   Pack product = __builtin_convertvector(integers, Pack) * scale;
 #if defined(__aarch64__)
-  __asm__("" : "+w"(product));  // rounded here, as detail::rounded does
+  __asm__("" : "+w"(product));  // rounds here, as detail::rounded does
 #else
   __asm__("" : "+x"(product));
 #endif

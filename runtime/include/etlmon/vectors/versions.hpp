@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The kernel once per instruction set.
-// Gives: `baseline`, the version for the machine that the program is built for; on hosted x86-64
-// the versions above it (x86-64-v3: AVX2, FMA and F16C; x86-64-v4: AVX-512), between which
-// dispatch.hpp chooses. Keeps true: v3 and v4 give equal bits; baseline x86-64, which cannot fuse,
-// differs from them within error_bounds.hpp. Freestanding programs, and ETLMON_NO_DISPATCH, have
-// baseline alone.
+// The kernel once per instruction set. Gives: `baseline`, the version for the target of the build;
+// on hosted x86-64 also the versions above it (x86-64-v3: AVX2, FMA and F16C; x86-64-v4: AVX-512),
+// among which dispatch.hpp selects. Keeps true: v3 and v4 give the same bits; baseline x86-64,
+// which cannot fuse, differs from them within error_bounds.hpp. Freestanding programs, and
+// ETLMON_NO_DISPATCH, have only baseline.
 #pragma once
 
 #include "etlmon/distance/reach.hpp"
@@ -15,8 +14,8 @@
 #if defined(ETLMON_VECTORS)
 
 #if defined(__x86_64__)
-// All that a version's functions are made for (ETLMON_TARGET below): what is compiled for less
-// cannot have them inlined.
+// The targets of the functions of a version (ETLMON_TARGET below). They cannot be inlined into
+// functions compiled for fewer instructions.
 #if defined(__AVX2__) && defined(__FMA__) && defined(__AVX512F__) && defined(__AVX512VL__) && \
     defined(__AVX512BW__) && defined(__AVX512DQ__)
 #define ETLMON_X86_64 4

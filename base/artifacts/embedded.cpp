@@ -1,0 +1,151 @@
+#include "artifacts/embedded.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "artifacts/file.hpp"
+#include "data/arrays/array.hpp"
+#include "data/files/hash.hpp"
+#include "data/text/quote.hpp"
+
+namespace etlc::embedded {
+namespace {
+
+using artifacts::Hash;
+using data::in_quotes;
+using diag::Code;
+
+const artifacts::Kind kKind{"embedded.json",
+                            "etlc embed",
+                            1,
+                            Code::malformed_embedded,
+                            Code::unknown_embedded_format,
+                            Code::invalid_embedded,
+                            Code::unreadable_data_file};
+
+template <class Archive>
+void encoder_members(Archive& archive, auto& encoder) {
+    archive("declaration", encoder.declaration);
+    archive("model", encoder.model, Hash{});
+    archive("settings", encoder.settings);
+    archive("kind", encoder.kind);
+    std::uint64_t dimension = encoder.dimension;
+    archive("dimension", dimension);
+    std::string found = fingerprint(encoder);
+    archive("fingerprint", found, Hash{});
+    if constexpr (Archive::kReads) {
+        encoder.dimension = static_cast<std::uint32_t>(
+            std::min<std::uint64_t>(dimension, std::numeric_limits<std::uint32_t>::max()));
+        if (found != fingerprint(encoder))
+            archive.refuse(
+                fmt::format("{} is {}, expected {}, which follows from the fields beside "
+                            "it",
+                            in_quotes(archive.place("fingerprint")), in_quotes(found),
+                            in_quotes(fingerprint(encoder))));
+    }
+}
+
+/// Describes an entry. `array` names its matrix in an archive that is written.
+template <class Archive>
+void entry_members(Archive& archive, auto& entry, const std::string& array, const File& file) {
+    archive("encoder", entry.encoder);
+    if constexpr (Archive::kReads)
+        if (!file.encoders.contains(entry.encoder))
+            archive.refuse(fmt::format("{} is {}, expected one of 'encoders'",
+                                       in_quotes(archive.place("encoder")),
+                                       in_quotes(entry.encoder)));
+    const auto shape =
+        archive("array", artifacts::Array{array, {entry.rows, entry.columns}, "rows x dimension"},
+                entry.matrix);
+    archive("sources", entry.sources, "an array of files", [](auto& one, auto& source) {
+        one("path", source.path);
+        one("hash", source.hash, Hash{});
+    });
+    if constexpr (Archive::kReads) {
+        entry.rows = static_cast<std::uint32_t>(shape[0]);
+        entry.columns = static_cast<std::uint32_t>(shape[1]);
+        entry.hash = data::content_hash({entry.rows, entry.columns}, entry.matrix);
+    }
+}
+
+template <class Archive>
+void file_members(Archive& archive, auto& file) {
+    std::size_t entries = 0;
+    archive("spec", file.spec);
+    archive("encoders", file.encoders,
+            [](auto& one, const std::string&, auto& encoder) { encoder_members(one, encoder); });
+    archive("entries", file.entries, [&](auto& one, const std::string&, auto& entry) {
+        entry_members(one, entry, fmt::format("rows-{}", ++entries), file);
+    });
+    archive("etlc", file.etlc);
+}
+
+constexpr auto kMembers = [](auto& archive, auto& file) { file_members(archive, file); };
+
+diag::Result<Marks> marks_from(const std::string& path) {
+    const auto archive = data::Archive::open({path, {}, false});
+    if (!archive) return Marks{};  // reading its arrays reports what is wrong
+    if (!archive->has_file(kKind.member)) return Marks{};
+    Marks marks;
+    const auto failure = artifacts::read_description(kKind, *archive, [&](artifacts::Reader& root) {
+        root.read_file([&](auto& members) { members("inputs", marks, Hash{}); });
+    });
+    if (failure) return *failure;
+    return marks;
+}
+
+}  // namespace
+
+std::string fingerprint(const Encoder& encoder) {
+    return fmt::format("{:016x}", data::xxh64(fmt::format("{}\n{}\n{}\n", encoder.model,
+                                                          encoder.settings, encoder.kind)));
+}
+
+std::map<std::string, std::string> fingerprints_otherwise(const Encoder& encoder) {
+    std::map<std::string, std::string> found;
+    const auto add = [&](const std::string& kind, const std::string& name) {
+        Encoder other = encoder;
+        other.kind = kind;
+        if (kind != encoder.kind) found[fingerprint(other)] = name;
+    };
+    add(std::string(kCommand), "a command");
+    add("network", "OpenCV");
+    for (unsigned minor = 13; minor < 100; ++minor)
+        for (unsigned patch = 0; patch < 5; ++patch) {
+            const std::string kind = fmt::format("{}1.{}.{}", kOnnxRuntime, minor, patch);
+            add(kind, kind);
+        }
+    return found;
+}
+
+std::string default_path(const std::string& spec_path) {
+    return artifacts::path_beside(spec_path, ".embedded.npz");
+}
+
+diag::Result<File> read(const std::string& path) {
+    return data::within_memory([&] {
+        return artifacts::read_archive<File>(kKind, {path, {}, false}, path, kMembers);
+    });
+}
+
+diag::Result<File> parse(std::string_view bytes, const std::string& path) {
+    return artifacts::read_archive<File>(kKind, {{}, bytes, true}, path, kMembers);
+}
+
+std::string write(const File& file) {
+    return artifacts::archive_bytes(kKind, file, kMembers);
+}
+
+diag::Result<Marks> read_marks(const std::string& path) {
+    if (!path.ends_with(".npz")) return Marks{};
+    return data::within_memory([&] { return marks_from(path); });
+}
+
+std::string write_marks(const Marks& marks) {
+    return artifacts::file_text(kKind.newest_format, nullptr,
+                                [&](auto& members) { members("inputs", marks, Hash{}); });
+}
+
+}  // namespace etlc::embedded

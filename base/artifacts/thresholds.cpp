@@ -1,0 +1,126 @@
+#include "artifacts/thresholds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "artifacts/file.hpp"
+#include "data/text/number.hpp"
+
+namespace etlc::thresholds {
+namespace {
+
+using artifacts::Presence;
+using diag::Code;
+
+const artifacts::Kind kKind{"",
+                            "etlc calibrate",
+                            kFormat,
+                            Code::malformed_thresholds,
+                            Code::unknown_thresholds_format,
+                            Code::invalid_thresholds,
+                            Code::unreadable_thresholds};
+
+/// Describes an entry. `what` is the key of its canonical text: "predicate" or "formula".
+template <class Archive>
+void members(Archive& archive, auto& entry, const std::string& what) {
+    archive("method", entry.method,
+            artifacts::Words{{"f1", "conformal", "class_conditional", "adaptive"}});
+    const bool ranked = entry.method != "f1";
+    const std::string alpha = ranked ? "a number between 0 and 1" : "no such key for f1";
+    archive("alpha", entry.alpha, artifacts::Decimal{ranked, alpha});
+    if constexpr (Archive::kReads) {
+        const double number = data::parse_number(entry.alpha).value_or(0);
+        const bool sound = ranked ? number > 0 && number < 1 : entry.alpha.empty();
+        if (!sound) archive.refuse("alpha", alpha);
+    }
+    archive("epsilon", entry.epsilon);
+    archive("n", entry.n);
+    archive("k", entry.k);
+    if constexpr (Archive::kReads) {
+        if (ranked != (entry.k > 0)) archive.refuse("k", ranked ? "a rank from 1" : "0 for f1");
+        if (entry.k > entry.n) archive.refuse("k", fmt::format("at most n, which is {}", entry.n));
+    }
+    archive("scores", entry.scores);
+    archive(what, entry.predicate);
+    archive("truth", entry.truth);
+    archive("targets", entry.targets, artifacts::Hash{});
+    archive("reads", entry.reads);
+    if (what == "predicate") return;
+    archive("against", entry.against, artifacts::Words{{"missed_alarm", "missed_success"}});
+    archive("episodes", entry.episodes, Presence::always);
+}
+
+template <class Archive>
+void file_members(Archive& archive, auto& file) {
+    const auto of = [](const char* what) {
+        return [what](auto& one, const std::string&, auto& entry) { members(one, entry, what); };
+    };
+    archive("spec", file.spec);
+    archive("predicates", file.predicates, of("predicate"));
+    archive("monitors", file.monitors, of("formula"), Presence::added_later);
+    archive("episodes", file.episodes, Presence::added_later);
+    archive("recordings", file.recordings, Presence::where_any);
+    artifacts::allowance_members(archive, file.allowances);
+    archive("etlc", file.etlc);
+}
+
+diag::Result<File> read_from(data::ByteSource& source, const std::string& path) {
+    File file;
+    file.path = path;
+    const auto failure = artifacts::read_text(kKind, source, [&](artifacts::Reader& root) {
+        file.format = root.read_file([&](auto& archive) { file_members(archive, file); });
+    });
+    if (failure) return *failure;
+    return file;
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> all_episodes(const File& file) {
+    std::vector<std::uint64_t> result = file.episodes;
+    for (const auto& [name, entry] : file.monitors)
+        result.insert(result.end(), entry.episodes.begin(), entry.episodes.end());
+    return result;
+}
+
+void drop_unused_recordings(File& file) {
+    std::vector<std::uint64_t> used = all_episodes(file);
+    std::sort(used.begin(), used.end());
+    file.recordings.keep(used);
+}
+
+std::string text(const Allowance& allowance) {
+    std::string what;
+    if (allowance.overlapping > 0)
+        what += fmt::format("{} that share{} most of {} content with another",
+                            diag::counted(allowance.overlapping, "episode"),
+                            allowance.overlapping == 1 ? "s" : "",
+                            allowance.overlapping == 1 ? "its" : "their");
+    if (allowance.leaked > 0)
+        what += fmt::format("{}{} with a target among the frames", what.empty() ? "" : " and ",
+                            diag::counted(allowance.leaked, "episode"));
+    return fmt::format("--allow-overlap passed over {}: {}", what, allowance.reason);
+}
+
+diag::Result<File> read(const std::string& path) {
+    const auto source = data::open_file(path, data::Streams::taken);
+    if (!source) return diag::Failure{Code::unreadable_thresholds, source.failure().message};
+    return read_from(**source, path);
+}
+
+diag::Result<File> parse(const std::string& json, const std::string& path) {
+    return read_from(*data::from_memory(json), path);
+}
+
+bool write(const File& file, const std::function<bool(std::string_view)>& take) {
+    return artifacts::write_file(take, file.format, nullptr,
+                                 [&](auto& archive) { file_members(archive, file); });
+}
+
+std::string write(const File& file) {
+    return artifacts::file_text(file.format, nullptr,
+                                [&](auto& archive) { file_members(archive, file); });
+}
+
+}  // namespace etlc::thresholds

@@ -1,0 +1,81 @@
+// The thresholds file: what `etlc calibrate` found, and what it was computed from.
+// Every float32 reads back to the same bits, and writing a file that was read gives the same text.
+// check/ decides whether an entry fits the spec: it compares `predicate` and `targets`.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data/traces/known.hpp"
+#include "diag/diag.hpp"
+
+namespace etlc::thresholds {
+
+/// The newest format of files that list episodes. Format 1 identifies an episode by the numbers
+/// that were stored, format 2 by the samples that the monitor sees (episodes/recording.hpp).
+inline constexpr std::uint32_t kFormat = 2;
+
+/// One use of `--allow-overlap REASON`.
+struct Allowance {
+    std::string reason;
+    std::uint64_t overlapping = 0;  ///< episodes that share most of their content with another
+    std::uint64_t leaked = 0;       ///< episodes with a target among their frames
+};
+
+struct Entry {
+    std::string method;  ///< f1, conformal, class_conditional, adaptive
+    std::string alpha;   ///< decimal text exactly as in the spec, a JSON number; empty for f1
+    float epsilon = 0;   ///< finite
+    /// Number of scores: demonstrations (conformal) or frames (class_conditional, f1).
+    std::uint64_t n = 0;
+    std::uint64_t k = 0;         ///< rank of the score taken, 1 to n; 0 for f1
+    std::vector<double> scores;  ///< may be infinite, not NaN
+    std::string predicate;       ///< canonical text: check::Predicate::text, or a monitor's formula
+    std::string truth;  ///< source of the labels: canonical truth formula, "array", or both
+    std::map<std::string, std::string> targets;  ///< target name -> content hash, 16 hex digits
+    /// Everything the entry was computed from, by kind and name (check::Reads); empty in files of
+    /// earlier versions.
+    std::map<std::string, std::string> reads;
+    std::string against;                  ///< monitors: missed_alarm or missed_success
+    std::vector<std::uint64_t> episodes;  ///< monitors: hashes of the calibration episodes
+};
+
+struct File {
+    std::uint32_t format = kFormat;
+    std::string path;
+    std::string spec;
+    std::string etlc;  ///< version that wrote the file
+    std::map<std::string, Entry> predicates;
+    std::map<std::string, Entry> monitors;
+    std::vector<std::uint64_t> episodes;  ///< content hashes of the episodes behind `predicates`
+    /// Content that tells the episodes of predicates and monitors apart, by content hash. Episodes
+    /// from earlier versions may be missing; their hashes alone identify them.
+    data::KnownEpisodes recordings;
+    std::vector<Allowance> allowances;  ///< one per call of `etlc calibrate` that needed it
+};
+
+/// Returns the hashes of all episodes that some threshold was calibrated on.
+std::vector<std::uint64_t> all_episodes(const File& file);
+
+/// Removes the recordings that no threshold in the file was calibrated on.
+void drop_unused_recordings(File& file);
+
+/// Describes an allowance: "--allow-overlap passed over 3 episodes that share most of their content
+/// with another: REASON".
+std::string text(const Allowance& allowance);
+
+/// Read a thresholds file. Failures have E06 codes; their messages name the key, and
+/// `data::in_file` (data/files/file.hpp) adds the path.
+diag::Result<File> read(const std::string& path);
+diag::Result<File> parse(const std::string& json, const std::string& path);
+
+/// Write JSON with two blanks of indentation a level, keys in a fixed order and a line feed at the
+/// end. The first passes it to `take` piece by piece, and returns false when `take` does.
+bool write(const File& file, const std::function<bool(std::string_view)>& take);
+std::string write(const File& file);
+
+}  // namespace etlc::thresholds

@@ -1,0 +1,129 @@
+// Counts of claims that agree or disagree with the truth, their rates (precision, recall, F1 and
+// agreement), and confidence intervals. A claim that a missing sample leaves open is a miss and
+// never agrees; a rate without a case is undefined.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "episodes/ranking/auroc.hpp"
+#include "episodes/truth.hpp"
+
+namespace etlc::evaluate {
+
+using episodes::Label;
+using episodes::Weights;
+
+struct Counts {
+    std::uint64_t true_positives = 0;
+    std::uint64_t false_positives = 0;
+    std::uint64_t false_negatives = 0;
+    std::uint64_t true_negatives = 0;
+    std::uint64_t unsaid_positives = 0;  ///< true, and left open by the monitor
+    std::uint64_t unsaid_negatives = 0;
+    std::uint64_t unlabelled = 0;  ///< cases of unknown truth, which no other count includes
+
+    void add(Label said, Label is);
+    /// Adds the other counts, `times` over.
+    void add(const Counts& other, std::uint64_t times = 1);
+
+    std::uint64_t positives() const { return true_positives + false_negatives + unsaid_positives; }
+    std::uint64_t negatives() const { return true_negatives + false_positives + unsaid_negatives; }
+    std::uint64_t total() const { return positives() + negatives(); }
+
+    bool operator==(const Counts&) const = default;
+};
+
+/// All counts with their names.
+inline constexpr std::pair<const char*, std::uint64_t Counts::*> kCounts[] = {
+    {"true_positives", &Counts::true_positives},
+    {"false_positives", &Counts::false_positives},
+    {"false_negatives", &Counts::false_negatives},
+    {"true_negatives", &Counts::true_negatives},
+    {"unsaid_positives", &Counts::unsaid_positives},
+    {"unsaid_negatives", &Counts::unsaid_negatives},
+    {"unlabelled", &Counts::unlabelled}};
+
+template <class Archive>
+void fields(Archive& archive, Counts& counts) {
+    for (const auto& [name, count] : kCounts) archive(counts.*count);
+}
+
+/// A value for each rate.
+template <class T>
+struct ByRate {
+    /// 2 TP / (2 TP + FP + misses); undefined where nothing is true or claimed.
+    T f1;
+    T precision;  ///< TP / (TP + FP)
+    T recall;     ///< TP / positives
+    T agreement;  ///< (TP + TN) / total
+
+    /// Calls `visit(name, value)` for each.
+    template <class Visit>
+    void for_each(Visit&& visit) const {
+        visit("f1", f1);
+        visit("precision", precision);
+        visit("recall", recall);
+        visit("agreement", agreement);
+    }
+};
+
+struct Rates : ByRate<std::optional<double>> {
+    std::optional<double> gain;  ///< F1 less the F1 of always claiming true
+};
+using Rate = std::optional<double> Rates::*;
+
+/// Calls `get(rate)` for each rate.
+template <class Get>
+ByRate<std::invoke_result_t<Get, Rate>> by_rate(const Get& get) {
+    return {get(&Rates::f1), get(&Rates::precision), get(&Rates::recall), get(&Rates::agreement)};
+}
+
+Rates rates(const Counts& counts);
+/// Returns for each resample the rates of the summed counts.
+std::vector<Rates> rates(const std::vector<Counts>& episodes, const Weights& weights);
+
+/// Returns the rates of a constant claim on `total` cases, `positives` of which are true.
+Rates rates_of_constant(bool claim, std::uint64_t positives, std::uint64_t total);
+
+inline constexpr std::uint32_t kResamples = 1000;
+
+struct Interval {
+    double low = 0;
+    double high = 0;
+};
+
+/// A figure, if it is defined, and its interval, if most resamples define it too.
+struct Figure {
+    std::optional<double> value;
+    std::optional<Interval> interval;
+};
+
+/// Efron's percentile intervals: the 2.5 % and 97.5 % quantiles over kResamples draws of episodes
+/// with replacement, since frames of one episode are not independent. The seed is fixed, so the
+/// same data give the same interval on every machine and with any number of threads.
+class Bootstrap {
+public:
+    explicit Bootstrap(std::size_t episodes);
+
+    /// Calls `visit` with all resamples in batches: always the same ones, in the same order.
+    void for_each_batch(const std::function<void(const Weights&)>& visit) const;
+    /// Returns weights that count every episode once.
+    const Weights& whole() const { return whole_; }
+
+    /// Computes a figure. `statistic(weights)` returns its value for each resample, in order.
+    Figure figure(
+        const std::function<std::vector<std::optional<double>>(const Weights&)>& statistic) const;
+
+private:
+    Weights whole_;
+};
+
+/// Returns the interval of the defined values, which need not be sorted.
+std::optional<Interval> percentile_interval(const std::vector<std::optional<double>>& values);
+
+}  // namespace etlc::evaluate

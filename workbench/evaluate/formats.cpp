@@ -1,0 +1,336 @@
+// Evaluations as JSON for programs and as CSV for spreadsheets; docs/evaluation.md lists the keys.
+// An undefined figure is null in JSON and an empty cell in CSV. With several specs, the spec is the
+// first column.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <concepts>
+
+#include "evaluate/evaluate.hpp"
+#include "source/escape.hpp"
+
+namespace etlc::evaluate {
+
+namespace {
+
+/// Joins JSON texts to an array.
+std::string array(const std::vector<std::string>& items) {
+    return fmt::format("[{}]", fmt::join(items, ", "));
+}
+
+/// A JSON object with one member per line.
+class Object {
+public:
+    explicit Object(std::size_t indent) : indent_(indent) {}
+
+    void raw(const std::string& key, const std::string& json) {
+        text_ += fmt::format("{}\n{:{}}{}: {}", text_.empty() ? "" : ",", "", indent_ + 2,
+                             source::json_string(key), json);
+    }
+    void operator()(const std::string& key, const std::optional<double>& value) {
+        raw(key, value ? fmt::format("{}", *value) : "null");
+    }
+    void operator()(const std::string& key, const Figure& figure) {
+        (*this)(key, figure.value);
+        if (figure.interval)
+            raw(key + "_interval",
+                fmt::format("[{}, {}]", figure.interval->low, figure.interval->high));
+    }
+    void operator()(const std::string& key, std::unsigned_integral auto count) {
+        raw(key, std::to_string(count));
+    }
+    void operator()(const std::string& key, const std::string& text) {
+        raw(key, source::json_string(text));
+    }
+    void operator()(const std::string& key, const std::vector<std::string>& texts) {
+        std::vector<std::string> items;
+        for (const std::string& text : texts) items.push_back(source::json_string(text));
+        raw(key, array(items));
+    }
+    void operator()(const std::string& key, const Rates& rates) {
+        nested(key, [&](Object& object) { rates.for_each(object); });
+    }
+    /// Adds an object that `fill(object)` fills.
+    template <class Fill>
+    void nested(const std::string& key, const Fill& fill) {
+        Object object(indent_ + 2);
+        fill(object);
+        raw(key, object.text());
+    }
+    /// Adds an array of objects that `fill(object, item)` fills.
+    template <class Item, class Fill>
+    void nested(const std::string& key, const std::vector<Item>& items, const Fill& fill) {
+        std::vector<std::string> objects;
+        for (const Item& item : items) {
+            Object object(indent_ + 2);
+            fill(object, item);
+            objects.push_back(object.text());
+        }
+        raw(key, array(objects));
+    }
+    std::string text() const {
+        return text_.empty() ? "{}" : fmt::format("{{{}\n{:{}}}}", text_, "", indent_);
+    }
+
+private:
+    std::size_t indent_;
+    std::string text_;
+};
+
+std::string cell(const std::optional<double>& value) {
+    return value ? fmt::format("{}", *value) : "";
+}
+
+/// Rows `kind,name,level,figure,value,low,high`.
+class Rows {
+public:
+    /// `prefix` begins every row and ends with a comma; `what` is "kind,name,level".
+    Rows(std::string& text, const std::string& prefix, const std::string& what)
+        : text_(text), prefix_(prefix + what + ",") {}
+
+    void operator()(const std::string& figure, const std::optional<double>& value,
+                    const std::optional<Interval>& interval = {}) {
+        text_ += fmt::format("{}{},{},{},{}\n", prefix_, figure, cell(value),
+                             interval ? fmt::format("{}", interval->low) : "",
+                             interval ? fmt::format("{}", interval->high) : "");
+    }
+    void operator()(const std::string& figure, const Figure& value) {
+        (*this)(figure, value.value, value.interval);
+    }
+    void operator()(const std::string& figure, std::unsigned_integral auto count) {
+        text_ += fmt::format("{}{},{},,\n", prefix_, figure, count);
+    }
+    void operator()(const std::string& name, const Rates& rates) {
+        (*this)(name + "_f1", rates.f1);
+        (*this)(name + "_agreement", rates.agreement);
+    }
+
+private:
+    std::string& text_;
+    std::string prefix_;
+};
+
+// Lists of figures for both formats. JSON has a few more.
+
+template <class To>
+void list(To&& to, const Score& score) {
+    const Counts& c = score.counts;
+    score.for_each(to);
+    if constexpr (std::is_same_v<To, Object&>) {
+        const auto total = static_cast<double>(c.total());
+        to("positive_rate",
+           c.total() == 0 ? std::optional<double>{} : static_cast<double>(c.positives()) / total);
+        to("positives", c.positives());
+        to("negatives", c.negatives());
+    }
+    for (const auto& [name, count] : kCounts) to(name, c.*count);
+    for (const auto& [name, rates] : baselines(score)) to(name, rates);
+}
+
+template <class To>
+void list(To&& to, const PredicateScore& score) {
+    list(to, score.frames);
+    to("auroc", score.auroc);
+    to("coverage", score.coverage);
+    if constexpr (std::is_same_v<To, Object&>) {
+        to("unmeasured", score.unmeasured);
+        to("episodes_labelled_by_array", score.arrays);
+    }
+}
+
+template <class To>
+void list(To&& to, const Difference& difference) {
+    to("episodes_of_other_truth", difference.other_truths);
+    if (difference.other_truths > 0) return;
+    difference.for_each(to);
+    if (difference.auroc) to("auroc", *difference.auroc);
+}
+
+void fill(Object& to, const Detection& d, double step_seconds) {
+    to("turns", d.turns);
+    to("missed", d.missed);
+    to("early", d.early);
+    to("mean_steps", d.mean);
+    to("median_steps", d.median);
+    if (step_seconds > 0)
+        to("mean_seconds",
+           d.mean.value ? std::optional(*d.mean.value * step_seconds) : std::nullopt);
+}
+
+void fill(Object& to, const MonitorScore& m, double step_seconds) {
+    to.raw("evaluable", m.lacking.empty() ? "true" : "false");
+    if (!m.lacking.empty()) return to("without_truth", m.lacking);
+    const auto add_score = [&](const std::string& key, const Score& score) {
+        to.nested(key, [&](Object& object) { list(object, score); });
+    };
+    to("step_agreement", m.steps.agreement);
+    to("episode_agreement", m.episodes.agreement);
+    if (m.ordering) to("ordering_agreement", m.ordering->agreement);
+    add_score("steps", m.steps);
+    add_score("episodes", m.episodes);
+    if (m.ordering) add_score("ordering", *m.ordering);
+    to.nested("detection", [&](Object& object) { fill(object, m.detection, step_seconds); });
+}
+
+void fill(Object& to, const Judgement::Fold& fold) {
+    to("episodes", fold.episodes);
+    to.nested("thresholds", [&](Object& thresholds) {
+        for (const auto& [name, threshold] : fold.thresholds)
+            thresholds.raw(name, fmt::format("{}", threshold));
+    });
+}
+
+void fill(Object& to, const EpisodeRow& e) {
+    const Rates of_claims = rates(e.claims);
+    to("episode", e.path);
+    if (e.fold) to("fold", *e.fold);
+    to("frames", e.frames);
+    to("wrong_verdicts", e.wrong);
+    to("f1", of_claims.f1);
+    to("agreement", of_claims.agreement);
+    if (e.first_error)
+        to.nested("first_error", [&](Object& error) {
+            error("step", e.first_error->step);
+            error(e.first_error->of_monitor ? "monitor" : "predicate", e.first_error->name);
+        });
+    else
+        to.raw("first_error", "null");
+    to.nested("predicates", [&](Object& predicates) {
+        for (const auto& [name, frames] : e.predicates) predicates(name, rates(frames));
+    });
+}
+
+void fill(Object& to, const Evaluation& evaluation) {
+    to("episodes", evaluation.episodes);
+    to("frames", evaluation.frames);
+    to("repeated_episodes", evaluation.repeated);
+    to("leaked_episodes", evaluation.leaked);
+    to("overlapping_episodes", evaluation.overlapping);
+    to("reservations", evaluation.reservations);
+    to("resamples", kResamples);
+    const auto filled = [](Object& object, const auto& item) { fill(object, item); };
+    if (!evaluation.folds.empty()) to.nested("folds", evaluation.folds, filled);
+    to.nested("predicates", [&](Object& all) {
+        for (const PredicateScore& p : evaluation.predicates)
+            all.nested(p.name, [&](Object& object) { list(object, p); });
+    });
+    to.nested("monitors", [&](Object& all) {
+        for (const MonitorScore& m : evaluation.monitors)
+            all.nested(m.name, [&](Object& object) { fill(object, m, evaluation.step_seconds); });
+    });
+    if (!evaluation.by_episode.empty()) to.nested("by_episode", evaluation.by_episode, filled);
+}
+
+void add_rows(std::string& text, const std::string& prefix, const Evaluation& evaluation) {
+    const auto rows = [&](const std::string& kind, const std::string& name, const char* level) {
+        return Rows(text, prefix, fmt::format("{},{},{}", kind, name, level));
+    };
+    for (const PredicateScore& p : evaluation.predicates)
+        list(rows("predicate", p.name, "frames"), p);
+    for (const MonitorScore& m : evaluation.monitors) {
+        if (!m.lacking.empty()) continue;
+        list(rows("monitor", m.name, "steps"), m.steps);
+        Rows episodes = rows("monitor", m.name, "episodes");
+        list(episodes, m.episodes);
+        episodes("turns", m.detection.turns);
+        episodes("turns_missed", m.detection.missed);
+        episodes("turns_early", m.detection.early);
+        episodes("delay_mean_steps", m.detection.mean);
+        episodes("delay_median_steps", m.detection.median);
+        if (m.ordering) list(rows("monitor", m.name, "ordering"), *m.ordering);
+    }
+    for (std::size_t k = 0; k < evaluation.folds.size(); ++k) {
+        const Judgement::Fold& fold = evaluation.folds[k];
+        const std::string number = std::to_string(k + 1);
+        rows("fold", number, "")("episodes", fold.episodes);
+        for (const auto& [name, threshold] : fold.thresholds)
+            rows("fold", number, name.c_str())("threshold", std::optional<double>(threshold));
+    }
+}
+
+/// Returns the predicates of all specs without repetition, in order of appearance.
+std::vector<std::string> predicates_of(const SideBySide& specs) {
+    std::vector<std::string> names;
+    for (const SideBySide::Spec& spec : specs.specs)
+        for (const PredicateScore& p : spec.evaluation.predicates)
+            if (std::find(names.begin(), names.end(), p.name) == names.end())
+                names.push_back(p.name);
+    return names;
+}
+
+/// The row ends with F1 and agreement of each of the predicates.
+std::string row_of(const EpisodeRow& e, const std::vector<std::string>& predicates) {
+    const Rates of_claims = rates(e.claims);
+    std::string text =
+        fmt::format("{},{},{},{},{},{},{},{},{}", source::csv_cell(e.path),
+                    e.fold ? std::to_string(*e.fold) : "", e.frames, e.wrong.size(),
+                    fmt::join(e.wrong, " "), cell(of_claims.f1), cell(of_claims.agreement),
+                    e.first_error ? std::to_string(e.first_error->step) : "",
+                    e.first_error ? e.first_error->name : "");
+    for (const std::string& name : predicates) {
+        const auto of = std::find_if(e.predicates.begin(), e.predicates.end(),
+                                     [&](const auto& one) { return one.first == name; });
+        const Rates here = of == e.predicates.end() ? Rates{} : rates(of->second);
+        text += fmt::format(",{},{}", cell(here.f1), cell(here.agreement));
+    }
+    return text + "\n";
+}
+
+}  // namespace
+
+std::string json(const SideBySide& specs) {
+    const auto& all = specs.specs;
+    Object top(0);
+    if (all.size() == 1) {
+        fill(top, all[0].evaluation);
+        return top.text() + "\n";
+    }
+    std::vector<std::pair<std::string, Difference>> differences;
+    top.nested("specs", [&](Object& evaluations) {
+        for (const SideBySide::Spec& spec : all) {
+            evaluations.nested(spec.path, [&](Object& one) { fill(one, spec.evaluation); });
+            for (const Difference& d : spec.differences) differences.emplace_back(spec.path, d);
+        }
+    });
+    top.nested("differences", differences, [&](Object& object, const auto& difference) {
+        const auto& [path, d] = difference;
+        object("spec", path);
+        object("less", all[0].path);
+        object(d.of_monitor ? "monitor" : "predicate", d.name);
+        object("level", d.level);
+        list(object, d);
+    });
+    return top.text() + "\n";
+}
+
+std::string csv(const SideBySide& specs) {
+    const auto& all = specs.specs;
+    const bool several = all.size() > 1;
+    std::string text = several ? "spec,less," : "";
+    text += "kind,name,level,figure,value,low,high\n";
+    for (const SideBySide::Spec& spec : all) {
+        const std::string path = source::csv_cell(spec.path);
+        add_rows(text, several ? path + ",," : "", spec.evaluation);
+        for (const Difference& d : spec.differences)
+            list(Rows(text, fmt::format("{},{},", path, source::csv_cell(all[0].path)),
+                      fmt::format("{},{},{}", d.of_monitor ? "monitor" : "predicate", d.name,
+                                  d.level)),
+                 d);
+    }
+    return text;
+}
+
+std::string csv_by_episode(const SideBySide& specs) {
+    const bool several = specs.specs.size() > 1;
+    const std::vector<std::string> predicates = predicates_of(specs);
+    std::string text = several ? "spec," : "";
+    text += "episode,fold,frames,wrong_verdicts,wrong,f1,agreement,first_error_step,first_error";
+    for (const std::string& name : predicates) text += fmt::format(",{0}_f1,{0}_agreement", name);
+    text += "\n";
+    for (const SideBySide::Spec& spec : specs.specs)
+        for (const EpisodeRow& e : spec.evaluation.by_episode)
+            text += (several ? source::csv_cell(spec.path) + "," : "") + row_of(e, predicates);
+    return text;
+}
+
+}  // namespace etlc::evaluate
