@@ -52,11 +52,10 @@ std::variant<ast::Name, ast::Declaration> Builder::declaration(
 
 ast::Rounding Builder::rounding(Grammar::RoundingContext* context) {
     if (context == nullptr) return ast::Rounding::exact;
-    switch (context->op->getType()) {
-        case Grammar::UP: return ast::Rounding::up;
-        case Grammar::DOWN: return ast::Rounding::down;
-        default: return ast::Rounding::nearest;
-    }
+    const std::size_t word = context->op->getType();
+    return word == Grammar::UP     ? ast::Rounding::up
+           : word == Grammar::DOWN ? ast::Rounding::down
+                                   : ast::Rounding::nearest;
 }
 
 ast::Rate Builder::period(Grammar::PeriodDeclarationContext& context, source::Span span) const {
@@ -203,11 +202,9 @@ namespace {
 ast::Monitor::Kind monitor_kind(const Token* word) {
     using Kind = ast::Monitor::Kind;
     if (word == nullptr) return Kind::prefix;
-    switch (word->getType()) {
-        case Grammar::SLIDING: return Kind::sliding;
-        case Grammar::RESTARTABLE: return Kind::restartable;
-        default: return Kind::repeating;
-    }
+    return word->getType() == Grammar::SLIDING       ? Kind::sliding
+           : word->getType() == Grammar::RESTARTABLE ? Kind::restartable
+                                                     : Kind::repeating;
 }
 
 }  // namespace

@@ -176,11 +176,10 @@ ast::Aggregation Builder::aggregation(Grammar::AggregationContext& context) cons
         result.n = number(*kth->amount());
         return result;
     }
-    switch (context.start->getType()) {
-        case Grammar::MIN: result.kind = Aggregation::min; break;
-        case Grammar::MAX: result.kind = Aggregation::max; break;
-        default: result.kind = Aggregation::mean; break;
-    }
+    const std::size_t word = context.start->getType();
+    result.kind = word == Grammar::MIN   ? Aggregation::min
+                  : word == Grammar::MAX ? Aggregation::max
+                                         : Aggregation::mean;
     return result;
 }
 

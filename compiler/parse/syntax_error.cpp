@@ -188,67 +188,55 @@ private:
         add_note_on_foreign_form(stuck_, found_, file_, to);
         if (to.notes.empty() && found_is_word() && stuck_.rule != EtlParser::RuleName)
             add_nearest(to, found_, expected_spellings(stuck_));
-        if (to.notes.empty()) add_note_on_words(to);
-        if (to.notes.empty()) add_note_on_rule(to);
+        for (const std::string& note : {note_on_words(), note_on_rule()})
+            if (to.notes.empty() && !note.empty()) to.note(note);
         if (slice_ended() && to.meant.empty() && stuck_.expects(EtlParser::SEMICOLON))
             to.meant = ";";
     }
 
-    /// Adds a note that the words around the place suggest.
-    void add_note_on_words(Diagnostic& to) const {
+    /// Returns the note that the words around the place suggest, or nothing.
+    std::string note_on_words() const {
         const std::size_t found = found_.getType();
         const bool in_brackets =
             stuck_.rule == EtlParser::RulePrimary && stuck_.expects(EtlParser::COMMA);
-        if (found == EtlParser::INF)
-            to.note("inf is allowed only in bounds of intervals and ranges");
-        else if (found == EtlParser::ASSIGN && stuck_.rule != EtlParser::RuleName)
-            to.note("comparisons are '<=', '<', '>=', '>', '==' and '!='");
-        else if (found == EtlParser::RPAREN && in_brackets)
-            to.note(
-                "min(...) and max(...) need two or more expressions; over a target set, write 'min "
-                "l2(z, goal)'");
-        else if (is(stuck_.previous, {EtlParser::KTH}))
-            to.note("kth takes its rank in brackets: kth(3) l2(z, goal)");
-        else if (is_reserved_word(found_, file_) && stuck_.expects(EtlParser::IDENTIFIER) &&
-                 !slice_ended())
-            to.note(fmt::format("{} is reserved: it is {}", quoted(found_, file_),
-                                description_of_reserved(found)));
+        if (found == EtlParser::INF) return "inf is allowed only in bounds of intervals and ranges";
+        if (found == EtlParser::ASSIGN && stuck_.rule != EtlParser::RuleName)
+            return "comparisons are '<=', '<', '>=', '>', '==' and '!='";
+        if (found == EtlParser::RPAREN && in_brackets)
+            return "min(...) and max(...) need two or more expressions; over a target set, write "
+                   "'min l2(z, goal)'";
+        if (is(stuck_.previous, {EtlParser::KTH}))
+            return "kth takes its rank in brackets: kth(3) l2(z, goal)";
+        if (!is_reserved_word(found_, file_) || !stuck_.expects(EtlParser::IDENTIFIER) ||
+            slice_ended())
+            return "";
+        return fmt::format("{} is reserved: it is {}", quoted(found_, file_),
+                           description_of_reserved(found));
     }
 
-    /// Adds a note on how the current construct is written.
-    void add_note_on_rule(Diagnostic& to) const {
-        const bool in_duration = stuck_.rule == EtlParser::RuleDuration ||
-                                 stuck_.parent_rule == EtlParser::RuleDuration ||
-                                 is(stuck_.previous, {EtlParser::HELD});
-        if (in_duration) {
-            to.note("'held' takes a single duration: held[20 steps] f, held[2 s] f");
-            return;
-        }
+    /// Returns the note on how the current construct is written, or nothing.
+    std::string note_on_rule() const {
+        if (stuck_.rule == EtlParser::RuleDuration ||
+            stuck_.parent_rule == EtlParser::RuleDuration || is(stuck_.previous, {EtlParser::HELD}))
+            return "'held' takes a single duration: held[20 steps] f, held[2 s] f";
         switch (stuck_.rule) {
             case EtlParser::RuleDimension:
-                to.note(
-                    "only f32 and bool can be scalars; an embedding has its dimension in brackets");
-                break;
+                return "only f32 and bool can be scalars; an embedding has its dimension in "
+                       "brackets";
             case EtlParser::RuleMetric:
-            case EtlParser::RuleWeights:
-                to.note("the weights come first: mahalanobis(M)(z, goal)");
-                break;
+            case EtlParser::RuleWeights: return "the weights come first: mahalanobis(M)(z, goal)";
             case EtlParser::RuleInterval:
             case EtlParser::RuleBound:
-                to.note(
-                    "an interval is written [a, b] or [a, inf], in steps or with units of time: "
-                    "[0, 20 steps], [0s, 2s]");
-                break;
+                return "an interval is written [a, b] or [a, inf], in steps or with units of time: "
+                       "[0, 20 steps], [0s, 2s]";
             case EtlParser::RuleThreshold:
-                to.note("the expression is on the left, its threshold on the right: x - y <= 0.5");
-                break;
+                return "the expression is on the left, its threshold on the right: x - y <= 0.5";
             case EtlParser::RuleComparisonOperator:
-                if (stuck_.declaration == EtlParser::PREDICATE)
-                    to.note(
-                        "a predicate compares one expression with a threshold; a formula is named "
-                        "with 'let'");
-                break;
-            default: break;
+                return stuck_.declaration == EtlParser::PREDICATE
+                           ? "a predicate compares one expression with a threshold; a formula is "
+                             "named with 'let'"
+                           : "";
+            default: return "";
         }
     }
 

@@ -27,8 +27,8 @@ std::optional<std::uint32_t> steps_of(const Length& length, const check::Model& 
     if (length.in_seconds) {
         if (model.step_seconds == 0) {
             sink.report(diag::Code::recorder_without_rate, model.monitors.front().span,
-                        fmt::format("--recorder says {}, but the spec has no rate or period that "
-                                    "says how long a step is",
+                        fmt::format("--recorder says {}, but the spec has no rate or period to "
+                                    "define the length of a step",
                                     length.text))
                 .note(
                     "add a line such as 'rate 20 Hz;', or say how many steps: --recorder 40,20,4");

@@ -55,11 +55,10 @@ void warn_of_large_alpha(const std::string& name, const check::Threshold& thresh
     using check::Decimal;
     if (threshold.alpha.empty() || !(Decimal::parse("0.5") < Decimal::parse(threshold.alpha)))
         return;
-    episodes::warn_of_data(diag::Code::large_alpha,
-                           fmt::format("alpha = {} of '{}' is the share that may be missed, more "
-                                       "than half",
-                                       threshold.alpha, name),
-                           threshold.span, sink)
+    episodes::warn_of_data(
+        diag::Code::large_alpha,
+        fmt::format("alpha = {} of '{}' allows more than half to be missed", threshold.alpha, name),
+        threshold.span, sink)
         .note("it is an error rate, not a coverage: alpha = 0.1 misses at most a tenth");
 }
 

@@ -183,7 +183,7 @@ std::optional<diag::Failure> other_encoder(const Model& model, const Input& inpu
                                    : fmt::format(", the same model run by {}", same_model->second);
     return diag::Failure{
         diag::Code::other_encoder,
-        fmt::format("'{}' is by the encoder {}{}; expected {}, which is '{}' of the spec",
+        fmt::format("'{}' was made by encoder {}{}; expected {}, which is '{}' in the spec",
                     input.name, mark->second, run_by, encoder.fingerprint, encoder.name)};
 }
 

@@ -25,11 +25,6 @@ Constancy combine(const Operands& operands, Constancy deciding) {
     return std::all_of(operands.begin(), operands.end(), is(other)) ? other : varies;
 }
 
-Constancy equivalence(Constancy a, Constancy b) {
-    if (a == varies || b == varies) return varies;
-    return a == b ? always : never;
-}
-
 /// F and O fail without an operand that holds; a window that contains the present is never empty.
 Constancy some(Constancy operand, bool holds_present) {
     if (operand == never) return never;
@@ -62,7 +57,9 @@ Constancy of(const Formula& formula, const Operands& operands) {
         case Kind::conjunction: return combine(operands, never);
         case Kind::disjunction: return combine(operands, always);
         case Kind::implication: return combine({negation(operands[0]), operands[1]}, always);
-        case Kind::equivalence: return equivalence(operands[0], operands[1]);
+        case Kind::equivalence:
+            if (operands[0] == varies || operands[1] == varies) return varies;
+            return operands[0] == operands[1] ? always : never;
         case Kind::next:
         case Kind::previous:
         case Kind::eventually:

@@ -44,7 +44,12 @@ public:
                 depth = std::max(depth, c_.depths[index]);
         }
         if (!good) return kNone;
-        if (depth >= kMaxDepth) return too_deep(written.span);
+        if (depth >= kMaxDepth) {
+            c_.report(Code::formula_too_deep, written.span,
+                      fmt::format("a formula of more than {} levels with its lets written out",
+                                  kMaxDepth));
+            return kNone;
+        }
         return add(std::move(formula), written.operator_span, depth + 1);
     }
 
@@ -64,13 +69,6 @@ private:
         formula.index = index;
         formula.span = written.span;
         return add(std::move(formula), written.span, 1);
-    }
-
-    Index too_deep(Span span) {
-        c_.report(
-            Code::formula_too_deep, span,
-            fmt::format("a formula of more than {} levels with its lets written out", kMaxDepth));
-        return kNone;
     }
 
     bool set_interval(Formula& formula, const ast::Formula& written) {

@@ -251,13 +251,8 @@ void check_fitted_frames(Context& c) {
 namespace {
 
 Restarts restarts(ast::Monitor::Kind kind) {
-    switch (kind) {
-        case ast::Monitor::Kind::prefix:
-        case ast::Monitor::Kind::sliding: return Restarts::never;
-        case ast::Monitor::Kind::restartable: return Restarts::on_request;
-        case ast::Monitor::Kind::repeating: break;
-    }
-    return Restarts::when_final;
+    if (kind == ast::Monitor::Kind::restartable) return Restarts::on_request;
+    return kind == ast::Monitor::Kind::repeating ? Restarts::when_final : Restarts::never;
 }
 
 /// The positions of a restarting monitor depend on its verdicts, and these on the shift.

@@ -38,12 +38,8 @@ void check_spelling(Context& c, const ast::Name& name, std::string_view kind, bo
 }
 
 void declare(Context& c, NameKind kind, const ast::Name& name) {
-    if (name.text.empty()) {
-        c.scope.declare(kind, name);
-        return;
-    }
     const Entity* first = c.scope.declare(kind, name);
-    if (first == nullptr) return;
+    if (first == nullptr || name.text.empty()) return;
     c.report(Code::duplicate_name, name.span, fmt::format("'{}' is declared twice", name.text))
         .note(first->span, fmt::format("'{}' is declared here first", name.text));
 }

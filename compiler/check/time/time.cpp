@@ -71,11 +71,12 @@ std::string bound_text(const ast::Bound& bound) {
     return with_unit(shown(bound.number), bound.unit);
 }
 
-void report_too_large(Context& c, const ast::Bound& bound) {
+std::nullopt_t report_too_large(Context& c, const ast::Bound& bound) {
     c.report(
          Code::bound_too_large, bound.span,
          fmt::format("{} is more than {} steps, the largest bound", bound_text(bound), kMaxBound))
         .note("without an upper bound, write [a, inf]");
+    return std::nullopt;
 }
 
 std::optional<std::uint32_t> whole_steps(Context& c, const ast::Bound& bound) {
@@ -88,8 +89,8 @@ std::optional<std::uint32_t> whole_steps(Context& c, const ast::Bound& bound) {
         return std::nullopt;
     }
     const auto steps = value.whole(kMaxBound);
-    if (!steps) report_too_large(c, bound);
-    return steps ? std::optional(static_cast<std::uint32_t>(*steps)) : std::nullopt;
+    if (!steps) return report_too_large(c, bound);
+    return static_cast<std::uint32_t>(*steps);
 }
 
 void report_not_whole(Context& c, const ast::Bound& bound, std::uint64_t below) {
@@ -144,8 +145,7 @@ std::optional<std::uint32_t> duration_steps(Context& c, const ast::Bound& bound)
         return std::nullopt;
     }
     const StepCount count = count_steps({value, bound.unit}, quantity(*c.step.rate));
-    if (count.too_many) report_too_large(c, bound);
-    if (count.too_many) return std::nullopt;
+    if (count.too_many) return report_too_large(c, bound);
     if (count.whole) return static_cast<std::uint32_t>(count.floor);
     if (c.step.rate->durations != ast::Rounding::exact) return rounded_steps(c, bound, count);
     report_not_whole(c, bound, count.floor);

@@ -52,7 +52,7 @@ constexpr std::array kHints{
     Hint{":=", "a declaration has '=' after its name", "="},
     Hint{"%", "a comment begins with '//'; there are no remainders"},
     Hint{"#", "a comment begins with '//'", "//"},
-    Hint{"{ }", "a spec has no blocks; formulas are grouped by '( )'"},
+    Hint{"{ }", "a spec has no blocks; formulas are grouped with '( )'"},
     Hint{"' ‘ ’", "file names are written in double quotes"},
     Hint{"„ « » “ ”", "file names are written in plain double quotes"},
     Hint{"\xC2\xA0", "this is a no-break space; use a plain space", " "},
@@ -60,17 +60,17 @@ constexpr std::array kHints{
     Hint{"\xE2\x80\x89", "this is a thin space; use a plain space", " "},
     Hint{"\xE2\x80\xAF", "this is a narrow no-break space; use a plain space", " "},
     Hint{"\xE3\x80\x80", "this is an ideographic space; use a plain space", " "},
-    Hint{"\xE2\x80\x8B", "this is a space of no width; remove it"},
+    Hint{"\xE2\x80\x8B", "this is a zero-width space; remove it"},
     Hint{"\xEF\xBB\xBF", "this is a byte order mark; remove it"},
 };
 
 /// Some mean something else where an operand should begin.
 constexpr std::array kHintsBeforeOperand{
     Hint{"<>", "'eventually' is 'F'", "F"},
-    Hint{"|", "the value of x without its sign is abs(x)"},
+    Hint{"|", "the absolute value of x is abs(x)"},
 };
 constexpr Hint kIntervalInBraces{
-    "{", "an interval is written in square brackets, F[0, 2 s]; formulas are grouped by '( )'"};
+    "{", "an interval is written in square brackets, F[0, 2 s]; formulas are grouped with '( )'"};
 
 const Hint* hint_for(std::string_view written, const Token* previous, const source::File& file) {
     const auto in = [written](const auto& hints) -> const Hint* {

@@ -140,7 +140,7 @@ std::string mistake_in_namespace(const std::string& name) {
                              std::all_of(part.begin(), part.end(), in_names);
         if (!is_name) return fmt::format("'{}' is not the name of a namespace", name);
         if (const auto why = check::why_forbidden(part, is_outermost))
-            return fmt::format("'{}' {}; another name would do, for example '{}'", part, *why,
+            return fmt::format("'{}' {}; use another name, for example '{}'", part, *why,
                                check::allowed_name(part, "monitors", is_outermost));
     }
     return "";

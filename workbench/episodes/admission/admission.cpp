@@ -219,8 +219,8 @@ public:
           not_fitted_on_(not_fitted_on(search_, fitted, allows_, kHowToAllow)),
           unseen_(search_, thresholds_file, allows_, Code::not_disjoint,
                   "an episode that thresholds of predicates were calibrated on",
-                  "calibrate monitors on other episodes: fitted on the same ones, the thresholds "
-                  "are better there than they will be",
+                  "calibrate monitors on other episodes: thresholds look too good on those that "
+                  "they were calibrated on",
                   kHowToAllow) {
         passed_over_.reason = reason;
     }

@@ -46,13 +46,12 @@ void refuse_where_unsure(const Analysis& analysis, const Occurrence& of) {
 void refuse_bad_name(const Analysis& analysis, const Declared& declared,
                      const std::string& new_name) {
     if (!parse::is_name(new_name))
-        refuse(
-            fmt::format("'{}' is not a name: names are letters, digits and _, and no reserved "
-                        "words",
-                        new_name));
+        refuse(fmt::format(
+            "'{}' is not a name: names are letters, digits and _, and no reserved words",
+            new_name));
     const bool is_spec = !declared.kind;
     if (const auto why = check::why_forbidden(new_name, is_spec))
-        refuse(fmt::format("'{}' {}; another name would do, for example '{}'", new_name, *why,
+        refuse(fmt::format("'{}' {}; use another name, for example '{}'", new_name, *why,
                            check::allowed_name(
                                new_name, is_spec ? "spec" : check::word(*declared.kind), is_spec)));
     for (const Declared& other : analysis.names.declared)
