@@ -1,11 +1,11 @@
-// Windows over an unbounded future, taken apart: an equal formula, in which bounded operators look
-// at an unbounded future only from the end of their window, and that step is pushed down to what
-// has a bounded future. rho is the same on every prefix, and bounds are at least as tight as the
+// Splits windows over an unbounded future: into an equal formula in which bounded operators see an
+// unbounded future only at the end of their window, and that step is pushed down to operands with a
+// bounded future. rho is the same on every prefix, and bounds are at least as tight as the
 // definition's.
 //
 // An automaton counts such windows down: F[0,40] (p U q) is 41 obligations, and under G it is sets
-// of them. Apart, the unbounded operators alone make the automaton, over literals whose future is
-// bounded. Which of the two is cheaper depends on both, so the plan has the choice.
+// of them. Split, only the unbounded operators form the automaton, over literals whose future is
+// bounded. Which of the two is cheaper depends on both, so the plan chooses.
 #include <algorithm>
 #include <optional>
 #include <unordered_map>

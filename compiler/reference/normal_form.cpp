@@ -39,65 +39,65 @@ private:
         return add({.kind = kind, .negated = negated, .index = index, .operands = {}});
     }
 
-    Index connect(NodeKind kind, std::vector<Index> operands) {
-        return add({.kind = kind, .operands = std::move(operands)});
+    /// Adds || of the operands, or && if `all`.
+    Index connect(bool all, std::vector<Index> operands) {
+        return add({.kind = NodeKind::any, .negated = all, .operands = std::move(operands)});
     }
 
-    /// Adds an operator that negation turns into its dual over negated operands.
-    Index temporal(const Formula& f, bool negated, NodeKind kind, NodeKind dual) {
-        Node node{.kind = negated ? dual : kind, .operands = {}, .low = f.low, .high = f.high};
-        for (const Index operand : f.operands) node.operands.push_back(build(operand, negated));
-        return add(std::move(node));
-    }
-
-    Index connective(const Formula& f, bool negated, NodeKind kind) {
+    Index connective(const Formula& f, bool negated, bool all) {
         std::vector<Index> operands;
         for (const Index operand : f.operands) operands.push_back(build(operand, negated));
-        return connect(kind, std::move(operands));
+        return connect(all != negated, std::move(operands));
+    }
+
+    /// Adds an operator, or its dual; negation turns the one into the other over negated operands.
+    Index temporal(const Formula& f, bool negated, NodeKind kind, bool dual = false) {
+        Node node{.kind = kind, .negated = dual != negated, .low = f.low, .high = f.high};
+        for (const Index operand : f.operands) node.operands.push_back(build(operand, negated));
+        return add(std::move(node));
     }
 
     /// Adds `f -> g` as `!f || g`; its negation is `f && !g`.
     Index implication(Index f, Index g, bool negated) {
         const Index left = build(f, !negated);
-        const Index right = build(g, negated);
-        return connect(negated ? NodeKind::all : NodeKind::any, {left, right});
+        return connect(negated, {left, build(g, negated)});
     }
 
     /// Adds `f <-> g` as `(f -> g) && (g -> f)`; its negation is `!(f -> g) || !(g -> f)`.
     Index equivalence(Index f, Index g, bool negated) {
         const Index forth = implication(f, g, negated);
-        const Index back = implication(g, f, negated);
-        return connect(negated ? NodeKind::any : NodeKind::all, {forth, back});
+        return connect(!negated, {forth, implication(g, f, negated)});
     }
 
     /// Adds `f W g` as `g R (f || g)`; its negation is `!g U (!f && !g)`.
     Index weak_until(Index f, Index g, bool negated) {
         const Index left = build(f, negated);
         const Index right = build(g, negated);
-        const Index both = connect(negated ? NodeKind::all : NodeKind::any, {left, right});
-        return connect(negated ? NodeKind::until : NodeKind::release, {right, both});
+        const Index both = connect(negated, {left, right});
+        return add({.kind = NodeKind::until, .negated = !negated, .operands = {right, both}});
+    }
+
+    /// Adds O[steps,steps] of the operand, or H[steps,steps] if `all`.
+    Index before(std::uint32_t steps, bool all, Index operand) {
+        return add({.kind = NodeKind::once,
+                    .negated = all,
+                    .operands = {operand},
+                    .low = steps,
+                    .high = steps});
     }
 
     /// Adds `rise f` as `f && Y !f`, and `fall f` as `!f && Y f`; the negation of either is the
     /// dual.
     Index edge(Index f, bool falls, bool negated) {
         const Index now = build(f, falls != negated);
-        const Index before = build(f, falls == negated);
-        const Index previous = add({.kind = negated ? NodeKind::historically : NodeKind::once,
-                                    .operands = {before},
-                                    .low = 1,
-                                    .high = 1});
-        return connect(negated ? NodeKind::any : NodeKind::all, {now, previous});
+        return connect(!negated, {now, before(1, negated, build(f, falls == negated))});
     }
 
     /// Adds `held[n] f` as `H[0,n] f && O[n,n] true`; its negation is `O[0,n] !f || H[n,n] false`.
     Index held(const Formula& f, bool negated) {
-        const Index all = temporal(f, negated, NodeKind::historically, NodeKind::once);
-        const Index old = add({.kind = negated ? NodeKind::historically : NodeKind::once,
-                               .operands = {literal(NodeKind::constant, negated)},
-                               .low = f.high,
-                               .high = f.high});
-        return connect(negated ? NodeKind::any : NodeKind::all, {all, old});
+        const Index all = temporal(f, negated, NodeKind::once, true);
+        return connect(!negated,
+                       {all, before(f.high, negated, literal(NodeKind::constant, negated))});
     }
 
     Index make(const Formula& f, bool negated) {
@@ -107,10 +107,8 @@ private:
             case FormulaKind::predicate: return literal(NodeKind::predicate, negated, f.index);
             case FormulaKind::boolean_input: return literal(NodeKind::boolean, negated, f.index);
             case FormulaKind::negation: return build(f.operands[0], !negated);
-            case FormulaKind::conjunction:
-                return connective(f, negated, negated ? NodeKind::any : NodeKind::all);
-            case FormulaKind::disjunction:
-                return connective(f, negated, negated ? NodeKind::all : NodeKind::any);
+            case FormulaKind::conjunction: return connective(f, negated, true);
+            case FormulaKind::disjunction: return connective(f, negated, false);
             case FormulaKind::implication:
                 return implication(f.operands[0], f.operands[1], negated);
             case FormulaKind::equivalence:
@@ -119,21 +117,14 @@ private:
             // `X f` is F[1,1] f; `!X f` is G[1,1] !f. The model gives next and previous the
             // interval [1, 1].
             case FormulaKind::next:
-            case FormulaKind::eventually:
-                return temporal(f, negated, NodeKind::eventually, NodeKind::always);
-            case FormulaKind::always:
-                return temporal(f, negated, NodeKind::always, NodeKind::eventually);
-            case FormulaKind::until:
-                return temporal(f, negated, NodeKind::until, NodeKind::release);
-            case FormulaKind::release:
-                return temporal(f, negated, NodeKind::release, NodeKind::until);
+            case FormulaKind::eventually: return temporal(f, negated, NodeKind::eventually);
+            case FormulaKind::always: return temporal(f, negated, NodeKind::eventually, true);
+            case FormulaKind::until: return temporal(f, negated, NodeKind::until);
+            case FormulaKind::release: return temporal(f, negated, NodeKind::until, true);
             case FormulaKind::previous:
-            case FormulaKind::once:
-                return temporal(f, negated, NodeKind::once, NodeKind::historically);
-            case FormulaKind::historically:
-                return temporal(f, negated, NodeKind::historically, NodeKind::once);
-            case FormulaKind::since:
-                return temporal(f, negated, NodeKind::since, NodeKind::trigger);
+            case FormulaKind::once: return temporal(f, negated, NodeKind::once);
+            case FormulaKind::historically: return temporal(f, negated, NodeKind::once, true);
+            case FormulaKind::since: return temporal(f, negated, NodeKind::since);
             case FormulaKind::rise: return edge(f.operands[0], false, negated);
             case FormulaKind::fall: return edge(f.operands[0], true, negated);
             case FormulaKind::held: return held(f, negated);

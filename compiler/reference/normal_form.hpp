@@ -13,29 +13,23 @@ using check::Index;
 
 struct Node {
     enum class Kind : std::uint8_t {
-        constant,    ///< true, or false where negated
-        predicate,   ///< predicate `index`, or its negation
-        boolean,     ///< bool input `index`, or its negation
-        all,         ///< && of the operands
-        any,         ///< || of the operands
-        eventually,  ///< F[low, high]; X is F[1, 1]
-        always,      ///< G[low, high]
-        until,       ///< operands f, g
-        release,     ///< operands f, g
-        once,        ///< O[low, high]; Y is O[1, 1]
-        historically,
-        since,    ///< operands f, g
-        trigger,  ///< the dual of since: f T g is !(!f S !g)
+        constant,    ///< true
+        predicate,   ///< predicate `index`
+        boolean,     ///< bool input `index`
+        any,         ///< || of the operands; its dual is &&
+        eventually,  ///< F[low, high]; X is F[1, 1]; its dual is G
+        until,       ///< operands f, g; its dual is R
+        once,        ///< O[low, high]; Y is O[1, 1]; its dual is H
+        since,       ///< operands f, g; its dual is !(!f S !g)
     };
     Kind kind = Kind::constant;
-    bool negated = false;  ///< of a constant or literal
+    bool negated = false;  ///< the negation of a constant or atom, the dual of an operator
     Index index = 0;
     std::vector<Index> operands;
     std::uint32_t low = 0;
     std::uint32_t high = check::kUnbounded;
 
     bool is_atom() const { return kind == Kind::predicate || kind == Kind::boolean; }
-    bool connects() const { return kind == Kind::all || kind == Kind::any; }
 };
 
 struct NormalForm {

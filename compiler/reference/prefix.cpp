@@ -23,17 +23,8 @@ Value max(const Value& a, const Value& b) {
             std::max(a.upper, b.upper)};
 }
 
-/// Returns whether negation makes the node from its dual: "`f R[a,b] g`: the dual: -rho(!f U[a,b]
-/// !g)", and likewise min from max, G from F, H from O, and the trigger, !(!f S !g), from S.
-bool is_dual(Node::Kind kind) {
-    using enum Node::Kind;
-    return kind == all || kind == always || kind == release || kind == historically ||
-           kind == trigger;
-}
-
-bool looks_ahead(Node::Kind kind) {
-    using enum Node::Kind;
-    return kind == eventually || kind == always || kind == until || kind == release;
+bool looks_ahead(const Node& node) {
+    return node.kind == Node::Kind::eventually || node.kind == Node::Kind::until;
 }
 
 /// The positions j of a future operator at k on the prefix 0..end: j in [k+a, min(k+b, i)].
@@ -82,24 +73,26 @@ Unseen Prefix::unseen(Index node) {
     return *unseen_[node];
 }
 
+/// Duals are made by negation: "`f R[a,b] g`: the dual: -rho(!f U[a,b] !g)", and likewise min from
+/// max, G from F, and H from O.
 Value Prefix::operand(const Node& node, std::size_t n, std::uint64_t position) {
     const Value value = at(node.operands[n], position);
-    return is_dual(node.kind) ? negate(value) : value;
+    return node.negated ? negate(value) : value;
 }
 
 Unseen Prefix::unseen_operand(const Node& node, std::size_t n) {
     const Unseen range = unseen(node.operands[n]);
-    return is_dual(node.kind) ? negate(range) : range;
+    return node.negated ? negate(range) : range;
 }
 
 Value Prefix::evaluate(const Node& node, Index index, std::uint64_t k) {
     // "`true`, `false`: +inf, -inf"
     if (node.kind == Node::Kind::constant) return all_of(node.negated ? -kInfinity : kInfinity);
     if (node.is_atom()) return literals_.values[index][k];
-    const Value result = node.connects()          ? greatest(node, k)
-                         : looks_ahead(node.kind) ? future(node, k)
-                                                  : past(node, k);
-    return is_dual(node.kind) ? negate(result) : result;
+    const Value result = node.kind == Node::Kind::any ? greatest(node, k)
+                         : looks_ahead(node)          ? future(node, k)
+                                                      : past(node, k);
+    return node.negated ? negate(result) : result;
 }
 
 /// "`f && g`, `f || g`: min, max"
@@ -165,13 +158,13 @@ Unseen Prefix::find_unseen(const Node& node, Index index) {
     // "for a predicate its range"; a bool's is [-inf, +inf]
     if (node.is_atom()) return literals_.ranges[index];
     Unseen result{-kInfinity, -kInfinity};
-    if (node.connects()) {
+    if (node.kind == Node::Kind::any) {
         // "min and max for && and ||"
         for (std::size_t n = 0; n < node.operands.size(); ++n) {
             const Unseen one = unseen_operand(node, n);
             result = {std::max(result.lowest, one.lowest), std::max(result.highest, one.highest)};
         }
-        return is_dual(node.kind) ? negate(result) : result;
+        return node.negated ? negate(result) : result;
     }
     // "F, O, U, S: lowest that of the (last) operand if a = 0, else -inf, highest the operand's"
     const std::size_t last = node.operands.size() - 1;
@@ -180,12 +173,12 @@ Unseen Prefix::find_unseen(const Node& node, Index index) {
     // "O and S have a highest of at least [...] what is known of their (last) operand; and an
     // unbounded O with a = 0 has a lowest of at least the greatest known lower"
     const bool never_forgets = last == 0 && node.low == 0 && node.high == check::kUnbounded;
-    for (std::uint64_t j = 0; !looks_ahead(node.kind) && j <= end_; ++j) {
+    for (std::uint64_t j = 0; !looks_ahead(node) && j <= end_; ++j) {
         const Value known = operand(node, last, j);
         result.highest = std::max(result.highest, known.upper);
         if (never_forgets) result.lowest = std::max(result.lowest, known.lower);
     }
-    return is_dual(node.kind) ? negate(result) : result;
+    return node.negated ? negate(result) : result;
 }
 
 }  // namespace etlc::reference

@@ -110,7 +110,7 @@ def main():
                 "--json", "out.json", "--csv", "out.csv", "--by-episode"]
     parts = same_as_one_process(evaluate, JUDGED, (1, 2, 64, 7))
 
-    assert "is one of 7 shards, of which these are missing" in refused("E1104", *parts[1:])
+    assert "is one of 7 shards; missing" in refused("E1104", *parts[1:])
     assert f"{parts[0]} is as well" in refused("E1104", *parts, parts[0])
     refused("E1101", *parts[1:], "gone.part")
     refused("E1102", *parts[1:], "fleet.etl")

@@ -1,13 +1,12 @@
-// The general method for future formulas: a weighted automaton over (max, min).
-// Takes: a formula in negation normal form. Gives: states, each a set of obligations (temporal
-// formulas that must hold from the next position), and guarded transitions. Keeps true: with v'[T]
-// = max over transitions S -> T of min(v[S], guard), starting from v[initial] = +inf, the greatest
-// v[S] over the states without strong obligations is rho(f, 0, i) on every prefix.
+// Builds weighted automata over (max, min), the general method for future formulas. A state is a
+// set of obligations: temporal formulas that must hold from the next position. With v'[T] = max
+// over transitions S -> T of min(v[S], guard), starting from v[initial] = +inf, the greatest v[S]
+// over the states without strong obligations is rho(f, 0, i) on every prefix.
 //
 // A formula expands, at a position, into a disjunction of (literals now, obligations next): F f is
-// "f now, or F f next", G f is "f now, and G f next", U and R alike, windows count down.
-// Sub-formulas without future are literals: they stream. A clause that another makes idle goes: its
-// literals and obligations imply the other's. p && !p stays: its value is -|p|.
+// "f now, or F f next", G f is "f now, and G f next", U and R likewise, and windows count down.
+// Sub-formulas without future are literals, which are streams. A clause is dropped if its literals
+// and obligations imply another's. p && !p stays: its value is -|p|.
 #pragma once
 
 #include <cstdint>

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "campaign.hpp"
 #include "explain/explain.hpp"
@@ -43,17 +44,19 @@ Said said_by(explain::Status status, bool for_good) {
 /// The graph as formulas of the reference: bounds are those of the simplified formula.
 reference::NormalForm form_of(const ir::Program& program) {
     using Kind = reference::Node::Kind;
-    // In the order of ir/operators.def; constants stand for `negated`.
-    constexpr Kind kKinds[] = {Kind::constant, Kind::constant, Kind::predicate,  Kind::boolean,
-                               Kind::all,      Kind::any,      Kind::eventually, Kind::always,
-                               Kind::until,    Kind::release,  Kind::once,       Kind::historically,
-                               Kind::since,    Kind::trigger};
+    // In the order of ir/operators.def, in which an operator's dual follows it, && precedes ||.
+    constexpr std::pair<Kind, bool> kKinds[] = {
+        {Kind::constant, false},   {Kind::constant, true},   {Kind::predicate, false},
+        {Kind::boolean, false},    {Kind::any, true},        {Kind::any, false},
+        {Kind::eventually, false}, {Kind::eventually, true}, {Kind::until, false},
+        {Kind::until, true},       {Kind::once, false},      {Kind::once, true},
+        {Kind::since, false},      {Kind::since, true}};
     reference::NormalForm form;
     for (ir::NodeId id = 0; id < program.graph.size(); ++id) {
         const ir::Node& node = program.graph[id];
-        form.nodes.push_back({kKinds[static_cast<std::size_t>(node.op)],
-                              node.negated || node.op == ir::Op::constant_false, node.index,
-                              node.operands, node.interval.low, node.interval.high});
+        const auto [kind, dual] = kKinds[static_cast<std::size_t>(node.op)];
+        form.nodes.push_back({kind, node.negated || dual, node.index, node.operands,
+                              node.interval.low, node.interval.high});
     }
     form.roots = program.monitors;
     return form;
