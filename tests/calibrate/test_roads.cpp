@@ -24,10 +24,10 @@ struct RoadFrame {
     double px = 0, py = 0;
     bool label = false;
 };
-using Road = std::vector<RoadFrame>;
+using Drive = std::vector<RoadFrame>;
 
-Road random_road(Random& random) {
-    Road episode;
+Drive random_drive(Random& random) {
+    Drive episode;
     for (int t = 0; t < kRoadSteps; ++t) {
         RoadFrame frame;
         frame.label = random.chance(0.5);
@@ -41,9 +41,9 @@ Road random_road(Random& random) {
     return episode;
 }
 
-std::vector<Road> random_roads(Random& random) {
-    std::vector<Road> episodes;
-    for (int i = 0; i < kEpisodes; ++i) episodes.push_back(random_road(random));
+std::vector<Drive> random_drives(Random& random) {
+    std::vector<Drive> episodes;
+    for (int i = 0; i < kEpisodes; ++i) episodes.push_back(random_drive(random));
     return episodes;
 }
 
@@ -126,7 +126,7 @@ std::vector<Road> roads() {
     return all;
 }
 
-std::string csv(const Road& episode, const Road& road) {
+std::string csv(const Drive& episode, const Road& road) {
     std::string text = "z[0],z[1],z[2],px,py,truth.a\n";
     const double grain = road.form->grain;
     for (const RoadFrame& frame : episode) {
@@ -143,10 +143,10 @@ class World {
 public:
     World(const Road& road, std::uint64_t seed) : road_(road) {
         Random random(seed);
-        first_ = random_roads(random);
-        second_ = random_roads(random);
+        first_ = random_drives(random);
+        second_ = random_drives(random);
         for (int i = 0; i < 3; ++i)
-            rows_.push_back(road.form->row(random_road(random)[0], road.form->grain));
+            rows_.push_back(road.form->row(random_drive(random)[0], road.form->grain));
     }
 
     void leak_first() { rows_[1] = road_.form->row(first_[2][3], road_.form->grain); }
@@ -181,10 +181,10 @@ public:
     std::string thresholds;
 
 private:
-    Calibrated calibrate(const std::vector<Road>& episodes, const std::string& before) const {
+    Calibrated calibrate(const std::vector<Drive>& episodes, const std::string& before) const {
         const TemporaryPath targets("g.npy", npy_rows());
         Files files;
-        for (const Road& episode : episodes) files.add(csv(episode, road_));
+        for (const Drive& episode : episodes) files.add(csv(episode, road_));
         return calibrated(spec(targets.path()), files.paths(), before);
     }
 
@@ -204,8 +204,8 @@ private:
     }
 
     const Road& road_;
-    std::vector<Road> first_;
-    std::vector<Road> second_;
+    std::vector<Drive> first_;
+    std::vector<Drive> second_;
     std::vector<std::vector<double>> rows_;
 };
 

@@ -83,12 +83,13 @@ void add(std::vector<Row>& rows, const std::string& name, const Score& score) {
 /// Adds a line each for cases without a known truth and for claims that a missing sample leaves
 /// open.
 void add_remarks(std::string& text, const std::string& name, const Counts& counts,
-                 const char* what) {
+                 const std::string& unit) {
     if (counts.unlabelled > 0)
-        text += fmt::format("{}: {} {} of unknown truth left out\n", name, counts.unlabelled, what);
-    if (const std::uint64_t unsaid = counts.unsaid_positives + counts.unsaid_negatives; unsaid > 0)
-        text += fmt::format("{}: {} {} left open by a missing sample, counted as disagreeing\n",
-                            name, unsaid, what);
+        text += fmt::format("{}: {} of unknown truth left out\n", name,
+                            diag::counted(counts.unlabelled, unit));
+    if (const std::uint64_t open = counts.unsaid_positives + counts.unsaid_negatives; open > 0)
+        text += fmt::format("{}: {} left open by a missing sample, counted as disagreeing\n", name,
+                            diag::counted(open, unit));
 }
 
 std::string predicates_part(const Evaluation& evaluation) {
@@ -101,7 +102,7 @@ std::string predicates_part(const Evaluation& evaluation) {
         add(rows, p.name, p.frames);
         rows[first].push_back(figure(p.auroc));
         rows[first].push_back(figure(p.coverage));
-        add_remarks(remarks, p.name, p.frames.counts, "frames");
+        add_remarks(remarks, p.name, p.frames.counts, "frame");
         if (p.adaptive)
             remarks += fmt::format(
                 "{}: evaluated with its initial threshold, which labels would adapt\n", p.name);
@@ -231,9 +232,9 @@ std::string tables(const Evaluation& evaluation) {
     if (!evaluation.folds.empty()) text += folds_part(evaluation);
     if (!evaluation.predicates.empty()) text += predicates_part(evaluation);
     text +=
-        monitors_part(evaluation, "monitor, by steps", "satisfied", &MonitorScore::steps, "steps");
+        monitors_part(evaluation, "monitor, by steps", "satisfied", &MonitorScore::steps, "step");
     text += monitors_part(evaluation, "monitor, by episodes", "satisfied", &MonitorScore::episodes,
-                          "episodes");
+                          "episode");
     text += ordering_part(evaluation) + detection_part(evaluation) + left_out(evaluation);
     return evaluation.by_episode.empty() ? text : text + by_episode_part(evaluation);
 }

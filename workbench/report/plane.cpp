@@ -12,6 +12,7 @@ namespace etlc::report {
 namespace {
 
 constexpr std::size_t kMostFrames = 384;
+constexpr std::size_t kPlaneEpisodes = 24;
 
 using fit::Matrix;
 using fit::Vector;
@@ -99,6 +100,15 @@ void take_numbers(Plane& plane) {
     plane.axes = {std::vector<double>{1, 0}, {0, 1}};
 }
 
+/// Returns the points of several numbers from which the predicates measure.
+std::vector<Index> points_to_draw(const check::Model& model, const std::vector<Index>& predicates) {
+    std::set<Index> points;
+    for (const Index p : predicates)
+        for (const Index d : model.predicates[p].distances())
+            if (model.point_of(d).dimension > 1) points.insert(model.distances[d].point);
+    return {points.begin(), points.end()};
+}
+
 }  // namespace
 
 std::array<float, 2> Plane::operator()(const float* z) const {
@@ -111,14 +121,6 @@ std::array<float, 2> Plane::operator()(const float* z) const {
         at[k] = static_cast<float>(sum);
     }
     return at;
-}
-
-std::vector<Index> points_to_draw(const check::Model& model, const std::vector<Index>& predicates) {
-    std::set<Index> points;
-    for (const Index p : predicates)
-        for (const Index d : model.predicates[p].distances())
-            if (model.point_of(d).dimension > 1) points.insert(model.distances[d].point);
-    return {points.begin(), points.end()};
 }
 
 diag::Result<std::vector<Plane>> planes(const check::Model& model,

@@ -32,12 +32,9 @@ struct Plane {
     std::array<float, 2> operator()(const float* z) const;
 };
 
-/// Returns the points of several numbers from which the predicates measure, in the model's order.
-std::vector<Index> points_to_draw(const check::Model& model, const std::vector<Index>& predicates);
-
-/// Returns the planes of these points, from evenly chosen frames of at most kPlaneEpisodes
-/// episodes. A point with fewer than two known frames has none. Failures do not name the path.
-inline constexpr std::size_t kPlaneEpisodes = 24;
+/// Returns the planes of the points of several numbers from which the predicates measure, in the
+/// model's order, from evenly chosen frames of some episodes. A point with fewer than two known
+/// frames has none. Failures do not name the path.
 diag::Result<std::vector<Plane>> planes(const check::Model& model,
                                         const std::vector<Index>& predicates,
                                         const std::vector<std::string>& paths,
