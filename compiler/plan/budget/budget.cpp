@@ -34,7 +34,7 @@ constexpr std::uint64_t kCodePerAdaptation = 144;  // observe_P(), as a Cortex-M
 constexpr std::uint64_t kCodePerTable = 200;
 constexpr std::uint64_t kCodePerSamples = 600;
 constexpr std::uint64_t kTransitionBytes = sizeof(etlmon::Transition);
-constexpr std::uint64_t kStateBytes = sizeof(std::uint32_t) + sizeof(etlmon::Owed);
+constexpr std::uint64_t kStateBytes = sizeof(std::uint32_t) + sizeof(etlmon::Obligations);
 
 /// `combined` minima or maxima of two, beside `kept` values.
 Cost values(std::uint64_t kept, std::uint64_t combined) {

@@ -70,10 +70,10 @@ std::string stream_text(const Plan& plan, const ir::Graph& graph, Slot slot) {
     return text + "\n";
 }
 
-std::string owed(const ir::Graph& graph, const std::vector<NodeId>& obligations) {
-    if (obligations.empty()) return "nothing owed";
-    std::string text = "owes ";
-    for (NodeId id : obligations) text += (text.size() > 5 ? ", " : "") + graph.text(id);
+std::string obligations_text(const ir::Graph& graph, const std::vector<NodeId>& obligations) {
+    if (obligations.empty()) return "nothing pending";
+    std::string text = "pending: ";
+    for (NodeId id : obligations) text += (text.size() > 9 ? ", " : "") + graph.text(id);
     return text;
 }
 
@@ -120,7 +120,8 @@ std::string table_text(const Table& table, char guarded, const ir::Graph& graph)
     std::string text;
     std::uint32_t begin = 0;
     for (std::size_t state = 0; state < table.ends.size(); ++state) {
-        text += fmt::format("       q{}: {}\n", state, owed(graph, table.obligations[state]));
+        text += fmt::format("       q{}: {}\n", state,
+                            obligations_text(graph, table.obligations[state]));
         for (std::uint32_t i = begin; i < table.ends[state]; ++i) {
             const etlmon::Transition t = table.transitions[i];
             text += fmt::format("           from q{}", t.source);
