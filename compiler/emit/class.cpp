@@ -154,7 +154,7 @@ void print_class_constants(Printer& out, const Context& context) {
             fmt::format("static constexpr size_t kStackBytes = {};", cost.stack_bytes),
             "stack of a step, for " + what_takes_stack(context.plan));
     sizes.emplace_back(fmt::format("static constexpr uint32_t kOperations = {};", cost.operations),
-                       "min, max and comparisons in the worst-case step");
+                       "min, max, compare in the worst case");
     sizes.emplace_back(
         fmt::format("static constexpr uint32_t kDistanceElements = {};", cost.distance_operations),
         "target elements compared in a step");

@@ -83,7 +83,7 @@ void print_machine(Printer& out, const Context& context, std::uint32_t r) {
     const std::string tables = "tables::" + names.local;
     print_wrapped(
         out,
-        fmt::format("{} = {}.read({}, {}, {} >= {}, {}_transitions, {}_ends, {}_owed, {}, {});",
+        fmt::format("{} = {}.read({}, {}, {} >= {}, {}_transitions, {}_ends, {}_pending, {}, {});",
                     reading_declaration(context, r), names.members.back(), names.guards,
                     names.count, position(context, r), pending.horizon, tables, tables, tables,
                     names.weak, names.strong));

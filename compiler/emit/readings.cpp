@@ -222,7 +222,7 @@ void print_table_machine(Printer& out, const Context& context, std::uint32_t r) 
     print_wrapped(out, fmt::format("{}.advance({}_transitions, {}_ends, {});", kept, tables, tables,
                                    names.guards));
     print_wrapped(
-        out, fmt::format("{} = {}.read({}_owed, {}, {});", reading_declaration(context, r), kept,
+        out, fmt::format("{} = {}.read({}_pending, {}, {});", reading_declaration(context, r), kept,
                          tables, names.weak, names.strong));
 }
 
@@ -246,11 +246,12 @@ void print_table(Printer& out, const Context& context, std::uint32_t r) {
                 [](etlmon::Transition t) { return fmt::format("{{{}, {}}}", t.source, t.guard); });
     print_array(out, "uint32_t", name + "_ends", table.ends,
                 [](std::uint32_t end) { return fmt::format("{}", end); });
-    print_array(out, "etlmon::Owed", name + "_owed", table.owed, [](etlmon::Owed owed) {
-        return owed.weak == etlmon::kStrongly
-                   ? fmt::format("{{etlmon::kStrongly, {}}}", owed.strong)
-                   : fmt::format("{{{}, {}}}", owed.weak, owed.strong);
-    });
+    print_array(out, "etlmon::Obligations", name + "_pending", table.owed,
+                [](etlmon::Obligations pending) {
+                    return pending.weak == etlmon::kStrongly
+                               ? fmt::format("{{etlmon::kStrongly, {}}}", pending.strong)
+                               : fmt::format("{{{}, {}}}", pending.weak, pending.strong);
+                });
 }
 
 }  // namespace

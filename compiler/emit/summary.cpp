@@ -185,10 +185,11 @@ void print_miss_rates(Printer& out, const std::string& prefix, const plan::Plan&
     out.line(blank(prefix));
     print_table(out, prefix, rows, 2);
     out.line(blank(prefix));
-    print_sentences(out, prefix,
-                    "A miss is beyond the threshold in force when its label arrives. H is the "
-                    "number of misses that arrive while the threshold is at the end of its range. "
-                    "Before the first label the threshold is the conformal one.");
+    print_sentences(
+        out, prefix,
+        "A miss is beyond the threshold in force when its label arrives. H is the "
+        "number of misses that arrive while the threshold is held at the end of its range. "
+        "Before the first label the threshold is the conformal one.");
 }
 
 void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan& plan) {

@@ -33,7 +33,7 @@ constexpr std::uint64_t kCodePerAdaptation = 144;  // observe_P() on a Cortex-M4
 constexpr std::uint64_t kCodePerTable = 200;
 constexpr std::uint64_t kCodePerSamples = 600;
 constexpr std::uint64_t kTransitionBytes = sizeof(etlmon::Transition);
-constexpr std::uint64_t kStateBytes = sizeof(std::uint32_t) + sizeof(etlmon::Owed);
+constexpr std::uint64_t kStateBytes = sizeof(std::uint32_t) + sizeof(etlmon::Obligations);
 
 /// Costs of `combined` minima or maxima of two, and `kept` values.
 Cost values(std::uint64_t kept, std::uint64_t combined) {

@@ -71,9 +71,9 @@ std::string stream_text(const Plan& plan, const ir::Graph& graph, Slot slot) {
 }
 
 std::string obligations_text(const ir::Graph& graph, const std::vector<NodeId>& obligations) {
-    if (obligations.empty()) return "nothing owed";
-    std::string text = "owes ";
-    for (NodeId id : obligations) text += (text.size() > 5 ? ", " : "") + graph.text(id);
+    if (obligations.empty()) return "nothing pending";
+    std::string text = "pending: ";
+    for (NodeId id : obligations) text += (text.size() > 9 ? ", " : "") + graph.text(id);
     return text;
 }
 

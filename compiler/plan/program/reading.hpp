@@ -34,7 +34,7 @@ struct Straight {
 struct Table {
     std::vector<etlmon::Transition> transitions;
     std::vector<std::uint32_t> ends;  ///< per state
-    std::vector<etlmon::Owed> owed;   ///< per state
+    std::vector<etlmon::Obligations> owed;   ///< per state
     /// Streams whose low ends are the weak keys, and whose high ends are the strong keys, from
     /// index 1; index 0 is kTop.
     std::vector<Slot> weak;

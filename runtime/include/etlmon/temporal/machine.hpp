@@ -18,7 +18,7 @@ struct Transition {
 };
 
 /// The pending obligations of a state at the end of the prefix, as indices into this step's keys.
-struct Owed {
+struct Obligations {
   uint16_t weak;  ///< lowest unseen value of weak obligations; kStrongly: some obligation is strong
   uint16_t strong;  ///< highest unseen value of strong obligations; 0 is kTop: none
 };
@@ -42,16 +42,16 @@ void machine_advance(const Value* now, Value* next, uint32_t states, const Trans
 /// obligations at their lowest unseen value. upper: max over all states, with strong obligations at
 /// their highest unseen value.
 template <class Value, class End>
-auto machine_read(const Value* now, uint32_t states, const Owed* owed, const End* weak,
+auto machine_read(const Value* now, uint32_t states, const Obligations* pending, const End* weak,
                   const End* strong) noexcept {
   using Result = decltype(reading_of(*now));
   Result reading = Lattice<Result>::bottom();
   for (uint32_t q = 0; q < states; ++q) {
     const Result at = reading_of(now[q]);
-    reading.upper = max_of(reading.upper, min_of(at.upper, strong[owed[q].strong]));
-    if (owed[q].weak == kStrongly) continue;
+    reading.upper = max_of(reading.upper, min_of(at.upper, strong[pending[q].strong]));
+    if (pending[q].weak == kStrongly) continue;
     reading.rho = max_of(reading.rho, at.rho);
-    reading.lower = max_of(reading.lower, min_of(at.lower, weak[owed[q].weak]));
+    reading.lower = max_of(reading.lower, min_of(at.lower, weak[pending[q].weak]));
   }
   return reading;
 }
@@ -73,8 +73,9 @@ class Machine {
     turn_ = 1 - turn_;
   }
 
-  BasicReading<Value> read(const Owed* owed, const End* weak, const End* strong) const noexcept {
-    return machine_read(registers_[turn_], States, owed, weak, strong);
+  BasicReading<Value> read(const Obligations* pending, const End* weak,
+                           const End* strong) const noexcept {
+    return machine_read(registers_[turn_], States, pending, weak, strong);
   }
 
  private:

@@ -198,9 +198,9 @@ template <class Value, class End>
 BasicReading<Value> pending_machine(Value* registers, uint32_t states,
                                     const BasicReading<Value>* guards, uint32_t width, uint32_t n,
                                     bool settles, const Transition* transitions,
-                                    const uint32_t* ends, const Owed* owed, const End* weak,
-                                    const End* strong, BasicReading<Value>* scratch,
-                                    Value* settled_guards) noexcept {
+                                    const uint32_t* ends, const Obligations* pending,
+                                    const End* weak, const End* strong,
+                                    BasicReading<Value>* scratch, Value* settled_guards) noexcept {
   BasicReading<Value>* now = scratch;
   BasicReading<Value>* next = scratch + states;
   if (settles) {
@@ -216,7 +216,7 @@ BasicReading<Value> pending_machine(Value* registers, uint32_t states,
     now = next;
     next = other;
   }
-  return machine_read(now, states, owed, weak, strong);
+  return machine_read(now, states, pending, weak, strong);
 }
 
 /// The registers of such a machine; the rest is on the stack.
@@ -231,12 +231,13 @@ class PendingMachine {
   }
 
   BasicReading<Value> read(const BasicReading<Value> (*guards)[Width], uint32_t n, bool settles,
-                           const Transition* transitions, const uint32_t* ends, const Owed* owed,
-                           const End* weak, const End* strong) noexcept {
+                           const Transition* transitions, const uint32_t* ends,
+                           const Obligations* pending, const End* weak,
+                           const End* strong) noexcept {
     BasicReading<Value> scratch[2 * States];
     Value values[Width + States];
     return pending_machine(registers_, States, guards[0], Width, n, settles, transitions, ends,
-                           owed, weak, strong, scratch, values);
+                           pending, weak, strong, scratch, values);
   }
 
  private:
