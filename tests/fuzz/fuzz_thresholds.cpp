@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "check/guarantees/consistency.hpp"
-#include "data/arrays/npz_writer.hpp"
 #include "artifacts/embedded.hpp"
 #include "artifacts/fitted.hpp"
-#include "fuzz_target.hpp"
 #include "artifacts/thresholds.hpp"
+#include "check/guarantees/consistency.hpp"
+#include "data/arrays/npz_writer.hpp"
+#include "fuzz_target.hpp"
 
 namespace {
 

@@ -10,12 +10,12 @@
 #include <fstream>
 #include <string>
 
+#include "artifacts/embedded.hpp"
 #include "data/arrays/npz_writer.hpp"
 #include "data/frames/frames.hpp"
 #include "data/frames/protocol.hpp"
 #include "embed/encoder.hpp"
 #include "embed/worker/onnx.hpp"
-#include "artifacts/embedded.hpp"
 #include "fuzz_target.hpp"
 
 namespace {

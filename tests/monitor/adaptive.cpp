@@ -8,10 +8,10 @@
 #include <limits>
 #include <sstream>
 
+#include "artifacts/thresholds.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "loading.hpp"
 #include "random.hpp"
-#include "artifacts/thresholds.hpp"
 
 namespace etlc::tests {
 namespace {

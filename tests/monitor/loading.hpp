@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "check/model/model.hpp"
 #include "artifacts/thresholds.hpp"
+#include "check/model/model.hpp"
 
 namespace etlc::tests {
 

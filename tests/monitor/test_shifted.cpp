@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "artifacts/thresholds.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "compare.hpp"
@@ -18,7 +19,6 @@
 #include "random.hpp"
 #include "random_spec.hpp"
 #include "random_trace.hpp"
-#include "artifacts/thresholds.hpp"
 
 namespace {
 
