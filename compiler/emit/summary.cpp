@@ -205,10 +205,10 @@ void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan&
     if (of_episodes)
         print_sentences(
             out, prefix,
-            "Probabilities are over the demonstrations and the new episode together, which are "
-            "exchangeable, per episode as recorded. coverage: 5 % and 95 % quantile of Beta(k, n + "
-            "1 - k), of a new episode given these demonstrations, more where scores tie. The bound "
-            "on successes excludes steps with missing samples.");
+            "Probabilities are over the demonstrations and the new episode together, which have to "
+            "be exchangeable, per episode as recorded. coverage: 5 % and 95 % quantile of Beta(k, "
+            "n + 1 - k), of a new episode given these demonstrations, more where scores tie. The "
+            "bound on successes excludes steps with missing samples.");
 }
 
 /// Prints the hashes that the class has as constants.

@@ -30,12 +30,11 @@ struct Update {
     std::vector<Product> products;
 };
 
-/// Updates, in order. Those of `first` read only old values, except for each other's results, and
-/// are stored last; each of `in_place` is stored at once, because no later one reads the old value.
-///
-/// Where every way into S followed by the guard h is also a way into T, those ways become one:
-/// min(S after its update, h). So F (a && F b) is S = max(S, a); T = max(T, min(S, b)): a chain
-/// where the transitions alone give a triangle.
+/// Updates, in order. Those of `first` read old values and each other's results, and are stored
+/// last. Those of `in_place` are stored at once, since no later update reads the old value. Where
+/// every way into S followed by the guard h is also a way into T, those ways are one: min(S after
+/// its update, h). So F (a && F b) is S = max(S, a); T = max(T, min(S, b)): a chain where the
+/// transitions alone give a triangle.
 struct Updates {
     std::vector<Update> first;
     std::vector<Update> in_place;
@@ -59,18 +58,22 @@ LiteralSlots unite(const LiteralSlots& a, const LiteralSlots& b) {
     return result;
 }
 
-/// Returns an order that puts `first` before `second` for each pair, without the states on circles
-/// and those behind them.
+/// Returns an order that puts `first` before `second` for each pair, without states on a cycle or
+/// after one. Of several that may come next, the last comes first, so a shift runs from its end.
 std::vector<std::uint32_t> sorted(std::size_t count,
                                   const std::set<std::pair<std::uint32_t, std::uint32_t>>& before) {
     std::vector<std::size_t> waiting_for(count, 0);
     for (const auto& [first, second] : before) ++waiting_for[second];
-    std::vector<std::uint32_t> order;
+    std::set<std::uint32_t> ready;
     for (std::uint32_t i = 0; i < count; ++i)
-        if (waiting_for[i] == 0) order.push_back(i);
-    for (std::size_t i = 0; i < order.size(); ++i)
+        if (waiting_for[i] == 0) ready.insert(i);
+    std::vector<std::uint32_t> order;
+    while (!ready.empty()) {
+        order.push_back(*ready.rbegin());
+        ready.erase(order.back());
         for (const auto& [first, second] : before)
-            if (first == order[i] && --waiting_for[second] == 0) order.push_back(second);
+            if (first == order.back() && --waiting_for[second] == 0) ready.insert(second);
+    }
     return order;
 }
 
@@ -129,8 +132,8 @@ private:
         updated_[target].push_back(way);
     }
 
-    /// As few updates in `first` as it takes: one more of each circle of updates that read each
-    /// other's old values.
+    /// Returns the updates in order. Moves one state after the other to `first` until no cycle of
+    /// updates reads each other's old values.
     Updates program() const {
         std::set<std::uint32_t> first;
         std::vector<std::uint32_t> order = sorted(ways_.size(), order_without(first));
@@ -149,8 +152,8 @@ private:
         return result;
     }
 
-    /// Returns which update comes before which: one whose result another reads, and one that reads
-    /// an old value before it is written.
+    /// Returns pairs of updates, the first before the second: a result before its reader, a reader
+    /// of an old value before its writer.
     Pairs order_without(const std::set<std::uint32_t>& first) const {
         Pairs result = fresh_;
         for (std::uint32_t target = 0; target < ways_.size(); ++target)
@@ -161,7 +164,7 @@ private:
         return result;
     }
 
-    /// Adds the state and those whose new values its update reads.
+    /// Adds the state, and the states whose new values its update reads.
     void add_with_read(std::uint32_t state, std::set<std::uint32_t>& first) const {
         first.insert(state);
         for (const auto& [read, reader] : fresh_)
@@ -231,7 +234,7 @@ private:
     void keep_registers() {
         for (std::size_t q = 0; q < machine_.states.size(); ++q) {
             if (machine_.states[q].always_true) continue;
-            // In G f the whole formula stays pending whatever else is.
+            // In G f the whole formula is pending in every state.
             const std::vector<NodeId>& whole = machine_.automaton.states[0];
             std::vector<NodeId> pending = machine_.automaton.states[q];
             const bool also = q != 0 && contains(pending, whole);
