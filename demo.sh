@@ -22,7 +22,7 @@ show() { printf '%s$ %s%s\n' "$bold" "$*" "$plain"; "$@"; }
 title "A monitor: Example 2 of the paper"
 show cat examples/paper_example/example.etl
 echo
-echo "etlc makes one C++ class of it, generated/example.hpp, which needs nothing but runtime/include:"
+echo "etlc makes one C++ class of it, generated/example.hpp, which needs only runtime/include:"
 show "${CXX:-c++}" -std=c++17 -O2 -I runtime/include -I generated examples/paper_example/main.cpp \
     -o "$out/example"
 show "$out/example"

@@ -1,8 +1,8 @@
 // Compares searching a large target set with measuring all of it: nanoseconds per step of both, in
 // turns, and their ratio. Usage: bench_search [--rounds N] [--largest] (--largest: also 100 000
 // rows of 768 elements, 307 MB). The rows are clouds of 50 around points along paths, like recorded
-// demonstrations; the embedding is drawn anew at every step (incoherent), or walks, with steps that
-// are a fraction of the distance between neighbouring rows.
+// demonstrations; each step draws a new embedding (incoherent), or the embedding walks, with steps
+// that are a fraction of the distance between neighbouring rows.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -46,7 +46,7 @@ std::unique_ptr<float, Free> make_rows(bool clouds) {
 }
 
 /// Embeddings of this many steps. `pace`: that of a walk around a middle row, in units of the rows'
-/// noise; 0: drawn anew each time.
+/// noise; 0: drawn again each time.
 template <std::uint32_t K, std::uint32_t D>
 std::vector<float> make_trace(const float* rows, int steps, float pace) {
     std::mt19937 random(7);
