@@ -160,7 +160,8 @@ while read -r name flags; do
   # shellcheck disable=SC2086
   "$gxx" -std=c++17 $flags -DANSWERS="answers_$name" -c standalone/unit.cpp \
     -o "standalone/$name.o" || fail "standalone $name does not compile"
-  nm --defined-only "standalone/$name.o" | awk '$2 ~ /^[WwVuv]$/ && $3 ~ /etlmon|flags/ { print $3 }'
+  nm --defined-only "standalone/$name.o" |
+    awk '$2 ~ /^[WwVuv]$/ && $3 ~ /etlmon|flags/ { print $3 }'
 done >standalone.txt <<'END'
 base -O0
 fast -O0 -ffast-math

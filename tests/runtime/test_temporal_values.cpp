@@ -135,8 +135,8 @@ TEST(TemporalValue, ThresholdsOfZero) {
                                    etlmon::at_least(delta, unseen, etlmon::kTrue)));
         ASSERT_TRUE(temporal::same(etlmon::at_most(delta, 0.0f, etlmon::kTrue),
                                    etlmon::at_most(delta, unseen, etlmon::kTrue)));
-        ASSERT_TRUE(
-            temporal::same(etlmon::at_least(delta, -0.0f, etlmon::kTrue), etlmon::between(delta, delta)));
+        ASSERT_TRUE(temporal::same(etlmon::at_least(delta, -0.0f, etlmon::kTrue),
+                                   etlmon::between(delta, delta)));
     }
 }
 

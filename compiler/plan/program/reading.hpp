@@ -34,8 +34,8 @@ struct Straight {
 /// A weighted automaton over (max, min), as the constant tables of etlmon/temporal/machine.hpp.
 struct Table {
     std::vector<etlmon::Transition> transitions;
-    std::vector<std::uint32_t> ends;  ///< per state
-    std::vector<etlmon::Obligations> owed;   ///< per state
+    std::vector<std::uint32_t> ends;        ///< per state
+    std::vector<etlmon::Obligations> owed;  ///< per state
     /// Streams whose low ends are the weak keys, and whose high ends are the strong keys, from
     /// index 1 on; index 0 is kTop.
     std::vector<Slot> weak;
