@@ -72,7 +72,7 @@ inline constexpr size_t goal = 32;  ///< 2 rows of 2 elements
 /// The layout of a block of parameters. kShape is a hash of the class without its numbers; kEncoder
 /// is a hash of the encoder, 0 if the spec has none. A block must have both.
 struct Layout {
-  static constexpr uint64_t kShape = 0xa320ccd413c04109u;
+  static constexpr uint64_t kShape = 0x9374b404b234bd43u;
   static constexpr uint64_t kEncoder = 0x0000000000000000u;
   static constexpr size_t kSize = 192;  ///< in bytes
   /// Offset, count, row length and rule of each part.
@@ -105,7 +105,9 @@ class Monitor {
   /// sets some.
   constexpr Monitor() noexcept : numbers_(nullptr) { reset(); }
   /// Uses the parameters if they are ready.
-  constexpr explicit Monitor(const Params& params) noexcept : numbers_(params.numbers()) { reset(); }
+  constexpr explicit Monitor(const Params& params) noexcept : numbers_(params.numbers()) {
+    reset();
+  }
   /// Returns whether this monitor has parameters.
   bool ready() const noexcept { return numbers_ != nullptr; }
   /// Returns the hashes of what the parameters were made from.

@@ -258,9 +258,8 @@ private:
 
     /// Returns the name of a part of a monitor's formula: the words of the part if they are few.
     std::string part_name(std::uint32_t r) const {
-        const std::string words = identifier(graph_.short_text(plan_.readings[r].node), "");
-        if (!words.empty()) return words;
-        return monitor_of_[r] == nullptr ? "part" : monitor_of_[r]->name + "_part";
+        return identifier(graph_.short_text(plan_.readings[r].node),
+                          monitor_of_[r] == nullptr ? "part" : monitor_of_[r]->name + "_part");
     }
 
     /// Returns, per reading, the first monitor that contains it. Operands come before the readings
@@ -288,7 +287,10 @@ private:
             for (const std::string& suffix : reading.straight.locals)
                 names.locals.push_back(local(judge_, name + suffix));
         }
-        if (plan::table_of(reading) != nullptr) name_table(name, names);
+        if (plan::table_of(reading) == nullptr) return;
+        names.guards = local(judge_, name + "_guards");
+        names.weak = local(judge_, name + "_weak");
+        names.strong = local(judge_, name + "_strong");
     }
 
     /// Names registers. Those with the same suffix are an array.
@@ -305,12 +307,6 @@ private:
                 if (indices.size() > 1) names.elements[indices[n]] = n;
             }
         }
-    }
-
-    void name_table(const std::string& name, Names::OfReading& names) {
-        names.guards = local(judge_, name + "_guards");
-        names.weak = local(judge_, name + "_weak");
-        names.strong = local(judge_, name + "_strong");
     }
 
     void name_pending(const plan::Pending& pending, const std::string& name,

@@ -153,9 +153,10 @@ void print_retarget_interface(Printer& out, const Context& context) {
               "retarget() sets some.");
     out.line("constexpr Monitor() noexcept : numbers_(nullptr) { reset(); }");
     print_doc(out, "Uses the parameters if they are ready.");
-    out.line(
-        "constexpr explicit Monitor(const Params& params) noexcept : numbers_(params.numbers()) { "
-        "reset(); }");
+    out.open(
+        "constexpr explicit Monitor(const Params& params) noexcept : numbers_(params.numbers()) {");
+    out.line("reset();");
+    out.close();
     print_doc(out, "Returns whether this monitor has parameters.");
     out.line("bool ready() const noexcept { return numbers_ != nullptr; }");
     print_doc(out, "Returns the hashes of what the parameters were made from.");

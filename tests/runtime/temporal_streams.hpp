@@ -36,6 +36,12 @@ struct etlmon::Lattice<temporal::Bits> {
     static constexpr temporal::Bits top() noexcept { return {~uint32_t{0}}; }
 };
 
+template <>
+struct etlmon::Lattice<float> {
+    static float bottom() noexcept { return float_of(kBottom); }
+    static float top() noexcept { return float_of(kTop); }
+};
+
 namespace temporal {
 
 using etlmon::Key;

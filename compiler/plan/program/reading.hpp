@@ -33,8 +33,8 @@ struct Straight {
 /// A weighted automaton over (max, min), as constant tables of etlmon/temporal/machine.hpp.
 struct Table {
     std::vector<etlmon::Transition> transitions;
-    std::vector<std::uint32_t> ends;  ///< per state
-    std::vector<etlmon::Obligations> owed;   ///< per state
+    std::vector<std::uint32_t> ends;        ///< per state
+    std::vector<etlmon::Obligations> owed;  ///< per state
     /// Streams whose low ends are the weak keys, and whose high ends are the strong keys, from
     /// index 1; index 0 is kTop.
     std::vector<Slot> weak;
