@@ -68,8 +68,8 @@ for recorder in 0,0,1 4,2,3; do
 done
 refuses "--format: found 'json', expected table, csv, trace or spec" \
     incident t.csv --spec t.etl --format json
-refuses "--explain follows robustness to the sample that it comes from, and --values boolean has no \
-robustness: leave out one of the two" t.etl -o - --explain --values boolean
+refuses "--explain follows robustness to the sample that it comes from, and --values boolean has \
+no robustness: leave out one of the two" t.etl -o - --explain --values boolean
 "$etlc" t.etl --values boolean -o boolean.hpp 2>err.txt || fail "$(cat err.txt)"
 "$etlc" t.etl --values robustness -o robustness.hpp 2>err.txt || fail "$(cat err.txt)"
 ! cmp -s boolean.hpp robustness.hpp || fail "--values makes no difference"
