@@ -37,7 +37,7 @@ TEST(ParquetTable, GivesCells) {
     const auto table = Table::open(kFile, {"action", "absent", "frame_index"}, "frame_index", 1);
     ASSERT_TRUE(table) << table.failure().message;
     EXPECT_TRUE((*table)->columns()[0].is_list);
-    EXPECT_FALSE((*table)->columns()[1].is_there);
+    EXPECT_FALSE((*table)->columns()[1].exists);
     std::vector<Table::Cell> cells;
     ASSERT_TRUE(*(*table)->next(cells));
     EXPECT_EQ(cells[0].numbers, (std::vector<double>{1, 0.5}));

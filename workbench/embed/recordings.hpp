@@ -24,7 +24,7 @@ struct Array {
     bool is_vector = false;     ///< shape steps x width, else one number a step
 };
 
-/// What to look for.
+/// The recordings to look for.
 struct Search {
     std::vector<std::string> arguments;
     std::string

@@ -47,8 +47,7 @@ etlc_status etlc_steps(etlc_session session, uint64_t* steps) {
 etlc_status etlc_position(etlc_session session, uint32_t monitor, uint64_t* position) {
     return with_session(session, [&](Session& opened) -> etlc_status {
         if (position == nullptr) return refuse_null("position");
-        if (const etlc_status status = check_monitor(opened, monitor); status != ETLC_OK)
-            return status;
+        if (const etlc_status failed = check_monitor(opened, monitor)) return failed;
         if (!opened.verdict(monitor).decided()) return refuse_undecided(opened, monitor);
         *position = opened.evaluator().position(monitor);
         return ETLC_OK;
@@ -96,8 +95,7 @@ etlc_status etlc_explain(etlc_session session, uint32_t monitor, uint32_t format
                          const char** text) {
     return with_session(session, [&](Session& opened) -> etlc_status {
         if (text == nullptr) return refuse_null("text");
-        if (const etlc_status status = check_monitor(opened, monitor); status != ETLC_OK)
-            return status;
+        if (const etlc_status failed = check_monitor(opened, monitor)) return failed;
         if (format > ETLC_JSON)
             return refuse(ETLC_WRONG_VALUE, "format is {}, expected ETLC_TEXT or ETLC_JSON",
                           format);

@@ -50,8 +50,7 @@ extern "C" {
 
 etlc_status etlc_describe(etlc_session session, etlc_description* description) {
     return with_session(session, [&](Session& opened) -> etlc_status {
-        if (const etlc_status status = check_struct(description, "description"); status != ETLC_OK)
-            return status;
+        if (const etlc_status failed = check_struct(description, "description")) return failed;
         const check::Model& model = opened.model();
         const check::Fingerprint origin = check::fingerprint(model);
         etlc_description& out = *description;
@@ -75,8 +74,7 @@ etlc_status etlc_describe(etlc_session session, etlc_description* description) {
 
 etlc_status etlc_describe_input(etlc_session session, uint32_t input, etlc_input* description) {
     return with_session(session, [&](Session& opened) -> etlc_status {
-        if (const etlc_status status = check_struct(description, "description"); status != ETLC_OK)
-            return status;
+        if (const etlc_status failed = check_struct(description, "description")) return failed;
         const std::vector<check::Input>& inputs = opened.model().inputs;
         if (input >= inputs.size()) return refuse_index("input", input, inputs.size());
         const check::Input& of = inputs[input];
@@ -97,8 +95,7 @@ etlc_status etlc_describe_input(etlc_session session, uint32_t input, etlc_input
 etlc_status etlc_describe_monitor(etlc_session session, uint32_t monitor,
                                   etlc_monitor* description) {
     return with_session(session, [&](Session& opened) -> etlc_status {
-        if (const etlc_status status = check_struct(description, "description"); status != ETLC_OK)
-            return status;
+        if (const etlc_status failed = check_struct(description, "description")) return failed;
         const std::vector<plan::Monitor>& monitors = opened.plan().monitors;
         if (monitor >= monitors.size()) return refuse_index("monitor", monitor, monitors.size());
         const plan::Monitor& of = monitors[monitor];
@@ -115,8 +112,7 @@ etlc_status etlc_describe_monitor(etlc_session session, uint32_t monitor,
 etlc_status etlc_describe_predicate(etlc_session session, uint32_t predicate,
                                     etlc_predicate* description) {
     return with_session(session, [&](Session& opened) -> etlc_status {
-        if (const etlc_status status = check_struct(description, "description"); status != ETLC_OK)
-            return status;
+        if (const etlc_status failed = check_struct(description, "description")) return failed;
         const std::vector<check::Predicate>& predicates = opened.model().predicates;
         if (predicate >= predicates.size())
             return refuse_index("predicate", predicate, predicates.size());

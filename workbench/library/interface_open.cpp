@@ -80,8 +80,8 @@ etlc_status take(const etlc_options& options, Wish& wish) {
         return refuse_null("options.path, and options.text with it,");
     wish.check.thresholds_path = text_of(options.thresholds);
     wish.check.fitted_path = text_of(options.fitted);
-    if (const etlc_status status = take_settings(options, wish); status != ETLC_OK) return status;
-    if (const etlc_status status = take_recorder(options, wish); status != ETLC_OK) return status;
+    if (const etlc_status failed = take_settings(options, wish)) return failed;
+    if (const etlc_status failed = take_recorder(options, wish)) return failed;
     return take_choices(options, wish);
 }
 
@@ -120,9 +120,8 @@ etlc_status take_version(const etlc_options* options, etlc_options& own) {
                       "options.api_version is {}, this library is of version {}: begin with "
                       "ETLC_OPTIONS, from the etlc.h of this library",
                       version, ETLC_API_VERSION);
-    if (const etlc_status status = check_size(options->struct_size, kSizes[version], "options");
-        status != ETLC_OK)
-        return status;
+    if (const etlc_status failed = check_size(options->struct_size, kSizes[version], "options"))
+        return failed;
     std::memcpy(&own, options, kSizes[version]);
     return ETLC_OK;
 }
@@ -151,11 +150,11 @@ const char* etlc_version(void) {
 etlc_status etlc_open(const etlc_options* options, etlc_session* session) {
     return guarded([&]() -> etlc_status {
         etlc_options own = ETLC_OPTIONS;
-        if (const etlc_status status = take_version(options, own); status != ETLC_OK) return status;
+        if (const etlc_status failed = take_version(options, own)) return failed;
         if (session == nullptr) return refuse_null("session");
         *session = 0;
         Wish wish;
-        if (const etlc_status status = take(own, wish); status != ETLC_OK) return status;
+        if (const etlc_status failed = take(own, wish)) return failed;
         source::File file;
         diag::Sink sink;
         auto opened = open(own, wish, file, sink);

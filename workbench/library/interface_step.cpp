@@ -104,17 +104,13 @@ void give(const std::vector<etlmon::Verdict>& from, etlc_verdict* to) {
 etlc_status check_column(const check::Input& input, const etlc_column& column,
                          std::uint64_t steps) {
     if (column.data == nullptr) return ETLC_OK;
-    if (const etlc_status status = check_elements(input, column.type, column.count);
-        status != ETLC_OK)
-        return status;
-    if (const etlc_status status = check_aligned(input, column.data, column.stride);
-        status != ETLC_OK)
-        return status;
+    if (const etlc_status failed = check_elements(input, column.type, column.count)) return failed;
+    if (const etlc_status failed = check_aligned(input, column.data, column.stride)) return failed;
     if (input.type != check::InputType::boolean) return ETLC_OK;
     const auto* flag = static_cast<const std::uint8_t*>(column.data);
     for (std::uint64_t step = 0; step < steps; ++step, flag += column.stride) {
         if (column.present != nullptr && column.present[step] == 0) continue;
-        if (const etlc_status status = check_bool(input, flag); status != ETLC_OK) return status;
+        if (const etlc_status failed = check_bool(input, flag)) return failed;
     }
     return ETLC_OK;
 }
@@ -138,26 +134,20 @@ extern "C" {
 etlc_status etlc_step(etlc_session session, const etlc_sample* samples, size_t sample_count,
                       etlc_verdict* verdicts, size_t verdict_count) {
     return with_session(session, [&](Session& opened) -> etlc_status {
-        if (const etlc_status status = check_open(opened); status != ETLC_OK) return status;
-        if (const etlc_status status = check_count(opened, samples, sample_count, "samples");
-            status != ETLC_OK)
-            return status;
-        if (const etlc_status status = check_room(opened, verdicts, verdict_count, 1);
-            status != ETLC_OK)
-            return status;
+        if (const etlc_status failed = check_open(opened)) return failed;
+        if (const etlc_status failed = check_count(opened, samples, sample_count, "samples"))
+            return failed;
+        if (const etlc_status failed = check_room(opened, verdicts, verdict_count, 1))
+            return failed;
         const std::vector<check::Input>& inputs = opened.model().inputs;
         for (std::size_t i = 0; i < inputs.size(); ++i) {
             if (samples[i].data == nullptr) continue;
-            if (const etlc_status status =
-                    check_elements(inputs[i], samples[i].type, samples[i].count);
-                status != ETLC_OK)
-                return status;
-            if (const etlc_status status = check_aligned(inputs[i], samples[i].data, 0);
-                status != ETLC_OK)
-                return status;
-            if (const etlc_status status = check_bool(inputs[i], samples[i].data);
-                status != ETLC_OK)
-                return status;
+            if (const etlc_status failed =
+                    check_elements(inputs[i], samples[i].type, samples[i].count))
+                return failed;
+            if (const etlc_status failed = check_aligned(inputs[i], samples[i].data, 0))
+                return failed;
+            if (const etlc_status failed = check_bool(inputs[i], samples[i].data)) return failed;
         }
         for (Index i = 0; i < inputs.size(); ++i)
             if (opened.is_used(i)) take(inputs[i], samples[i].data, opened.sample(i));
@@ -169,18 +159,15 @@ etlc_status etlc_step(etlc_session session, const etlc_sample* samples, size_t s
 etlc_status etlc_run(etlc_session session, const etlc_column* columns, size_t column_count,
                      uint64_t steps, etlc_verdict* verdicts, size_t verdict_count) {
     return with_session(session, [&](Session& opened) -> etlc_status {
-        if (const etlc_status status = check_open(opened); status != ETLC_OK) return status;
-        if (const etlc_status status = check_count(opened, columns, column_count, "columns");
-            status != ETLC_OK)
-            return status;
-        if (const etlc_status status = check_room(opened, verdicts, verdict_count, steps);
-            status != ETLC_OK)
-            return status;
+        if (const etlc_status failed = check_open(opened)) return failed;
+        if (const etlc_status failed = check_count(opened, columns, column_count, "columns"))
+            return failed;
+        if (const etlc_status failed = check_room(opened, verdicts, verdict_count, steps))
+            return failed;
         const std::vector<check::Input>& inputs = opened.model().inputs;
         for (std::size_t i = 0; i < inputs.size(); ++i)
-            if (const etlc_status status = check_column(inputs[i], columns[i], steps);
-                status != ETLC_OK)
-                return status;
+            if (const etlc_status failed = check_column(inputs[i], columns[i], steps))
+                return failed;
         for (std::uint64_t step = 0; step < steps; ++step) {
             for (Index i = 0; i < inputs.size(); ++i)
                 if (opened.is_used(i)) take(inputs[i], at(columns[i], step), opened.sample(i));
@@ -193,9 +180,8 @@ etlc_status etlc_run(etlc_session session, const etlc_column* columns, size_t co
 
 etlc_status etlc_finish(etlc_session session, etlc_verdict* verdicts, size_t verdict_count) {
     return with_session(session, [&](Session& opened) -> etlc_status {
-        if (const etlc_status status = check_room(opened, verdicts, verdict_count, 1);
-            status != ETLC_OK)
-            return status;
+        if (const etlc_status failed = check_room(opened, verdicts, verdict_count, 1))
+            return failed;
         give(opened.finish(), verdicts);
         return ETLC_OK;
     });

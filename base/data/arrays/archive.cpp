@@ -169,7 +169,7 @@ Failure Archive::missing(const std::string& key) const {
     if (key.ends_with(']') && std::find(keys_.begin(), keys_.end(), whole) != keys_.end())
         return {Code::no_such_array,
                 fmt::format("has no array {}, but {}, of which no single elements are taken: save "
-                            "the element as an array of its own",
+                            "the element as a separate array",
                             in_quotes(key), in_quotes(whole))};
     std::string message =
         fmt::format("has no array {}; it holds {}", in_quotes(key), listed(keys_));

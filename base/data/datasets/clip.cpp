@@ -91,12 +91,12 @@ std::optional<std::string> refused(const std::string& camera,
     const Table::Column& path = columns[1];
     const std::string expected =
         fmt::format("expected {} as a struct of bytes and path", in_quotes(camera));
-    if (!bytes.is_there)
+    if (!bytes.exists)
         return fmt::format("has no column {}, {}", in_quotes(camera + ".bytes"), expected);
     if (!bytes.is_text || bytes.is_list)
         return fmt::format("column {} does not hold bytes, {}", in_quotes(camera + ".bytes"),
                            expected);
-    if (path.is_there && (!path.is_text || path.is_list))
+    if (path.exists && (!path.is_text || path.is_list))
         return fmt::format("column {} does not hold text, {}", in_quotes(camera + ".path"),
                            expected);
     return std::nullopt;

@@ -83,7 +83,7 @@ public:
 private:
     friend class DatasetReader;
 
-    /// What the file of rows holds of an episode.
+    /// The rows of an episode in its file.
     struct Found {
         std::uint64_t rows = 0;
         std::string lack;

@@ -127,7 +127,7 @@ diag::Result<std::vector<std::string>> read_table(const std::string& path) {
     auto table = Table::open(path, {"task", "__index_level_0__"});
     if (!table) return table.failure();
     const auto& columns = (*table)->columns();
-    const std::size_t place = columns[0].is_there ? 0 : 1;
+    const std::size_t place = columns[0].exists ? 0 : 1;
     if (!columns[place].is_text || columns[place].is_list)
         return Failure{Code::unreadable_dataset, "has no column 'task' of text"};
     std::vector<std::string> tasks;

@@ -36,7 +36,7 @@ std::optional<diag::Failure> for_each_json_line(std::string_view text, const Vis
     return std::nullopt;
 }
 
-/// What the fields of a template stand for.
+/// The values of the fields of a template.
 struct PathNames {
     std::map<std::string, std::uint64_t> numbers;
     std::map<std::string, std::string> words;

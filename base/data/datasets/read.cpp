@@ -180,7 +180,7 @@ private:
         for (std::size_t i = 0; i < names.size(); ++i) {
             const Table::Column& column = (*table)->columns()[i];
             if (names[i] == "tasks") continue;
-            if (!column.is_there || column.is_text || column.is_list)
+            if (!column.exists || column.is_text || column.is_list)
                 return Failure{Code::unreadable_dataset,
                                fmt::format("has no column {} of numbers", in_quotes(names[i]))};
         }

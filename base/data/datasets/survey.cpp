@@ -26,12 +26,12 @@ std::string fault_of_row(std::uint64_t row, const std::vector<Table::Column>& co
     const Table::Cell& frame = cells[1];
     const Table::Cell& time = cells[2];
     const auto place = static_cast<double>(row);
-    if (columns[1].is_there && (frame.is_null || frame.numbers[0] != place))
+    if (columns[1].exists && (frame.is_null || frame.numbers[0] != place))
         return fmt::format("row {} has the frame_index {}", row,
                            frame.is_null ? "null" : fmt::format("{}", frame.numbers[0]));
     const double time_of_row =
         time.is_null ? std::numeric_limits<double>::quiet_NaN() : time.numbers[0];
-    if (columns[2].is_there && !(std::abs(time_of_row * fps - place) <= kTolerance))
+    if (columns[2].exists && !(std::abs(time_of_row * fps - place) <= kTolerance))
         return fmt::format("row {} is at {} s, expected it at {:.6g} s", row,
                            time.is_null ? "null" : fmt::format("{:.6g}", time_of_row), place / fps);
     return "";
@@ -49,7 +49,7 @@ void Dataset::survey(const std::string& rows) {
     auto table = Table::open(path_of(rows), {"episode_index", "frame_index", "timestamp"});
     if (!table) return give_up(table.failure().message);
     const auto& columns = (*table)->columns();
-    if (!columns[0].is_there) return give_up("has no column 'episode_index'");
+    if (!columns[0].exists) return give_up("has no column 'episode_index'");
     for (const Table::Column& column : columns)
         if (column.is_text || column.is_list)
             return give_up(
@@ -112,13 +112,13 @@ std::string in_words(const VideoPart& part, double fps) {
 /// Says why a part does not begin where the previous one ends; empty: it does. `before`: null for
 /// the first part; `away`: frames between its begin and the end of the rows of all earlier parts.
 std::string why_misplaced(const VideoPart* before, const VideoPart& part, double away, double fps) {
-    const bool is_there = std::abs(away) < kFrame;
+    const bool exists = std::abs(away) < kFrame;
     if (before == nullptr)
-        return is_there ? ""
-                        : fmt::format("{} is its first, expected one that begins at 0 s",
-                                      in_words(part, fps));
+        return exists ? ""
+                      : fmt::format("{} is its first, expected one that begins at 0 s",
+                                    in_words(part, fps));
     const std::string both = fmt::format("{} and {}", in_words(*before, fps), in_words(part, fps));
-    if (!is_there) return both + " leave a hole between them";
+    if (!exists) return both + " leave a hole between them";
     if (before->episode->index > part.episode->index)
         return both + " are not in the order of their numbers";
     return "";

@@ -103,7 +103,7 @@ std::optional<Failure> refused(const Dataset& set, const Channel& channel,
                                        in_quotes(wanted.array))};
         if (!is_picture) columns.push_back(feature.name);
     }
-    if (!column.is_there) {
+    if (!column.exists) {
         return Failure{Code::no_such_channel,
                        fmt::format("no column {}{}; there are {}", in_quotes(wanted.array),
                                    suggestion(wanted.array, columns), listed(columns))};
@@ -176,7 +176,7 @@ diag::Result<std::unique_ptr<Trace>> open_dataset_trace(const std::string& path,
     std::vector<bool> there;
     for (std::size_t c = 0; c < channels.size(); ++c) {
         const Table::Column& column = (*table)->columns()[c];
-        there.push_back(column.is_there || !channels[c].optional);
+        there.push_back(column.exists || !channels[c].optional);
         if (!there[c]) continue;
         if (auto failure = refused(*found->set, channels[c], wanted[c], column)) return *failure;
     }

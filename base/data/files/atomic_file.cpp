@@ -163,6 +163,21 @@ diag::Result<AtomicFile> AtomicFile::create(const std::string& path, diag::Code 
     return file;
 }
 
+/// Calls `create(name)` with temporary names until it succeeds; false, with errno, where it cannot.
+template <class Create>
+bool AtomicFile::take_temporary_name(const Create& create) {
+    for (unsigned i = 0; i < kMostNames; ++i) {
+        std::string name = temporary_name(i);
+        if (create(name.c_str())) {
+            state_ = State::temporary;
+            temporary_ = std::move(name);
+            return true;
+        }
+        if (errno != EEXIST) return false;
+    }
+    return false;
+}
+
 bool AtomicFile::open_temporary(mode_t mode) {
     const auto open = [&](const char* name, int flags) {
         return uninterrupted(
@@ -172,18 +187,12 @@ bool AtomicFile::open_temporary(mode_t mode) {
     if (::access("/proc/self/fd", X_OK) == 0) file_ = Descriptor(open(".", O_TMPFILE));
     state_ = State::nameless;
     if (file_) return true;
-    for (unsigned i = 0; i < kMostNames; ++i) {
-        std::string name = temporary_name(i);
-        file_ = Descriptor(open(name.c_str(), O_CREAT | O_EXCL));
-        if (file_) {
-            hold(*file_);
-            state_ = State::temporary;
-            temporary_ = std::move(name);
-            return true;
-        }
-        if (errno != EEXIST) return false;
-    }
-    return false;
+    const bool made = take_temporary_name([&](const char* name) {
+        file_ = Descriptor(open(name, O_CREAT | O_EXCL));
+        return static_cast<bool>(file_);
+    });
+    if (made) hold(*file_);
+    return made;
 }
 
 void AtomicFile::copy_permissions(const struct stat& of) {
@@ -216,27 +225,18 @@ bool AtomicFile::link_as(const char* name) {
     return ::linkat(AT_FDCWD, nameless.c_str(), *folder_, name, AT_SYMLINK_FOLLOW) == 0;
 }
 
-bool AtomicFile::name_temporarily() {
-    hold(*file_);
-    for (unsigned i = 0; i < kMostNames; ++i) {
-        std::string name = temporary_name(i);
-        if (link_as(name.c_str())) {
-            state_ = State::temporary;
-            temporary_ = std::move(name);
-            return true;
-        }
-        if (errno != EEXIST) return false;
-    }
-    return false;
-}
-
 std::optional<diag::Failure> AtomicFile::place() {
     if (state_ == State::direct) return {};
     if (state_ == State::nameless && link_as(name_.c_str())) {
         state_ = State::made;
         return {};
     }
-    if (state_ == State::nameless && (errno != EEXIST || !name_temporarily())) return failed(errno);
+    if (state_ == State::nameless) {
+        if (errno != EEXIST) return failed(errno);
+        hold(*file_);
+        if (!take_temporary_name([&](const char* name) { return link_as(name); }))
+            return failed(errno);
+    }
     struct stat status {};
     const bool exists = ::fstatat(*folder_, name_.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0;
     if (exists && S_ISDIR(status.st_mode))

@@ -56,7 +56,8 @@ private:
     /// Puts the file under its name; the old file survives until keep().
     std::optional<diag::Failure> place();
     bool link_as(const char* name);
-    bool name_temporarily();
+    template <class Create>
+    bool take_temporary_name(const Create& create);
     void keep();
     void take_back();
 

@@ -29,7 +29,7 @@ Failure stopped(Child& child, Code code) {
                               child.ending())};
 }
 
-/// What a process decodes: the code of its failures, and the episodes that a video must hold.
+/// The code of decoding failures, and the episodes that a video must hold.
 struct Decoded {
     Code code;
     std::string total_of;

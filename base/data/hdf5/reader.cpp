@@ -166,7 +166,7 @@ void open_channel(hid_t group, Channel& channel) {
         if (channel.name.ends_with("]") && !whole.empty() && open_object(group, whole) >= 0)
             fail(Cause::channel, "no dataset " + channel.quoted() + ", but '" + whole +
                                      "', of which no single elements are taken: save the element "
-                                     "as a dataset of its own");
+                                     "as a separate dataset");
         fail(Cause::channel, "no dataset " + channel.quoted() + listed(group));
     }
     if (H5Iget_type(channel.dataset) != H5I_DATASET)

@@ -268,8 +268,8 @@ bool ChunkReader::read(Cell* cell) {
     if (repetition_ != 0) refuse("has a row that begins in the middle of a list");
     for (;;) {
         has_entry_ = false;
-        const bool is_there = definition_ == column_.most_defined;
-        if (is_there) {
+        const bool exists = definition_ == column_.most_defined;
+        if (exists) {
             add_value(cell);
         } else if (column_.is_list && definition_ >= column_.element_level) {
             if (cell != nullptr && column_.is_text()) cell->texts.emplace_back();

@@ -26,10 +26,10 @@ std::optional<std::vector<Table::Column>> parse_shapes(std::string_view text, st
         Table::Column column;
         column.is_list = line.ends_with(" list");
         if (column.is_list) line.remove_suffix(5);
-        column.is_there = line != "absent";
+        column.exists = line != "absent";
         column.is_text = line == "text";
         column.is_bool = line == "bool";
-        if (column.is_there && !column.is_text && !column.is_bool && line != "number") return {};
+        if (column.exists && !column.is_text && !column.is_bool && line != "number") return {};
         columns.push_back(column);
     }
     if (columns.size() != count) return {};
@@ -66,7 +66,7 @@ bool Table::read_cell(const Column& column, Cell& cell) {
     cell.is_null = true;
     cell.numbers.clear();
     cell.texts.clear();
-    if (!column.is_there) return true;
+    if (!column.exists) return true;
     std::uint32_t count = 0;
     if (!take(count)) return false;
     cell.is_null = count == records::kNullCell;

@@ -18,7 +18,7 @@ class Table {
 public:
     /// A requested column.
     struct Column {
-        bool is_there = false;
+        bool exists = false;
         bool is_text = false;
         bool is_bool = false;
         bool is_list = false;

@@ -32,7 +32,7 @@ class Thrift {
 public:
     explicit Thrift(std::string_view bytes) : bytes_(bytes) {}
 
-    /// What is left behind what was read.
+    /// Returns the bytes that were not read.
     std::string_view rest() const { return bytes_.rest(); }
 
     /// Calls `field(id, type)` for every field; one that gives false is passed over.

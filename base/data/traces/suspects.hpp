@@ -28,7 +28,7 @@ public:
     std::vector<bool> find();
 
 private:
-    /// What two episodes may have in common: a hash or a unit of an input.
+    /// A hash or a unit of an input, which two episodes may have in common.
     struct Key {
         std::uint64_t key;
         std::uint32_t input;

@@ -3,7 +3,7 @@
 // of it, FOLDER:3 an episode of a data set, data/datasets/trace.hpp). Gives: one sample a step,
 // missing ones marked. Keeps true: memory does not grow with the number of steps (.csv is streamed;
 // of an .npz member only a buffer is held, a Fortran-ordered T x D array is first unpacked to an
-// unnamed temporary file in $TMPDIR or /tmp; .h5 is read by a process of its own,
+// unnamed temporary file in $TMPDIR or /tmp; .h5 is read by a separate process,
 // data/hdf5/hdf5.hpp).
 #pragma once
 

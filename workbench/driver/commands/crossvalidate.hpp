@@ -24,7 +24,7 @@ struct Folds {
     thresholds::Allowance allowance;  ///< accepted overlaps between episodes
 };
 
-/// What was trained on all folds but one.
+/// The result of training on all folds but one.
 struct Trained {
     pipeline::Compiled spec;
     fitted::File fitted;

@@ -32,7 +32,7 @@ public:
           histories_(plan_.monitors.size()) {}
 
     std::optional<std::string> text() {
-        if (!monitor_is_there() || !time_is_there() || !step_through_trace()) return std::nullopt;
+        if (!has_monitor() || !has_time() || !step_through_trace()) return std::nullopt;
         const History& history = choose_monitor();
         const auto step = choose_step(history);
         if (!step) return std::nullopt;
@@ -52,7 +52,7 @@ private:
         return std::nullopt;
     }
 
-    bool monitor_is_there() {
+    bool has_monitor() {
         if (request_.explain.monitor.empty()) return true;
         std::vector<std::string> names;
         for (const plan::Monitor& monitor : plan_.monitors) {
@@ -69,7 +69,7 @@ private:
         return false;
     }
 
-    bool time_is_there() {
+    bool has_time() {
         if (!request_.explain.at || model_.step_seconds > 0) return true;
         sink_
             .report(data::in_file(

@@ -1,5 +1,5 @@
-// What a call of etlc asks for: what all commands read, and what each one is told besides.
-// Takes: the options of the call. Keeps true: a member that no option sets has its default.
+// The request of a call of etlc: the options that several commands share, and those of each
+// command. Keeps true: a member that no option sets has its default.
 #pragma once
 
 #include <cstdint>

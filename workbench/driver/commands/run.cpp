@@ -297,8 +297,8 @@ private:
         std::string cells;
         for (const auto& [name, predicate] : distances_) {
             const float distance = monitors_.evaluator().distance(predicate);
-            const bool is_there = step_ < steps_ && !std::isnan(distance);
-            cells += is_there ? fmt::format(",{:.9g}", distance) : ",";
+            const bool is_known = step_ < steps_ && !std::isnan(distance);
+            cells += is_known ? fmt::format(",{:.9g}", distance) : ",";
         }
         return cells;
     }
@@ -307,8 +307,8 @@ private:
     std::string let_cells() const {
         std::string cells;
         for (const Verdict& let : monitors_.evaluator().lets()) {
-            const bool is_there = step_ < steps_ && !let.unknown();
-            cells += is_there ? fmt::format(",{:.9g}", let.robustness) : ",";
+            const bool is_known = step_ < steps_ && !let.unknown();
+            cells += is_known ? fmt::format(",{:.9g}", let.robustness) : ",";
         }
         return cells;
     }

@@ -1,4 +1,4 @@
-// What the manual page and the completion scripts share, and the calls that print them.
+// The code that the manual page and the completion scripts share, and the calls that print them.
 #include "driver/manual/manual.hpp"
 
 #include <fmt/format.h>

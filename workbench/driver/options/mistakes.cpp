@@ -190,7 +190,7 @@ std::string mistake_in_compiling(const Call& call) {
         return "--depfile needs -o FILE";
     if (call.has("--targets-file") && (call.targets.empty() || call.targets == "-" ||
                                        call.targets == call.output || call.targets == call.depfile))
-        return "--targets-file needs a file of its own";
+        return "--targets-file needs a separate file";
     if (call.explains && call.values == check::Values::boolean)
         return "--explain follows robustness to the sample that it comes from, and --values "
                "boolean has no robustness: leave out one of the two";

@@ -13,7 +13,7 @@
 
 namespace etlc::lsp {
 
-/// What the client can show.
+/// The capabilities of the client.
 struct Client {
     bool related_places = false;  ///< of a finding
     bool hover_in_markdown = false;
@@ -64,8 +64,8 @@ Json formatting(const Question& question);
 Json diagnostics_of(const Analysis& analysis, const Planned* planned, const std::string& uri,
                     const Client& client);
 
-/// What the model knows of a name, in sentences, the most important first. `planned`: null where
-/// monitors have not been planned.
+/// Describes a name by what the model knows of it, in sentences, the most important first.
+/// `planned`: null where monitors have not been planned.
 std::vector<std::string> facts_of(const Analysis& analysis, const std::string& name,
                                   const Planned* planned);
 

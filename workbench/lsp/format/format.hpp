@@ -23,7 +23,7 @@ struct Comment {
     bool to_line_end = false;  ///< starts with //
 };
 
-/// What lies between two words of a spec: comments and line ends.
+/// The comments and line ends between two words of a spec.
 struct Gap {
     std::vector<Comment> comments;
     int lines_after = 0;  ///< line ends after the last comment, or in the whole gap
