@@ -24,7 +24,7 @@ Key made(float x, Key) {
     return etlmon::key_of(x);
 }
 Value made(float x, Value) {
-    return etlmon::known(x);
+    return etlmon::between(x, x);
 }
 
 /// Makes the element of an operator from two samples, and takes the end of its result that a

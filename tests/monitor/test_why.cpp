@@ -153,7 +153,7 @@ constexpr std::uint32_t kCodes = 6;
 using Order = etlmon::Ranks<kCodes>;
 
 etlmon::SourcedKey key(float robustness, std::uint32_t step, std::uint32_t code) {
-    return etlmon::sourced(etlmon::known(robustness), Order::first(step) - code).low;
+    return etlmon::sourced(etlmon::between(robustness, robustness), Order::first(step) - code).low;
 }
 
 TEST(Why, AValueSaysItsSampleHoweverOftenItIsNegated) {
