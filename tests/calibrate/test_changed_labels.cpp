@@ -52,7 +52,8 @@ TEST_F(Labelled, ByArraysInPlaceOfATruthThatIsChangedOrRemoved) {
         const Checked same = checked(spec, before.thresholds);
         ASSERT_TRUE(same.model) << same.text;
         ASSERT_EQ(same.model->reservations.size(), 1U);
-        EXPECT_NE(same.model->reservations[0].find("labels that arrays"), std::string::npos);
+        EXPECT_NE(same.model->reservations[0].find("calibrated on labels from arrays"),
+                  std::string::npos);
         expect_refused(replaced(spec, "y > limit", "y >= limit"), before.thresholds,
                        "array in place of y > 0.5 || y > 0.2 &&");
         expect_refused(replaced(spec, kTruth, ""), before.thresholds, "array in place of y > 0.5");

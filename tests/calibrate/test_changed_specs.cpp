@@ -224,7 +224,7 @@ TEST_F(WholeMonitor, AnEntryThatDoesNotSayWhatItReadIsRefused) {
     file["monitors"]["m"].erase("reads");
     const Checked now = checked(kSmall, file.dump());
     EXPECT_EQ(now.codes, kStaleSpec);
-    EXPECT_NE(now.text.find("it does not say all that it was calibrated for"), std::string::npos)
+    EXPECT_NE(now.text.find("does not record everything that it depends on"), std::string::npos)
         << now.text;
 }
 

@@ -131,7 +131,7 @@ def thresholds():
            ("predicate at_a", "Threshold 0.35: conformal, alpha = 0.10; score 9 of 9"),
            ("target goal_a", "3 rows of dimension 2, from goal_a.npy"),
            ("monitor reach", "P(some verdict of a new episode misses a success) <= 0.1"),
-           ("monitor avoid", "Guarantee: nothing: 'near_c' has a literal threshold"),
+           ("monitor avoid", "No guarantee: 'near_c' has a threshold that was not calibrated"),
            ("monitor steady", "20 steps late"))
     hovers("adaptive",
            ("predicate low", "in [0.5, 2]; starts at conformal score 3 of 3"),

@@ -79,7 +79,7 @@ spec 2 8.5 0.25 2.5 3 >2/docking.etl
 "$etlc" 1/docking.etl --emit params -o first.bin
 cmp first.bin docking.params.bin || fail "two kinds of parameters"
 head=$(sed -n '/^#pragma/q; s,^//,,p' docking.hpp | tr -d '\n' | tr -s ' ')
-grep -q "in parameters of $(wc -c <first.bin) bytes" <<<"$head" ||
+grep -q "in a block of $(wc -c <first.bin) bytes" <<<"$head" ||
   fail "the head states other bytes"
 "$etlc" 2/docking.etl --emit params -o second.bin
 ! cmp -s first.bin second.bin || fail "other numbers have the same parameters"

@@ -105,7 +105,7 @@ for header in $headers; do
         not_compiled "etlmon needs C++17: compile with -std=c++17 or later" 1 -std=c++14
 done
 for given in "std::vector<float>& z" "std::array<float, 4>& z"; do
-    not_compiled "not D elements by its type: Vector::unchecked(x.data())" any -std=c++17 <<END
+    not_compiled "not Dim elements by its type: Vector::unchecked(x.data())" any -std=c++17 <<END
 #include <array>
 #include <vector>
 
@@ -113,7 +113,7 @@ for given in "std::vector<float>& z" "std::array<float, 4>& z"; do
 void give(etlmon::Vector<float, 3>& to, const $given) { to = z; }
 END
 done
-not_compiled "not D elements" any -std=c++17 <<END
+not_compiled "not Dim elements" any -std=c++17 <<END
 #include "etlmon/views.hpp"
 void give(etlmon::Vector<float, 3>& to, const float (&z)[4]) { to = z; }
 END

@@ -61,8 +61,7 @@ class Vector {
   // Compilers quote these lines for a std::vector or a wrong number of elements. clang-format off
   template <class Array, class = detail::ReadsAs<Element, Array>,
             typename detail::If<!detail::holds<Array, Dim>(0)>::type = 0>
-  Vector(const Array&) = delete;  // its type does not have Dim elements:
-                                  // Vector::unchecked(x.data())
+  Vector(const Array&) = delete;  // not Dim elements by its type: Vector::unchecked(x.data())
   template <size_t Size, typename detail::If<Size != Dim>::type = 0>
   Vector(const Element (&)[Size]) = delete;  // not Dim elements
   // clang-format on

@@ -37,7 +37,7 @@ constexpr Row kCommands[] = {
     {Command::merge, "merge", "PART...",
      "Combines the parts that all shards of a call wrote into the result of the call."},
     {Command::explain, "explain", "SPEC.etl --trace FILE",
-     "Explains a monitor's verdict on a recorded trace: the smallest set of samples that decides "
+     "Explains a monitor's verdict on a recorded trace: a minimal set of samples that decides "
      "it, the\nsample whose robustness it has, and the smallest change that would flip it."},
     {Command::incident, "incident", "FILE --spec SPEC.etl",
      "Prints what the flight recorder of a monitor wrote: the steps around an alarm."},

@@ -122,11 +122,16 @@ std::string kind_of(const check::Monitor& monitor) {
 Sentences about(const Model& model, const check::Monitor& monitor, bool complete,
                 const Planned* planned) {
     Sentences facts{kind_of(monitor)};
-    if (complete)
-        for (const check::Claim& claim : check::claims(model, monitor))
-            facts.push_back(claim.part.empty() ? fmt::format("Guarantee: {}.", check::text(claim))
-                                               : fmt::format("Guarantee of its part {}: {}.",
-                                                             claim.part, check::text(claim)));
+    if (complete) {
+        for (const check::Claim& claim : check::claims(model, monitor)) {
+            if (!claim.part.empty())
+                facts.push_back(fmt::format("Part {}: {}.", claim.part, check::text(claim)));
+            else if (claim.kind == check::Claim::Kind::nothing)
+                facts.push_back(fmt::format("No guarantee: {}.", claim.why));
+            else
+                facts.push_back(fmt::format("Guarantee: {}.", check::text(claim)));
+        }
+    }
     if (monitor.calibration && complete)
         facts.push_back(fmt::format("Robustness less {}: {}.",
                                     shown(monitor.calibration->threshold.value),
