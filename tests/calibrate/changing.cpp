@@ -59,7 +59,7 @@ void change(std::vector<check::Expr>& arguments) {
 }
 /// Calls it only if the number of arguments matches.
 void change(check::Expr::Kind& kind) {
-    using enum check::Expr::Kind;
+    using enum ast::ExprKind;
     switch (kind) {
         case subtract: kind = divide; break;
         case multiply: kind = add; break;

@@ -12,12 +12,12 @@ using check::Index;
 namespace {
 
 std::string aggregation(const check::Distance& distance) {
-    using enum check::Aggregation;
+    using check::Aggregation;
     switch (distance.aggregation) {
-        case min: return "etlmon::Min";
-        case max: return "etlmon::Max";
-        case mean: return "etlmon::Mean";
-        case kth: break;
+        case Aggregation::min: return "etlmon::Min";
+        case Aggregation::max: return "etlmon::Max";
+        case Aggregation::mean: return "etlmon::Mean";
+        case Aggregation::kth: break;
     }
     return fmt::format("etlmon::Kth<{}>", distance.kth);
 }

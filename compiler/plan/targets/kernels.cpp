@@ -18,12 +18,12 @@ etlmon::MetricId metric_id(const check::Distance& distance) {
 }
 
 etlmon::AggregationId aggregation_id(const check::Distance& distance) {
-    using enum check::Aggregation;
+    using check::Aggregation;
     switch (distance.aggregation) {
-        case min: return etlmon::AggregationId::min;
-        case max: return etlmon::AggregationId::max;
-        case mean: return etlmon::AggregationId::mean;
-        case kth: break;
+        case Aggregation::min: return etlmon::AggregationId::min;
+        case Aggregation::max: return etlmon::AggregationId::max;
+        case Aggregation::mean: return etlmon::AggregationId::mean;
+        case Aggregation::kth: break;
     }
     return etlmon::AggregationId::kth;
 }
