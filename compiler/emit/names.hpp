@@ -45,7 +45,7 @@ struct Names {
         std::string function;
     };
     std::map<std::pair<check::Index, check::Index>, Nearest> nearest;
-    /// Of adaptive predicates: the current threshold.
+    /// The current threshold of an adaptive predicate.
     std::map<check::Index, std::string> threshold_member;
     std::map<check::Index, std::string> adaptation_constant;  ///< and the constants of its
                                                               ///< adaptation
@@ -58,7 +58,7 @@ struct Names {
     struct OfReading {
         std::string local;
         std::vector<std::string> members;  ///< as plan::members_of lists them
-        /// Of straight-line code, likewise: index in the array of that name; kNone: not in an
+        /// Likewise for straight-line code: index in the array of that name; kNone: not in an
         /// array.
         std::vector<std::uint32_t> elements;
         std::vector<std::string> locals;   ///< of straight-line code

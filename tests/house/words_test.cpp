@@ -104,10 +104,12 @@ TEST(Words, LinesHaveAHundredColumns) {
 }
 
 /// Phrases that sound translated. Write instead: "compared with", "lead back to", "really",
-/// "without".
+/// "without". A comment before a declaration is a sentence or a noun: it begins neither with "Of"
+/// nor with "What".
 TEST(Words, EnglishIsPlain) {
     static const std::regex kGone(
-        R"(\b(anew|held against|finds? back to|in earnest|for want of|a share of nothing)\b)");
+        R"(\b(anew|held against|finds? back to|in earnest|for want of|a share of nothing)\b)"
+        R"(|^ */// (Of|What) )");
     for (const auto& file : files()) {
         if (!edited(file) || file == "tests/house/words_test.cpp") continue;
         const std::vector<std::string> lines = lines_of(content(file));

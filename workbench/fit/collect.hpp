@@ -22,7 +22,7 @@ inline constexpr std::size_t kFolds = 5;
 /// The most frames to choose a target set from, over all episodes; at least one of each.
 inline constexpr std::size_t kMostFrames = 2048;
 
-/// What to collect at the frames at which a formula holds.
+/// Collected at the frames at which a formula holds.
 struct Need {
     enum class Kind : std::uint8_t {
         mean,

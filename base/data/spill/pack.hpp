@@ -149,7 +149,7 @@ private:
         return bits;
     }
 
-    /// Of what takes at least a byte each.
+    /// Reads the number of items that follow, of at least a byte each.
     std::size_t count() {
         const std::uint64_t n = number();
         if (n <= rest_.size()) return n;

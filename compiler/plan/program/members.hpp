@@ -1,4 +1,4 @@
-// What a stream or a reading keeps from one step to the next.
+// The members that a stream or a reading keeps from one step to the next.
 // Takes: a part of the plan. Gives: its members in order of declaration, each with what it is, its
 // first value, its name's end and its comment. Keeps true: the class that is emitted has these
 // members, the evaluator has these states, and the budget is the sum of their bytes.

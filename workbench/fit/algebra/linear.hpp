@@ -13,7 +13,7 @@
 namespace etlc::fit {
 
 /// Returns the covariance of the class kHolds, scatter / (n - 1), where the moments have no others.
-/// Of all covariances here the lower triangle is valid.
+/// All covariances here have a valid lower triangle only.
 Matrix covariance(const Moments& moments);
 
 /// The greatest variances of the frames and their directions: at least as many as requested or
