@@ -45,8 +45,12 @@ double change(const Distance& distance, double exact, double moved) {
         case check::Metric::l2sq: return moved * (2 * std::sqrt(exact) + moved);
         case check::Metric::cosine: return moved * (std::sqrt(2 * exact) + moved / 2);
         case check::Metric::angular: return moved <= 0.25 ? 1.6 * moved : 4.0;
-        default: return moved;
+        case check::Metric::l2:
+        case check::Metric::l1:
+        case check::Metric::linf:
+        case check::Metric::mahalanobis: break;
     }
+    return moved;
 }
 
 /// Returns the interval of distances that any build may measure. Two builds differ by at most twice
@@ -137,8 +141,11 @@ double norm_of(const Distance& distance, const std::vector<double>& moves, const
         case check::Metric::linf: return greatest * kSlack;
         case check::Metric::cosine:  // |u/|u| - v/|v|| is at most 2 |u - v| / |u|
         case check::Metric::angular: return 2 * std::sqrt(squares / length) * kSlack;
-        default: return std::sqrt(squares) * kSlack;
+        case check::Metric::l2:
+        case check::Metric::l2sq:
+        case check::Metric::mahalanobis: break;
     }
+    return std::sqrt(squares) * kSlack;
 }
 
 /// An upper bound of the sum over i, j of |d_i| |W_ij| |d_j|, d = z - g, with each |d_i| enlarged
