@@ -25,7 +25,7 @@ target_compile_options(etlc_options INTERFACE
   "$<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>"
   -ffp-contract=off)  # constants are the same on every machine
 # etlc compiles a spec in milliseconds, so more than -O1 would only slow down its build. Code that
-# processes recordings frame by frame is the exception: see etlc_loops.
+# processes recordings frame by frame is the exception: see LOOPS of etlc_stage.
 target_compile_options(etlc_options INTERFACE $<$<CONFIG:Release>:-O1>)
 if(ETLC_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 forgets which precompiled headers are the system's, and gives false warnings about
@@ -56,26 +56,33 @@ if(ETLC_PRECOMPILE)
     <string_view> <unordered_map> <variant> <vector> <fmt/format.h>)
 endif()
 
-# etlc_stage(NAME SOURCES file... [DEPENDS stage...] [LIBRARIES target...]). OWN_HEADERS: the stage
-# has other options than the rest, so it cannot share precompiled headers.
+# Code that processes recordings frame by frame is optimised fully.
+add_library(etlc_optimised INTERFACE)
+target_compile_options(etlc_optimised INTERFACE $<$<CONFIG:Release>:-O3>)
+target_link_libraries(etlc_optimised INTERFACE etlc_options)
+
+# etlc_stage(NAME SOURCES file... [LOOPS file...] [DEPENDS stage...] [LIBRARIES target...]). LOOPS:
+# the sources that process recordings frame by frame. OWN_HEADERS: the stage has other options than
+# the rest, so it cannot share precompiled headers.
 function(etlc_stage name)
-  cmake_parse_arguments(PARSE_ARGV 1 STAGE "OWN_HEADERS" "" "SOURCES;DEPENDS;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 STAGE "OWN_HEADERS" "" "SOURCES;LOOPS;DEPENDS;LIBRARIES")
+  list(TRANSFORM STAGE_DEPENDS PREPEND etlc_)
   add_library(etlc_${name} STATIC ${STAGE_SOURCES})
-  target_link_libraries(etlc_${name} PUBLIC etlc_options fmt::fmt ${STAGE_LIBRARIES})
-  cmake_path(GET CMAKE_CURRENT_SOURCE_DIR PARENT_PATH building)
-  target_include_directories(etlc_${name} PUBLIC ${building})
-  set_target_properties(etlc_${name} PROPERTIES ${ETLC_LIKE_LIBETLC})
+  etlc_part_of_stage(etlc_${name} ${STAGE_LIBRARIES} ${STAGE_DEPENDS})
   if(ETLC_PRECOMPILE AND NOT STAGE_OWN_HEADERS)
     target_precompile_headers(etlc_${name} REUSE_FROM etlc_precompiled)
   endif()
-  foreach(stage IN LISTS STAGE_DEPENDS)
-    target_link_libraries(etlc_${name} PUBLIC etlc_${stage})
-  endforeach()
+  if(STAGE_LOOPS)
+    add_library(etlc_${name}_loops OBJECT ${STAGE_LOOPS})
+    etlc_part_of_stage(etlc_${name}_loops ${STAGE_LIBRARIES} ${STAGE_DEPENDS} etlc_optimised)
+    target_sources(etlc_${name} PRIVATE $<TARGET_OBJECTS:etlc_${name}_loops>)
+  endif()
 endfunction()
 
-# etlc_loops(file...): optimises sources that process recordings frame by frame. Their options
-# differ from the rest, so they cannot share precompiled headers.
-function(etlc_loops)
-  set_source_files_properties(${ARGN} PROPERTIES
-    COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_PRECOMPILE_HEADERS ON)
+# etlc_part_of_stage(TARGET library...): what the libraries of a stage have in common.
+function(etlc_part_of_stage target)
+  target_link_libraries(${target} PUBLIC etlc_options fmt::fmt ${ARGN})
+  cmake_path(GET CMAKE_CURRENT_SOURCE_DIR PARENT_PATH building)
+  target_include_directories(${target} PUBLIC ${building})
+  set_target_properties(${target} PROPERTIES ${ETLC_LIKE_LIBETLC})
 endfunction()
