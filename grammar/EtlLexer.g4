@@ -84,6 +84,9 @@ BY        : 'by' ;
 IMAGES    : 'images' ;
 IMAGE     : 'image' ;
 DEVIATION : 'deviation' ;
+RESIZE    : 'resize' ;
+FLIP      : 'flip' ;
+CHANNELS  : 'channels' ;
 
 // ---- contextual: how durations are rounded
 

@@ -159,7 +159,9 @@ argument
 // ---- encoders
 
 setting
-    : op=(IMAGE | MEAN | DEVIATION) LBRACKET number (COMMA number)* RBRACKET
+    : op=(IMAGE | MEAN | DEVIATION) row
+    | op=RESIZE name row?
+    | op=(FLIP | CHANNELS) name
     ;
 
 encodedBy
@@ -268,7 +270,7 @@ name
     | RESTARTABLE | REPEATING
     | RISE | FALL | HELD
     | PROJECTION | OFFSET | FITTED | FRAMES | STRIDE | OF | WHERE
-    | ENCODER | BY | IMAGES | IMAGE | DEVIATION
+    | ENCODER | BY | IMAGES | IMAGE | DEVIATION | RESIZE | FLIP | CHANNELS
     | DURATIONS | UP | DOWN | NEAREST
     | HERTZ | MICROSECONDS | MILLISECONDS | SECONDS | STEPS
     | DISTANCE | MAHALANOBIS

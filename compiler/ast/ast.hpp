@@ -213,10 +213,11 @@ struct Range {
     Span span;
 };
 
-/// encoder NAME = load("model.onnx"), image [224, 224], mean [...], deviation [...]
+/// encoder NAME = load("model.onnx"), resize bicubic [256], image [224, 224], mean [...]
 struct Encoder {
     struct Setting {
         Name key;
+        std::optional<Name> word;
         std::vector<Number> values;
         Span span;
     };

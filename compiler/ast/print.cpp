@@ -205,9 +205,11 @@ std::string text_of_encoder(const std::optional<Name>& encoder) {
 
 std::string text_of(const Encoder& encoder) {
     std::string result = fmt::format("encoder {} = {}", encoder.name.text, text_of(encoder.model));
-    for (const Encoder::Setting& setting : encoder.settings)
-        result +=
-            fmt::format(", {} {}", setting.key.text, text_of(VectorLiteral{setting.values, {}}));
+    for (const Encoder::Setting& setting : encoder.settings) {
+        result += ", " + setting.key.text;
+        if (setting.word) result += " " + setting.word->text;
+        if (!setting.values.empty()) result += " " + text_of(VectorLiteral{setting.values, {}});
+    }
     return result;
 }
 

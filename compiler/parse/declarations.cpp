@@ -85,8 +85,10 @@ ast::Encoder Builder::encoder(Grammar::EncoderDeclarationContext& context,
     for (Grammar::SettingContext* const setting : context.setting()) {
         ast::Encoder::Setting& added = result.settings.emplace_back();
         added.key = {text(*setting->op), span_of(*setting->op)};
-        for (Grammar::NumberContext* const value : setting->number())
-            added.values.push_back(number(*value));
+        if (setting->name() != nullptr) added.word = name(*setting->name());
+        if (setting->row() != nullptr)
+            for (Grammar::NumberContext* const value : setting->row()->number())
+                added.values.push_back(number(*value));
         added.span = span_of(*setting);
     }
     return result;

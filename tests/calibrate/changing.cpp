@@ -106,13 +106,17 @@ void field(Changing& changing, const std::string& name, Place place) {
 
 void visit(check::Model&, check::Encoder& of, Changing& changing) {
     changing.of("Encoder");
-    auto& [name, model, image, mean, deviation, declaration, dimension, fingerprint, otherwise,
-           span] = of;
+    auto& [name, model, image, mean, deviation, filter, resize, flip, channels, declaration,
+           dimension, fingerprint, otherwise, span] = of;
     field(changing, "name", name);
     field(changing, "model", model);
     field(changing, "image", image);
     field(changing, "mean", mean);
     field(changing, "deviation", deviation);
+    field(changing, "filter", filter);
+    field(changing, "resize", resize);
+    field(changing, "flip", flip);
+    field(changing, "channels", channels);
     field(changing, "declaration", declaration);
     field(changing, "dimension", dimension);
     field(changing, "fingerprint", fingerprint);

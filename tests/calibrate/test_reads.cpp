@@ -58,7 +58,8 @@ std::vector<check::Reads> read(const check::Model& model) {
 /// Fields that no score depends on.
 const std::set<std::string> kUnread{
     // Part of the fingerprint.
-    "Encoder.model", "Encoder.image", "Encoder.mean", "Encoder.deviation", "Encoder.declaration",
+    "Encoder.model", "Encoder.image", "Encoder.mean", "Encoder.deviation", "Encoder.filter",
+    "Encoder.resize", "Encoder.flip", "Encoder.channels", "Encoder.declaration",
     "Encoder.dimension", "Encoder.otherwise",
     // Part of the hash of the values, or their source.
     "Projection.matrix", "Projection.offset", "Projection.origin", "Projection.path",

@@ -24,14 +24,19 @@ std::vector<std::string> network_arguments(const check::Encoder& encoder,
                                            const std::string& model_path,
                                            const std::string& onnxruntime) {
     std::vector<std::string> arguments = {"encode", model_path, "--onnxruntime", onnxruntime};
-    const auto add = [&](std::string_view option, const std::vector<float>& values) {
-        if (values.empty()) return;
-        arguments.emplace_back(option);
-        arguments.push_back(fmt::format("{}", fmt::join(values, ",")));
+    const auto add = [&](const char* option, const std::string& value) {
+        if (!value.empty()) arguments.insert(arguments.end(), {option, value});
     };
-    add("--image", encoder.image);
-    add("--mean", encoder.mean);
-    add("--deviation", encoder.deviation);
+    const auto joined = [](const std::vector<float>& values) {
+        return fmt::format("{}", fmt::join(values, ","));
+    };
+    add("--image", joined(encoder.image));
+    add("--mean", joined(encoder.mean));
+    add("--deviation", joined(encoder.deviation));
+    add("--filter", encoder.filter);
+    add("--resize", joined(encoder.resize));
+    add("--flip", encoder.flip);
+    add("--channels", encoder.channels);
     return arguments;
 }
 

@@ -28,23 +28,47 @@ constexpr std::uint64_t kMaxSettingsValues = 1000;
 
 struct Key {
     std::string_view key;
-    std::vector<float> Encoder::*values;
-    std::size_t count;
+    std::string Encoder::*word;  ///< null: it takes no word
+    std::string_view words;      ///< those that it takes
+    std::vector<float> Encoder::*numbers;
+    std::size_t least;  ///< count of numbers
+    std::size_t most;
     std::string_view expected;
 };
 
 constexpr Key kSettings[] = {
-    {"image", &Encoder::image, 2, "its rows and columns, whole numbers from 1 to 16384"},
-    {"mean", &Encoder::mean, 3, "a number each for red, green and blue"},
-    {"deviation", &Encoder::deviation, 3, "a positive number each for red, green and blue"}};
+    {"image", nullptr, "", &Encoder::image, 2, 2,
+     "its rows and columns, whole numbers from 1 to 16384"},
+    {"mean", nullptr, "", &Encoder::mean, 3, 3, "a number each for red, green and blue"},
+    {"deviation", nullptr, "", &Encoder::deviation, 3, 3,
+     "a positive number each for red, green and blue"},
+    {"resize", &Encoder::filter, "bilinear bicubic", &Encoder::resize, 0, 2,
+     "bilinear or bicubic and, unless that is 'image', the shorter side or rows and columns, whole "
+     "numbers from 1 to 16384, as in resize bicubic [256]"},
+    {"flip", &Encoder::flip, "horizontal vertical both", nullptr, 0, 0,
+     "horizontal, vertical or both"},
+    {"channels", &Encoder::channels, "rgb bgr", nullptr, 0, 0, "rgb or bgr"}};
 
 bool fits(const Key& setting, const std::string& number, float& value) {
     if (to_float(number, value) != Fit::fits) return false;
-    if (setting.key == "image") {
+    if (setting.numbers == &Encoder::image || setting.numbers == &Encoder::resize) {
         const auto extent = Decimal::parse(number).whole(kMaxExtent);
         return extent && *extent > 0;
     }
     return setting.key == "mean" || Decimal::parse(number).is_positive();
+}
+
+bool fits(const Key& setting, const std::string& word) {
+    if (setting.word == nullptr) return word.empty();
+    const auto known = fmt::format(" {} ", setting.words);
+    return !word.empty() && known.find(fmt::format(" {} ", word)) != std::string::npos;
+}
+
+/// Returns "bicubic [256]", "[224, 224]" or "both".
+template <class Number>
+std::string text_of(const std::string& word, const std::vector<Number>& numbers) {
+    if (numbers.empty() && !word.empty()) return word;
+    return fmt::format("{}{}[{}]", word, word.empty() ? "" : " ", fmt::join(numbers, ", "));
 }
 
 std::string known_keys() {
@@ -57,17 +81,25 @@ Failure wrong(const std::string& message) {
     return {Code::encoder_form, message};
 }
 
+/// Takes "both", [224, 224] or ["bicubic", 256].
 std::optional<Failure> take(Encoder& encoder, const std::string& key, const Json& value) {
-    const bool numbers = value.kind == Json::Kind::array &&
-                         std::all_of(value.items.begin(), value.items.end(), [](const Json& item) {
-                             return item.kind == Json::Kind::number;
-                         });
-    if (!numbers)
-        return wrong(fmt::format("{} is {}, expected an array of numbers", data::in_quotes(key),
-                                 describe(value)));
-    std::vector<std::string> texts;
-    for (const Json& item : value.items) texts.push_back(item.text);
-    const auto mistake = set_setting(encoder, key, texts);
+    std::string word;
+    std::vector<std::string> numbers;
+    const auto add = [&](const Json& item) {
+        const bool is_word = item.kind == Json::Kind::string && word.empty() && numbers.empty();
+        if (is_word) word = item.text;
+        if (item.kind == Json::Kind::number) numbers.push_back(item.text);
+        return is_word || item.kind == Json::Kind::number;
+    };
+    const bool good = value.kind == Json::Kind::array
+                          ? std::all_of(value.items.begin(), value.items.end(), add)
+                          : value.kind == Json::Kind::string && add(value);
+    if (!good)
+        return wrong(
+            fmt::format("{} is {}, expected an array of numbers, or a word before them, "
+                        "as in [\"bicubic\", 256]",
+                        data::in_quotes(key), describe(value)));
+    const auto mistake = set_setting(encoder, key, word, numbers);
     return mistake ? std::optional(wrong(*mistake)) : std::nullopt;
 }
 
@@ -78,7 +110,8 @@ bool set_settings(Context& c, const ast::Encoder& declaration, Encoder& encoder)
         for (const ast::Number& number : setting.values) numbers.push_back(number.text);
         const auto mistake =
             given.insert(setting.key.text).second
-                ? set_setting(encoder, setting.key.text, numbers)
+                ? set_setting(encoder, setting.key.text, setting.word ? setting.word->text : "",
+                              numbers)
                 : std::optional(fmt::format("{} is given twice", setting.key.text));
         if (!mistake) continue;
         return c.refuse(Code::encoder_form, setting.span, *mistake);
@@ -89,6 +122,7 @@ bool set_settings(Context& c, const ast::Encoder& declaration, Encoder& encoder)
 }  // namespace
 
 std::optional<std::string> set_setting(Encoder& encoder, const std::string& key,
+                                       const std::string& word,
                                        const std::vector<std::string>& numbers) {
     const auto* const setting = std::find_if(std::begin(kSettings), std::end(kSettings),
                                              [&](const Key& s) { return s.key == key; });
@@ -96,29 +130,42 @@ std::optional<std::string> set_setting(Encoder& encoder, const std::string& key,
         return fmt::format("there is no setting {}; expected {}", data::in_quotes(key),
                            known_keys());
     std::vector<float> values;
-    bool good = numbers.size() == setting->count;
+    bool good =
+        fits(*setting, word) && numbers.size() >= setting->least && numbers.size() <= setting->most;
     for (const std::string& number : numbers)
         good = good && fits(*setting, number, values.emplace_back());
     if (!good)
-        return fmt::format("{} [{}]; expected {}", key, fmt::join(numbers, ", "),
-                           setting->expected);
-    std::vector<float>& before = encoder.*setting->values;
-    if (!before.empty() && before != values)
-        return fmt::format("{} is [{}] in the spec and [{}] here; give it once", key,
-                           fmt::join(before, ", "), fmt::join(values, ", "));
-    before = std::move(values);
+        return fmt::format("{} {}; expected {}", key, text_of(word, numbers), setting->expected);
+    const std::string word_before = setting->word == nullptr ? "" : encoder.*setting->word;
+    const std::vector<float> before =
+        setting->numbers == nullptr ? std::vector<float>() : encoder.*setting->numbers;
+    const bool is_given = !word_before.empty() || !before.empty();
+    if (is_given && (word_before != word || before != values))
+        return fmt::format("{} is {} in the spec and {} here; give it once", key,
+                           text_of(word_before, before), text_of(word, values));
+    if (setting->word != nullptr) encoder.*setting->word = word;
+    if (setting->numbers != nullptr) encoder.*setting->numbers = std::move(values);
     return std::nullopt;
 }
 
 std::string settings_text(const Encoder& encoder) {
-    const auto three = [](const std::vector<float>& values, float usual) {
-        return fmt::format("[{}]",
-                           fmt::join(values.empty() ? std::vector<float>(3, usual) : values, ", "));
+    std::string text;
+    const auto add = [&](std::string_view key, const std::string& word,
+                         const std::vector<float>& numbers) {
+        if (word.empty() && numbers.empty()) return;
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key, text_of(word, numbers));
     };
-    const std::string image =
-        encoder.image.empty() ? "" : fmt::format("image [{}], ", fmt::join(encoder.image, ", "));
-    return fmt::format("{}mean {}, deviation {}", image, three(encoder.mean, 0),
-                       three(encoder.deviation, 1));
+    const auto three = [](const std::vector<float>& values, float usual) {
+        return values.empty() ? std::vector<float>(3, usual) : values;
+    };
+    // A setting that changes nothing has no text: the fingerprint is that of an encoder without it.
+    add("flip", encoder.flip, {});
+    add("resize", encoder.filter, encoder.resize);
+    add("image", "", encoder.image);
+    add("channels", encoder.channels == "rgb" ? "" : encoder.channels, {});
+    add("mean", "", three(encoder.mean, 0));
+    add("deviation", "", three(encoder.deviation, 1));
+    return text;
 }
 
 std::string settings_path(const std::string& model_path) {

@@ -13,13 +13,14 @@
 
 namespace etlc::check {
 
-/// Sets `image`, `mean` or `deviation`. Returns an error message for unsuitable numbers or a
-/// contradiction.
+/// Sets `image`, `mean`, `deviation`, `resize`, `flip` or `channels`. `word`: empty for the first
+/// three. Returns an error message for an unsuitable word or numbers, or a contradiction.
 std::optional<std::string> set_setting(Encoder& encoder, const std::string& key,
+                                       const std::string& word,
                                        const std::vector<std::string>& numbers);
 
 /// Returns "image [224, 224], mean [0.485, 0.456, 0.406], deviation [0.229, 0.224, 0.225]", with
-/// neutral values for missing settings.
+/// neutral values for a missing mean or deviation, and without other settings that are missing.
 std::string settings_text(const Encoder& encoder);
 
 /// Reads the settings in MODEL.json beside MODEL.onnx, if it exists.

@@ -25,9 +25,13 @@ enum class InputType : std::uint8_t { scalar, boolean, f32, f16, i8 };
 struct Encoder {
     std::string name;
     std::string model;             ///< the file as named in the spec
-    std::vector<float> image;      ///< rows and columns for resized images; or empty
+    std::vector<float> image;      ///< rows and columns of what the model sees; or empty
     std::vector<float> mean;       ///< red, green, blue; or empty
     std::vector<float> deviation;  ///< red, green, blue; or empty
+    std::string filter;            ///< "bilinear" or "bicubic", as in Pillow; or empty
+    std::vector<float> resize;     ///< with a filter: shorter side, or rows and columns; or empty
+    std::string flip;              ///< "horizontal", "vertical" or "both"; or empty
+    std::string channels;          ///< "rgb" or "bgr"; or empty
     std::string declaration;       ///< canonical text
     std::uint32_t dimension = 0;   ///< of its inputs; 0 if there are none
     std::string fingerprint;       ///< embedded::fingerprint; empty before `etlc embed`

@@ -55,6 +55,21 @@ void check_interface(const Interface& model) {
                              "file, as torch.onnx.export(..., external_data=False) does");
 }
 
+/// Takes --filter, --resize, --flip and --channels.
+void take_transform(const Words& options, Settings& settings) {
+    const std::string filter = options.text("--filter", "");
+    const std::string flip = options.text("--flip", "");
+    if (!filter.empty()) settings.filter = filter == "bicubic" ? Filter::bicubic : Filter::bilinear;
+    const std::vector<double> sides =
+        options.numbers("--resize", {double(settings.height), double(settings.width)});
+    if (sides.size() == 1) settings.shorter = static_cast<int>(sides[0]);
+    settings.resized_height = static_cast<int>(sides.front());
+    settings.resized_width = static_cast<int>(sides.back());
+    settings.mirrored = flip == "horizontal" || flip == "both";
+    settings.upside_down = flip == "vertical" || flip == "both";
+    settings.blue_first = options.text("--channels", "rgb") == "bgr";
+}
+
 Settings settings_of(const Words& options, const Value& input) {
     Settings settings;
     const std::vector<double> image = options.numbers("--image");
@@ -74,6 +89,7 @@ Settings settings_of(const Words& options, const Value& input) {
                              std::to_string(own[1]) + ", the spec says image [" +
                              std::to_string(settings.height) + ", " +
                              std::to_string(settings.width) + "]");
+    take_transform(options, settings);
     for (int c = 0; c < kChannels; ++c) {
         settings.mean[c] = static_cast<float>(mean[static_cast<std::size_t>(c)]);
         settings.deviation[c] = static_cast<float>(deviation[static_cast<std::size_t>(c)]);
