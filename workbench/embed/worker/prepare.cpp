@@ -206,14 +206,12 @@ Frame resize(const Frame& frame, int height, int width, Filter filter) {
 }
 
 void prepare(const Frame& frame, const Settings& settings, std::vector<float>& image) {
+    const bool flips = settings.mirrored || settings.upside_down;
+    const Frame other = flips ? flipped(frame, settings) : Frame();
+    const Frame& seen = flips ? other : frame;
     const Planes planes(settings, image);
-    if (settings.mirrored || settings.upside_down) {
-        Settings rest = settings;
-        rest.mirrored = rest.upside_down = false;
-        return prepare(flipped(frame, settings), rest, image);
-    }
-    if (settings.filter == Filter::none) return put_interpolated(frame, settings, planes);
-    put_centre(resized(frame, settings), settings, planes);
+    if (settings.filter == Filter::none) return put_interpolated(seen, settings, planes);
+    put_centre(resized(seen, settings), settings, planes);
 }
 
 }  // namespace etlc::embed::worker
