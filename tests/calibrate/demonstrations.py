@@ -1,10 +1,11 @@
-"""Demonstrations for tests of void guarantees: one embedding, and the labels of a predicate in
-arrays."""
+"""Demonstrations for tests of void guarantees: one embedding, and arrays with the labels of
+predicates."""
 import subprocess
 
 import numpy as np
 
 EPISODES, STEPS, D = 10, 12, 8
+PREDICATES = "abcde"
 CONFORMAL = "<= calibrated(conformal, alpha = 0.25)"
 WHOLE = " calibrated(conformal, alpha = 0.25, against = missed_success)"
 
@@ -35,7 +36,8 @@ class World:
     def write(self, part, episodes):
         (self.folder / part).mkdir(exist_ok=True)
         for number, (z, label) in enumerate(episodes):
-            np.savez(self.folder / part / f"{number:02}.npz", z=z, **{"truth.a": label})
+            np.savez(self.folder / part / f"{number:02}.npz", z=z,
+                     **{f"truth.{name}": label for name in PREDICATES})
 
     def run(self, command, *words):
         done = subprocess.run([self.etlc, command, "t.etl", *words], cwd=self.folder,
