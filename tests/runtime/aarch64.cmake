@@ -9,8 +9,6 @@ if(NOT ETLC_AARCH64 OR NOT ETLC_QEMU_AARCH64 OR NOT ETLC_GTEST_SOURCES)
   return()
 endif()
 
-file(GLOB_RECURSE kernel_headers CONFIGURE_DEPENDS
-  ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/* ${CMAKE_CURRENT_SOURCE_DIR}/*.hpp)
 set(objects)
 # etlc_aarch64_object(SOURCE option...): one object of the program.
 function(etlc_aarch64_object source)
@@ -18,14 +16,14 @@ function(etlc_aarch64_object source)
   add_custom_command(OUTPUT aarch64_${name}.o
     COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${ETLC_AARCH64} -std=c++17 -O2
             -isystem ${ETLC_GTEST_SOURCES}/include ${ARGN} -c ${source} -o aarch64_${name}.o
-    DEPENDS ${source} ${kernel_headers} VERBATIM)
+    DEPENDS ${source} ${kernel_files} VERBATIM)
   set(objects ${objects} aarch64_${name}.o PARENT_SCOPE)
 endfunction()
 etlc_aarch64_object(${ETLC_GTEST_SOURCES}/src/gtest-all.cc -I${ETLC_GTEST_SOURCES} -w)
 etlc_aarch64_object(${ETLC_GTEST_SOURCES}/src/gtest_main.cc -I${ETLC_GTEST_SOURCES} -w)
 get_target_property(eigen_headers Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
-foreach(source exact.cpp ${kernel_sources} ${narrow_sources} test_kernel_versions.cpp)
-  etlc_aarch64_object(${CMAKE_CURRENT_SOURCE_DIR}/${source}
+foreach(source ${here}/exact.cpp ${kernel_sources} ${twins} ${narrow_sources})
+  etlc_aarch64_object(${source}
     -I${PROJECT_SOURCE_DIR}/runtime/include -isystem ${eigen_headers} ${kernel_warnings})
 endforeach()
 add_custom_command(OUTPUT test_kernels_aarch64

@@ -1,10 +1,14 @@
 # Distances, aggregates, views and expressions: with the project's flags, then with flags and a
 # compiler that could change them.
 find_package(Eigen3 REQUIRED)
-set(kernel_sources row_kernels_f32.cpp test_distances.cpp test_enclosed.cpp test_expression.cpp
-  test_kernel_twins.cpp test_not_finite.cpp test_views.cpp)
-set(narrow_sources row_kernels_f16.cpp row_kernels_i8.cpp test_narrow_halves.cpp
-  test_narrow_bytes.cpp)
+etlc_joined(checks kernel_checks
+  test_distances.cpp test_enclosed.cpp test_expression.cpp test_not_finite.cpp test_views.cpp)
+set(here ${CMAKE_CURRENT_SOURCE_DIR})
+set(kernel_sources ${here}/row_kernels_f32.cpp ${checks})
+set(twins ${here}/test_kernel_twins.cpp)
+etlc_joined(narrow_checks kernel_narrow_checks
+  test_kernel_versions.cpp test_narrow_halves.cpp test_narrow_bytes.cpp)
+set(narrow_sources ${here}/row_kernels_f16.cpp ${here}/row_kernels_i8.cpp ${narrow_checks})
 set(kernel_warnings -Wall -Wextra -Wconversion -Wno-sign-conversion -Wshadow -Wpedantic -Werror)
 
 # The oracle is built once, without the flags under test.
@@ -13,7 +17,7 @@ target_link_libraries(exact_distances PUBLIC etlmon::etlmon PRIVATE Eigen3::Eige
 target_compile_options(exact_distances PRIVATE -O2)
 
 etlc_test(test_kernels RUNTIME
-  SOURCES ${kernel_sources} ${narrow_sources} test_kernel_versions.cpp
+  SOURCES ${kernel_sources} ${twins} ${narrow_sources}
   LIBRARIES exact_distances)
 target_compile_options(test_kernels PRIVATE ${kernel_warnings} -O2)
 
@@ -33,28 +37,28 @@ function(etlc_kernel_variant name)
 endfunction()
 # Assumptions about floats, with the compiler's own vectors.
 etlc_kernel_variant(test_kernels_fast_math
-  SOURCES ${kernel_sources} OPTIONS -O2 -ffast-math -DETLMON_NO_DISPATCH)
+  SOURCES ${kernel_sources} ${twins} OPTIONS -O2 -ffast-math -DETLMON_NO_DISPATCH)
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   return()
 endif()
 # The single version of a unit compiled for this CPU. test_kernels checks that versions give equal
 # bits.
 etlc_kernel_variant(test_kernels_native
-  SOURCES row_kernels_f32.cpp test_distances.cpp test_not_finite.cpp test_views.cpp
-  OPTIONS -O2 -march=native)
+  SOURCES ${kernel_sources} OPTIONS -O2 -march=native)
 # As on firmware: no vectors, no compiler extensions, and code optimised for size.
 etlc_kernel_variant(test_kernels_small
-  SOURCES ${kernel_sources} ${narrow_sources} test_kernel_versions.cpp
+  SOURCES ${kernel_sources} ${twins} ${narrow_sources}
   OPTIONS -Os -DETLMON_PORTABLE)
 # Only the baseline: in the other versions, guarded.hpp detects loads past the end of a row. Twins
 # measure the same rows.
-set(sanitized_sources ${kernel_sources} ${narrow_sources} test_kernel_versions.cpp)
-list(REMOVE_ITEM sanitized_sources test_kernel_twins.cpp)
 etlc_kernel_variant(test_kernels_sanitized
-  SOURCES ${sanitized_sources} OPTIONS ${quick_sanitizers_gcc} -DETLMON_NO_DISPATCH)
+  SOURCES ${kernel_sources} ${narrow_sources} OPTIONS ${quick_sanitizers_gcc} -DETLMON_NO_DISPATCH)
 set_tests_properties(test_kernels_sanitized PROPERTIES COST 80)
 set_tests_properties(test_kernels_small PROPERTIES COST 35)
 
+# What objects by custom commands depend on.
+file(GLOB_RECURSE kernel_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/*
+  ${here}/*.hpp ${here}/*.cpp)
 # The other compiler with its most aggressive flags, and every header alone with both.
 find_program(ETLC_CLANG clang++)
 mark_as_advanced(ETLC_CLANG)
@@ -63,17 +67,16 @@ if(NOT ETLC_CLANG)
   etlc_missing_tool(clang++ clang)
 else()
   list(APPEND kernel_compilers ${ETLC_CLANG})
-  file(GLOB_RECURSE kernel_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/*
-    ${CMAKE_CURRENT_SOURCE_DIR}/*.hpp)
   set(objects)
-  foreach(source ${kernel_sources})
-    add_custom_command(OUTPUT clang_${source}.o
+  foreach(source ${kernel_sources} ${twins})
+    get_filename_component(object ${source} NAME)
+    set(object clang_${object}.o)
+    add_custom_command(OUTPUT ${object}
       COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${ETLC_CLANG} -std=c++17 -O2 -ffast-math
               -DETLMON_NO_DISPATCH ${kernel_warnings} -I${PROJECT_SOURCE_DIR}/runtime/include
-              -c ${CMAKE_CURRENT_SOURCE_DIR}/${source} -o clang_${source}.o
-      DEPENDS ${source} ${kernel_headers}
-      VERBATIM)
-    list(APPEND objects clang_${source}.o)
+              -c ${source} -o ${object}
+      DEPENDS ${source} ${kernel_files} VERBATIM)
+    list(APPEND objects ${object})
   endforeach()
   add_custom_command(OUTPUT test_kernels_clang_fast_math
     COMMAND ${ETLC_CLANG} -ffast-math ${objects} $<TARGET_FILE:exact_distances>

@@ -1,9 +1,10 @@
 # The temporal operators, and adaptive thresholds: with sanitizers, then with flags or a compiler
 # that could change the meaning of floats. Windows and formulas use only integers, so testing them
 # with the sanitizers is enough.
-set(float_sources
+etlc_joined(float_sources temporal_floats
   test_adaptation.cpp test_recorder.cpp test_temporal_truth.cpp test_temporal_values.cpp)
-set(integer_sources test_temporal_costs.cpp test_temporal_formulas.cpp test_temporal_windows.cpp)
+etlc_joined(integer_sources temporal_integers test_temporal_costs.cpp test_temporal_formulas.cpp)
+list(APPEND integer_sources ${CMAKE_CURRENT_SOURCE_DIR}/test_temporal_windows.cpp)
 set(temporal_warnings -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror)
 
 etlc_test(test_temporal RUNTIME SOURCES ${float_sources} LIBRARIES etlmon::etlmon)
@@ -35,17 +36,18 @@ if(NOT ETLC_TEMPORAL_OTHER)
   string(REPLACE "clang++" "clang" temporal_package ${temporal_other})
   etlc_missing_tool(${temporal_other} ${temporal_package})
 else()
-  set(temporal_headers ${CMAKE_CURRENT_SOURCE_DIR}/temporal_streams.hpp)
-  file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/temporal/*)
-  list(APPEND temporal_headers ${headers})
+  file(GLOB temporal_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/temporal/*
+    ${CMAKE_CURRENT_SOURCE_DIR}/*.hpp ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   set(objects)
   foreach(source ${float_sources})
-    add_custom_command(OUTPUT other_${source}.o
+    get_filename_component(object ${source} NAME)
+    set(object other_${object}.o)
+    add_custom_command(OUTPUT ${object}
       COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${ETLC_TEMPORAL_OTHER} -std=c++17 -O2 -ffast-math
               ${temporal_warnings} -I${PROJECT_SOURCE_DIR}/runtime/include
-              -c ${CMAKE_CURRENT_SOURCE_DIR}/${source} -o other_${source}.o
-      DEPENDS ${source} ${temporal_headers} VERBATIM)
-    list(APPEND objects other_${source}.o)
+              -c ${source} -o ${object}
+      DEPENDS ${source} ${temporal_files} VERBATIM)
+    list(APPEND objects ${object})
   endforeach()
   add_custom_command(OUTPUT test_temporal_other_compiler
     COMMAND ${ETLC_TEMPORAL_OTHER} -ffast-math ${objects} $<TARGET_FILE:GTest::gtest_main>

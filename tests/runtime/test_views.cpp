@@ -64,8 +64,8 @@ float from_bits(std::uint32_t b) {
     return x;
 }
 
-const std::vector<std::uint32_t> kNotFinite{0x7f800000, 0xff800000, 0x7fc00000,
-                                            0xffc00000, 0x7f800001, 0xffffffff};
+const std::vector<std::uint32_t> kNotFiniteBits{0x7f800000, 0xff800000, 0x7fc00000,
+                                                0xffc00000, 0x7f800001, 0xffffffff};
 const std::vector<std::uint32_t> kFinite{0,          0x80000000, 1,          0x80000001,
                                          0x007fffff, 0x7f7fffff, 0xff7fffff, 0x3f800000};
 
@@ -93,7 +93,7 @@ TEST(Views, OneElementThatIsNotFiniteIsMissing) {
                 x[at] = from_bits(b);
                 EXPECT_TRUE(etlmon::finite(x.data(), n)) << n << " " << at << " " << b;
             }
-            for (const std::uint32_t b : kNotFinite) {
+            for (const std::uint32_t b : kNotFiniteBits) {
                 x[at] = from_bits(b);
                 EXPECT_FALSE(etlmon::finite(x.data(), n)) << n << " " << at << " " << b;
             }
@@ -113,7 +113,7 @@ TEST(Views, OneElementThatIsNotFiniteIsMissing) {
 }
 
 TEST(Views, ScalarsAreFiniteAndInRange) {
-    for (const std::uint32_t b : kNotFinite) {
+    for (const std::uint32_t b : kNotFiniteBits) {
         EXPECT_TRUE(etlmon::is_nan(etlmon::accept(from_bits(b)))) << b;
         EXPECT_TRUE(etlmon::is_nan(
             etlmon::accept(from_bits(b), from_bits(0xff800000), from_bits(0x7f800000))))
