@@ -8,4 +8,5 @@ for path in bay/a.tiff nothing/ 'bay/*.jpg'; do
     sed "s|bay/\*.png|$path|" t.etl > u.etl
     "$ETLC" embed u.etl --encoder-cmd cat
 done
+rm -f frames # of the first encoder, which may not have got so far
 ls
