@@ -87,6 +87,10 @@ DEVIATION : 'deviation' ;
 RESIZE    : 'resize' ;
 FLIP      : 'flip' ;
 CHANNELS  : 'channels' ;
+MARGINS   : 'margins' ;
+OUTPUT    : 'output' ;
+POOL      : 'pool' ;
+PREPROCESSOR : 'preprocessor' ;
 
 // ---- contextual: how durations are rounded
 

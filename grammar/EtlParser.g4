@@ -161,7 +161,9 @@ argument
 setting
     : op=(IMAGE | MEAN | DEVIATION) row
     | op=RESIZE name row?
-    | op=(FLIP | CHANNELS) name
+    | op=(FLIP | CHANNELS | MARGINS | POOL) name
+    | op=OUTPUT STRING
+    | op=PREPROCESSOR load
     ;
 
 encodedBy
@@ -271,6 +273,7 @@ name
     | RISE | FALL | HELD
     | PROJECTION | OFFSET | FITTED | FRAMES | STRIDE | OF | WHERE
     | ENCODER | BY | IMAGES | IMAGE | DEVIATION | RESIZE | FLIP | CHANNELS
+    | MARGINS | OUTPUT | POOL | PREPROCESSOR
     | DURATIONS | UP | DOWN | NEAREST
     | HERTZ | MICROSECONDS | MILLISECONDS | SECONDS | STEPS
     | DISTANCE | MAHALANOBIS

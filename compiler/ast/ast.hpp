@@ -218,7 +218,9 @@ struct Encoder {
     struct Setting {
         Name key;
         std::optional<Name> word;
+        bool is_quoted = false;  ///< the word
         std::vector<Number> values;
+        std::optional<Load> file;
         Span span;
     };
     Name name;

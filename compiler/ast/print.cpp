@@ -207,7 +207,10 @@ std::string text_of(const Encoder& encoder) {
     std::string result = fmt::format("encoder {} = {}", encoder.name.text, text_of(encoder.model));
     for (const Encoder::Setting& setting : encoder.settings) {
         result += ", " + setting.key.text;
-        if (setting.word) result += " " + setting.word->text;
+        if (setting.word)
+            result += setting.is_quoted ? fmt::format(" \"{}\"", setting.word->text)
+                                        : " " + setting.word->text;
+        if (setting.file) result += " " + text_of(*setting.file);
         if (!setting.values.empty()) result += " " + text_of(VectorLiteral{setting.values, {}});
     }
     return result;

@@ -86,6 +86,11 @@ ast::Encoder Builder::encoder(Grammar::EncoderDeclarationContext& context,
         ast::Encoder::Setting& added = result.settings.emplace_back();
         added.key = {text(*setting->op), span_of(*setting->op)};
         if (setting->name() != nullptr) added.word = name(*setting->name());
+        if (antlr4::tree::TerminalNode* const quoted = setting->STRING()) {
+            added.word = {content(*quoted->getSymbol()), span_of(*quoted->getSymbol())};
+            added.is_quoted = true;
+        }
+        if (setting->load() != nullptr) added.file = load(*setting->load());
         if (setting->row() != nullptr)
             for (Grammar::NumberContext* const value : setting->row()->number())
                 added.values.push_back(number(*value));

@@ -117,13 +117,14 @@ bool operators_could_follow(const Stuck& stuck) {
 
 /// Tokens that messages name by their spelling.
 constexpr std::array kSpelled = std::to_array<std::size_t>(
-    {EtlParser::MONITOR, EtlParser::IN,     EtlParser::HOLD,      EtlParser::MISSING,
-     EtlParser::SCALE,   EtlParser::OFFSET, EtlParser::FITTED,    EtlParser::FRAMES,
-     EtlParser::STRIDE,  EtlParser::OF,     EtlParser::WHERE,     EtlParser::BY,
-     EtlParser::IMAGES,  EtlParser::IMAGE,  EtlParser::DEVIATION, EtlParser::MEAN,
-     EtlParser::RESIZE,  EtlParser::FLIP,   EtlParser::CHANNELS,  EtlParser::ASSIGN,
-     EtlParser::LPAREN,  EtlParser::RPAREN, EtlParser::LBRACKET,  EtlParser::RBRACKET,
-     EtlParser::COMMA,   EtlParser::COLON,  EtlParser::SEMICOLON});
+    {EtlParser::MONITOR,      EtlParser::IN,     EtlParser::HOLD,      EtlParser::MISSING,
+     EtlParser::SCALE,        EtlParser::OFFSET, EtlParser::FITTED,    EtlParser::FRAMES,
+     EtlParser::STRIDE,       EtlParser::OF,     EtlParser::WHERE,     EtlParser::BY,
+     EtlParser::IMAGES,       EtlParser::IMAGE,  EtlParser::DEVIATION, EtlParser::MEAN,
+     EtlParser::RESIZE,       EtlParser::FLIP,   EtlParser::CHANNELS,  EtlParser::MARGINS,
+     EtlParser::PREPROCESSOR, EtlParser::OUTPUT, EtlParser::POOL,      EtlParser::ASSIGN,
+     EtlParser::LPAREN,       EtlParser::RPAREN, EtlParser::LBRACKET,  EtlParser::RBRACKET,
+     EtlParser::COMMA,        EtlParser::COLON,  EtlParser::SEMICOLON});
 
 /// The parser reads lists in loops too, so another item is no longer expected where the list may
 /// end.

@@ -106,10 +106,11 @@ void field(Changing& changing, const std::string& name, Place place) {
 
 void visit(check::Model&, check::Encoder& of, Changing& changing) {
     changing.of("Encoder");
-    auto& [name, model, image, mean, deviation, filter, resize, flip, channels, declaration,
-           dimension, fingerprint, otherwise, span] = of;
+    auto& [name, model, preprocessor, image, mean, deviation, filter, resize, flip, channels,
+           margins, output, pool, declaration, dimension, fingerprint, otherwise, span] = of;
     field(changing, "name", name);
     field(changing, "model", model);
+    field(changing, "preprocessor", preprocessor);
     field(changing, "image", image);
     field(changing, "mean", mean);
     field(changing, "deviation", deviation);
@@ -117,6 +118,9 @@ void visit(check::Model&, check::Encoder& of, Changing& changing) {
     field(changing, "resize", resize);
     field(changing, "flip", flip);
     field(changing, "channels", channels);
+    field(changing, "margins", margins);
+    field(changing, "output", output);
+    field(changing, "pool", pool);
     field(changing, "declaration", declaration);
     field(changing, "dimension", dimension);
     field(changing, "fingerprint", fingerprint);

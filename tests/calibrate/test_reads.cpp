@@ -58,9 +58,10 @@ std::vector<check::Reads> read(const check::Model& model) {
 /// Fields that no score depends on.
 const std::set<std::string> kUnread{
     // Part of the fingerprint.
-    "Encoder.model", "Encoder.image", "Encoder.mean", "Encoder.deviation", "Encoder.filter",
-    "Encoder.resize", "Encoder.flip", "Encoder.channels", "Encoder.declaration",
-    "Encoder.dimension", "Encoder.otherwise",
+    "Encoder.model", "Encoder.preprocessor", "Encoder.image", "Encoder.mean", "Encoder.deviation",
+    "Encoder.filter", "Encoder.resize", "Encoder.flip", "Encoder.channels", "Encoder.margins",
+    "Encoder.output", "Encoder.pool", "Encoder.declaration", "Encoder.dimension",
+    "Encoder.otherwise",
     // Part of the hash of the values, or their source.
     "Projection.matrix", "Projection.offset", "Projection.origin", "Projection.path",
     "Projection.fitted", "Target.values", "Target.origin", "Target.path", "Target.encoded",

@@ -37,6 +37,9 @@ std::vector<std::string> network_arguments(const check::Encoder& encoder,
     add("--resize", joined(encoder.resize));
     add("--flip", encoder.flip);
     add("--channels", encoder.channels);
+    add("--margins", encoder.margins);
+    add("--output", encoder.output);
+    add("--pool", encoder.pool);
     return arguments;
 }
 

@@ -134,7 +134,7 @@ std::optional<embedded::File> describe_encoders(check::Model& model, Request& re
                 .note(encoder.span, fmt::format("'{}' is declared here", encoder.name));
         };
         std::string place;
-        auto described = check::describe(encoder, path, place);
+        auto described = check::describe(encoder, model.file.path(), place);
         if (!described) {
             fail(described.failure(), place);
             continue;

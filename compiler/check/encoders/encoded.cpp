@@ -52,8 +52,9 @@ std::vector<std::string> changes(Context& c, Encoder encoder, const embedded::En
     if (!found.empty() || !exists(path)) return found;
     c.dependencies.insert(path);
     if (exists(settings_path(path))) c.dependencies.insert(settings_path(path));
+    if (!encoder.preprocessor.empty()) c.dependencies.insert(beside_spec(c, encoder.preprocessor));
     std::string place;
-    const auto now = describe(encoder, path, place);
+    const auto now = describe(encoder, c.file.path(), place);
     if (!now) {
         c.sink.report(data::in_file(now.failure(), place));
         return found;

@@ -9,6 +9,7 @@
 
 #include "artifacts/json.hpp"
 #include "check/context/context.hpp"
+#include "check/encoders/preprocessor.hpp"
 #include "check/numbers/decimal.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
@@ -29,7 +30,7 @@ constexpr std::uint64_t kMaxSettingsValues = 1000;
 struct Key {
     std::string_view key;
     std::string Encoder::*word;  ///< null: it takes no word
-    std::string_view words;      ///< those that it takes
+    std::string_view words;      ///< those that it takes; empty: any
     std::vector<float> Encoder::*numbers;
     std::size_t least;  ///< count of numbers
     std::size_t most;
@@ -43,11 +44,14 @@ constexpr Key kSettings[] = {
     {"deviation", nullptr, "", &Encoder::deviation, 3, 3,
      "a positive number each for red, green and blue"},
     {"resize", &Encoder::filter, "bilinear bicubic", &Encoder::resize, 0, 2,
-     "bilinear or bicubic and, unless that is 'image', the shorter side or rows and columns, whole "
-     "numbers from 1 to 16384, as in resize bicubic [256]"},
+     "bilinear or bicubic, and the length of the shorter side, or rows and columns, or nothing for "
+     "the size of 'image': whole numbers from 1 to 16384, as in resize bicubic [256]"},
     {"flip", &Encoder::flip, "horizontal vertical both", nullptr, 0, 0,
      "horizontal, vertical or both"},
-    {"channels", &Encoder::channels, "rgb bgr", nullptr, 0, 0, "rgb or bgr"}};
+    {"channels", &Encoder::channels, "rgb bgr", nullptr, 0, 0, "rgb or bgr"},
+    {"margins", &Encoder::margins, "even down", nullptr, 0, 0, "even or down"},
+    {"output", &Encoder::output, "", nullptr, 0, 0, "the name of an output, in quotes"},
+    {"pool", &Encoder::pool, "cls mean", nullptr, 0, 0, "cls or mean"}};
 
 bool fits(const Key& setting, const std::string& number, float& value) {
     if (to_float(number, value) != Fit::fits) return false;
@@ -61,6 +65,7 @@ bool fits(const Key& setting, const std::string& number, float& value) {
 bool fits(const Key& setting, const std::string& word) {
     if (setting.word == nullptr) return word.empty();
     const auto known = fmt::format(" {} ", setting.words);
+    if (setting.words.empty()) return !word.empty();
     return !word.empty() && known.find(fmt::format(" {} ", word)) != std::string::npos;
 }
 
@@ -103,9 +108,22 @@ std::optional<Failure> take(Encoder& encoder, const std::string& key, const Json
     return mistake ? std::optional(wrong(*mistake)) : std::nullopt;
 }
 
+bool takes_file(Context& c, const ast::Load& load) {
+    if (load.key.empty()) return true;
+    return c.refuse(Code::encoder_form, load.key_span,
+                    "this is a separate file; expected load(\"FILE\") without a key");
+}
+
 bool set_settings(Context& c, const ast::Encoder& declaration, Encoder& encoder) {
     std::set<std::string> given;
     for (const ast::Encoder::Setting& setting : declaration.settings) {
+        if (setting.file) {
+            if (!given.insert(setting.key.text).second)
+                return c.refuse(Code::encoder_form, setting.span, "preprocessor is given twice");
+            if (!takes_file(c, *setting.file)) return false;
+            encoder.preprocessor = setting.file->path;
+            continue;
+        }
         std::vector<std::string> numbers;
         for (const ast::Number& number : setting.values) numbers.push_back(number.text);
         const auto mistake =
@@ -163,8 +181,11 @@ std::string settings_text(const Encoder& encoder) {
     add("resize", encoder.filter, encoder.resize);
     add("image", "", encoder.image);
     add("channels", encoder.channels == "rgb" ? "" : encoder.channels, {});
+    add("margins", encoder.margins == "even" ? "" : encoder.margins, {});
     add("mean", "", three(encoder.mean, 0));
     add("deviation", "", three(encoder.deviation, 1));
+    add("output", encoder.output.empty() ? "" : fmt::format("\"{}\"", encoder.output), {});
+    add("pool", encoder.pool, {});
     return text;
 }
 
@@ -172,13 +193,17 @@ std::string settings_path(const std::string& model_path) {
     return std::filesystem::path(model_path).replace_extension(".json").string();
 }
 
+diag::Result<Json> read_settings(const std::string& path) {
+    const auto text = data::read_file(path, kMaxSettingsBytes, Code::encoder_form);
+    if (!text) return text.failure();
+    return artifacts::parse_json(*text, kMaxSettingsValues, Code::encoder_form);
+}
+
 std::optional<Failure> take_settings_file(Encoder& encoder, const std::string& model_path) {
     const std::string path = settings_path(model_path);
     std::error_code error;
     if (path == model_path || !std::filesystem::exists(path, error)) return std::nullopt;
-    const auto text = data::read_file(path, kMaxSettingsBytes, Code::encoder_form);
-    if (!text) return text.failure();
-    const auto root = artifacts::parse_json(*text, kMaxSettingsValues, Code::encoder_form);
+    const auto root = read_settings(path);
     if (!root) return root.failure();
     if (root->kind != Json::Kind::object)
         return wrong(fmt::format("the file is {}, expected an object with {}", describe(*root),
@@ -188,13 +213,17 @@ std::optional<Failure> take_settings_file(Encoder& encoder, const std::string& m
     return std::nullopt;
 }
 
-diag::Result<embedded::Encoder> describe(Encoder& encoder, const std::string& model_path,
+diag::Result<embedded::Encoder> describe(Encoder& encoder, const std::string& spec_path,
                                          std::string& place) {
-    place = model_path;
+    const std::string model_path = place = data::beside(spec_path, encoder.model);
     auto hash = data::hash_of_file(model_path, Code::encoder_refused);
     if (!hash) return hash.failure();
     place = settings_path(model_path);
     if (auto failure = take_settings_file(encoder, model_path)) return *failure;
+    if (!encoder.preprocessor.empty()) {
+        place = data::beside(spec_path, encoder.preprocessor);
+        if (auto failure = take_preprocessor(encoder, place)) return *failure;
+    }
     return embedded::Encoder{encoder.declaration, std::move(*hash), settings_text(encoder), "", 0};
 }
 
@@ -204,15 +233,13 @@ void check_encoders(Context& c) {
         encoder.name = declaration.name.text;
         encoder.model = declaration.model.path;
         encoder.span = declaration.name.span;
-        bool good = set_settings(c, declaration, encoder);
-        if (!declaration.model.key.empty()) {
-            c.report(Code::encoder_form, declaration.model.key_span,
-                     "a model is a separate file; expected load(\"FILE\") without a key");
-            good = false;
-        }
-        if (!good) c.scope.entity(NameKind::encoder, index).broken = true;
+        const bool good = set_settings(c, declaration, encoder);
+        if (!takes_file(c, declaration.model) || !good)
+            c.scope.entity(NameKind::encoder, index).broken = true;
         encoder.declaration =
             fmt::format("load(\"{}\"), {}", encoder.model, settings_text(encoder));
+        if (!encoder.preprocessor.empty())
+            encoder.declaration += fmt::format(", preprocessor load(\"{}\")", encoder.preprocessor);
         c.model.encoders.push_back(std::move(encoder));
     });
 }

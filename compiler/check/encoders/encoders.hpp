@@ -1,6 +1,7 @@
-// Encoders: the preprocessing of images before their models, from a spec or from a .json file
-// beside the model, and whether embeddings in an episode were made by them. A setting is given
-// once, or alike in both places; an episode that does not name its encoder causes a warning.
+// Encoders: the preprocessing of images before their models, from a spec, from a .json file beside
+// the model or from a preprocessor_config.json, and whether embeddings in an episode were made by
+// them. A setting is given once, or alike in all places; an episode that does not name its encoder
+// causes a warning.
 #pragma once
 
 #include <optional>
@@ -8,13 +9,14 @@
 #include <vector>
 
 #include "artifacts/embedded.hpp"
+#include "artifacts/json.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::check {
 
-/// Sets `image`, `mean`, `deviation`, `resize`, `flip` or `channels`. `word`: empty for the first
-/// three. Returns an error message for an unsuitable word or numbers, or a contradiction.
+/// Sets one of the settings in docs/recordings.md, by its name. `word`: empty for those of numbers
+/// alone. Returns an error message for an unsuitable word or numbers, or a contradiction.
 std::optional<std::string> set_setting(Encoder& encoder, const std::string& key,
                                        const std::string& word,
                                        const std::vector<std::string>& numbers);
@@ -22,6 +24,9 @@ std::optional<std::string> set_setting(Encoder& encoder, const std::string& key,
 /// Returns "image [224, 224], mean [0.485, 0.456, 0.406], deviation [0.229, 0.224, 0.225]", with
 /// neutral values for a missing mean or deviation, and without other settings that are missing.
 std::string settings_text(const Encoder& encoder);
+
+/// Reads a file of settings.
+diag::Result<artifacts::Json> read_settings(const std::string& path);
 
 /// Reads the settings in MODEL.json beside MODEL.onnx, if it exists.
 std::optional<diag::Failure> take_settings_file(Encoder& encoder, const std::string& model_path);
@@ -31,7 +36,7 @@ std::string settings_path(const std::string& model_path);
 
 /// Describes the encoder as it is now: the hash of its model, and all settings, which `encoder`
 /// gets too. The caller sets kind and dimension. A failure is about the file `place`.
-diag::Result<embedded::Encoder> describe(Encoder& encoder, const std::string& model_path,
+diag::Result<embedded::Encoder> describe(Encoder& encoder, const std::string& spec_path,
                                          std::string& place);
 
 /// Returns an error if the array was made by another encoder than the input's. `array` is the name

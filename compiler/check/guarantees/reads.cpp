@@ -98,8 +98,9 @@ private:
 
     std::string add_encoder(Index index) {
         // The fingerprint covers the model, the preprocessing and the runtime.
-        const auto& [name, model, image, mean, deviation, filter, resize, flip, channels,
-                     declaration, dimension, fingerprint, otherwise, span] = model_.encoders[index];
+        const auto& [name, model, preprocessor, image, mean, deviation, filter, resize, flip,
+                     channels, margins, output, pool, declaration, dimension, fingerprint,
+                     otherwise, span] = model_.encoders[index];
         add("encoder " + name, fingerprint.empty() ? declaration : kHashed + fingerprint);
         return name;
     }

@@ -25,6 +25,7 @@ enum class InputType : std::uint8_t { scalar, boolean, f32, f16, i8 };
 struct Encoder {
     std::string name;
     std::string model;             ///< the file as named in the spec
+    std::string preprocessor;      ///< the same; or empty
     std::vector<float> image;      ///< rows and columns of what the model sees; or empty
     std::vector<float> mean;       ///< red, green, blue; or empty
     std::vector<float> deviation;  ///< red, green, blue; or empty
@@ -32,6 +33,9 @@ struct Encoder {
     std::vector<float> resize;     ///< with a filter: shorter side, or rows and columns; or empty
     std::string flip;              ///< "horizontal", "vertical" or "both"; or empty
     std::string channels;          ///< "rgb" or "bgr"; or empty
+    std::string margins;           ///< halves of them are rounded "even" or "down"; or empty
+    std::string output;            ///< that is the embedding; empty: the only one
+    std::string pool;              ///< "cls" or "mean": how tokens become one vector; or empty
     std::string declaration;       ///< canonical text
     std::uint32_t dimension = 0;   ///< of its inputs; 0 if there are none
     std::string fingerprint;       ///< embedded::fingerprint; empty before `etlc embed`

@@ -1,4 +1,5 @@
 // Encodes frames from standard input.
+#include <algorithm>
 #include <bit>
 #include <fstream>
 #include <iterator>
@@ -31,15 +32,25 @@ std::string described(const Value& value) {
     return "'" + value.name + "' of " + (value.is_float ? "" : "not float, ") + shape_of(value);
 }
 
-/// Checks that a model maps one image to one embedding.
+/// Leaves one output: the one of this name, or the only one.
+void choose_output(Interface& model, const std::string& name) {
+    const auto chosen =
+        std::find_if(model.outputs.begin(), model.outputs.end(),
+                     [&](const Value& output) { return name.empty() || output.name == name; });
+    if (chosen == model.outputs.end())
+        refuse(kRefused, "gives no output '" + name + "', only " + listed(model.outputs));
+    if (name.empty() && model.outputs.size() > 1)
+        refuse(kRefused, "gives " + std::to_string(model.outputs.size()) +
+                             " outputs, expected one embedding: " + listed(model.outputs) +
+                             "; say which in the spec, as output \"" + chosen->name + "\"");
+    model.outputs = {Value(*chosen)};
+}
+
+/// Checks that a model maps one image to numbers.
 void check_interface(const Interface& model) {
     if (model.inputs.size() != 1)
         refuse(kRefused, "takes " + std::to_string(model.inputs.size()) +
                              " inputs, expected one image: " + listed(model.inputs));
-    if (model.outputs.size() != 1)
-        refuse(kRefused, "gives " + std::to_string(model.outputs.size()) +
-                             " outputs, expected one embedding: " + listed(model.outputs) +
-                             "; export it with one of them");
     const Value& input = model.inputs[0];
     const Extents shape = input.shape.value_or(Extents{});
     const bool is_image = input.is_float && shape.size() == 4 && shape[0] <= 1 &&
@@ -55,7 +66,7 @@ void check_interface(const Interface& model) {
                              "file, as torch.onnx.export(..., external_data=False) does");
 }
 
-/// Takes --filter, --resize, --flip and --channels.
+/// Takes --filter, --resize, --flip, --channels and --margins.
 void take_transform(const Words& options, Settings& settings) {
     const std::string filter = options.text("--filter", "");
     const std::string flip = options.text("--flip", "");
@@ -68,6 +79,7 @@ void take_transform(const Words& options, Settings& settings) {
     settings.mirrored = flip == "horizontal" || flip == "both";
     settings.upside_down = flip == "vertical" || flip == "both";
     settings.blue_first = options.text("--channels", "rgb") == "bgr";
+    settings.margins_down = options.text("--margins", "even") == "down";
 }
 
 Settings settings_of(const Words& options, const Value& input) {
@@ -97,16 +109,45 @@ Settings settings_of(const Words& options, const Value& input) {
     return settings;
 }
 
-Model read_model(const std::string& path) {
+Model read_model(const std::string& path, const std::string& output) {
     std::ifstream file(path, std::ios::binary);
     if (!file) refuse(kRefused, "cannot be read");
     Model model;
     model.bytes.assign(std::istreambuf_iterator<char>(file), {});
     auto interface = interface_of(model.bytes);
     if (!interface) refuse(kRefused, "is no ONNX model, or a damaged one");
+    choose_output(*interface, output);
     check_interface(*interface);
     model.interface = std::move(*interface);
     return model;
+}
+
+/// Makes one vector of an output. `pool`: "cls", the first of 1 x tokens x numbers; "mean", the
+/// mean of all tokens, or of all places of 1 x numbers x rows x columns; "", all numbers as they
+/// are.
+std::span<const float> pooled(const Network::Output& output, const std::string& pool,
+                              std::vector<float>& mean) {
+    const Extents& shape = output.shape;
+    if (pool.empty() || output.values.empty()) return output.values;
+    const bool is_tokens = shape.size() == 3 && shape[0] == 1;
+    const bool is_map = shape.size() == 4 && shape[0] == 1 && pool == "mean";
+    if (!is_tokens && !is_map)
+        refuse(kRefused, "gives " + shape_text(shape) + ", and pool " + pool +
+                             (pool == "cls" ? " takes 1 x tokens x numbers"
+                                            : " takes 1 x tokens x numbers or 1 x numbers x rows x "
+                                              "columns"));
+    const auto numbers = static_cast<std::size_t>(is_map ? shape[1] : shape[2]);
+    if (pool == "cls") return output.values.first(numbers);
+    const std::size_t places = output.values.size() / numbers;
+    const std::size_t stride = is_map ? 1 : numbers;  // to the next place
+    mean.resize(numbers);
+    for (std::size_t i = 0; i < numbers; ++i) {
+        const float* const first = output.values.data() + (is_map ? i * places : i);
+        double sum = 0;
+        for (std::size_t place = 0; place < places; ++place) sum += double{first[place * stride]};
+        mean[i] = static_cast<float>(sum / static_cast<double>(places));
+    }
+    return mean;
 }
 
 /// Reads the next frame; false at the end.
@@ -135,17 +176,18 @@ void say_onnxruntime(const Words& options) {
 
 void encode(const std::string& path, const Words& options) {
     static_assert(std::endian::native == std::endian::little);
-    Model model = read_model(path);
+    Model model = read_model(path, options.text("--output", ""));
+    const std::string pool = options.text("--pool", "");
     const Settings settings = settings_of(options, model.interface.inputs[0]);
     model.height = settings.height;
     model.width = settings.width;
     Network network(load_onnxruntime(options.text("--onnxruntime", "")), model);
-    std::vector<float> image(settings.elements());
+    std::vector<float> image(settings.elements()), mean;
     Frame frame;
     std::size_t dimension = 0;
     for (std::uint64_t n = 0; read_frame(frame); ++n) {
         prepare(frame, settings, image);
-        const std::span<const float> embedding = network.run(image);
+        const std::span<const float> embedding = pooled(network.run(image), pool, mean);
         if (n == 0) {
             dimension = embedding.size();
             if (dimension == 0) refuse(kRefused, "gives no number, expected an embedding");

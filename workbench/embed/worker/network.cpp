@@ -103,7 +103,7 @@ struct Network::Parts {
     }
 
     /// Checks the shape that the model declares.
-    std::span<const float> floats_of(ort::Tensor& value) const {
+    Output output_of(ort::Tensor& value) const {
         const auto described = made<Shape>(
             kRunning, [&](ort::Shape** result) { return ort::shape_of(&value, result); });
         int type = 0;
@@ -123,7 +123,8 @@ struct Network::Parts {
         done(kRunning, ort::tensor_data(&value, &data));
         const auto elements =
             std::accumulate(found.begin(), found.end(), std::int64_t{1}, std::multiplies<>());
-        return {static_cast<const float*>(data), static_cast<std::size_t>(elements)};
+        return {std::move(found),
+                {static_cast<const float*>(data), static_cast<std::size_t>(elements)}};
     }
 
     std::string version;
@@ -140,7 +141,7 @@ Network::Network(const Library& library, const Model& model)
 
 Network::~Network() = default;
 
-std::span<const float> Network::run(std::vector<float>& image) {
+Network::Output Network::run(std::vector<float>& image) {
     Parts& p = *parts_;
     const auto input = p.made<Tensor>(kRunning, [&](ort::Tensor** result) {
         return ort::create_tensor(p.memory.get(), image.data(), image.size() * sizeof(float),
@@ -152,7 +153,7 @@ std::span<const float> Network::run(std::vector<float>& image) {
     p.embedding = p.made<Tensor>(kRunning, [&](ort::Tensor** result) {
         return ort::run(p.session.get(), nullptr, input_names, inputs, 1, output_names, 1, result);
     });
-    return p.floats_of(*p.embedding);
+    return p.output_of(*p.embedding);
 }
 
 }  // namespace etlc::embed::worker

@@ -1,6 +1,6 @@
 // Runs a network with ONNX Runtime.
-// Takes: a model from one image to one embedding, and images. Gives: the embedding of each. Keeps
-// true: the embedding has the shape that the model declares; a model that cannot be run ends the
+// Takes: a model from one image to one output, and images. Gives: the output for each. Keeps true:
+// the output has the shape that the model declares; a model that cannot be run ends the
 // process with a line that names the node, where that is known.
 #pragma once
 
@@ -30,8 +30,12 @@ public:
     Network(const Library& library, const Model& model);
     ~Network();
 
-    /// Returns the embedding of an image of 3 x height x width, valid until the next run.
-    std::span<const float> run(std::vector<float>& image);
+    struct Output {
+        Extents shape;
+        std::span<const float> values;  ///< valid until the next run
+    };
+    /// Returns what the model makes of an image of 3 x height x width.
+    Output run(std::vector<float>& image);
 
 private:
     struct Parts;

@@ -126,9 +126,10 @@ Frame resized(const Frame& frame, const Settings& settings) {
     return resize(frame, static_cast<int>(height), static_cast<int>(width), settings.filter);
 }
 
-/// Returns round(spare / 2), halves to the even number, as torchvision's center_crop does.
-int margin(int spare) {
-    return spare / 2 + (spare % 4 == 3 ? 1 : 0);
+/// Returns spare / 2, rounded down as in transformers, or to the even number as by torchvision's
+/// center_crop.
+int margin(int spare, bool down) {
+    return spare / 2 + (!down && spare % 4 == 3 ? 1 : 0);
 }
 
 /// Writes the channels of a pixel to their planes.
@@ -151,8 +152,8 @@ private:
 };
 
 void put_centre(const Frame& frame, const Settings& settings, Planes planes) {
-    const int top = margin(frame.height - settings.height);
-    const int left = margin(frame.width - settings.width);
+    const int top = margin(frame.height - settings.height, settings.margins_down);
+    const int left = margin(frame.width - settings.width, settings.margins_down);
     for (int r = 0; r < settings.height; ++r) {
         const std::uint8_t* from = frame.row(top + r) + kChannels * left;
         for (int c = 0; c < settings.width; ++c, from += kChannels, planes.next())

@@ -23,6 +23,7 @@ struct Settings {
     bool mirrored = false;     ///< left and right change places
     bool upside_down = false;  ///< top and bottom do
     bool blue_first = false;
+    bool margins_down = false;   ///< halves of margins are rounded down, not to the even number
     float mean[kChannels] = {};  ///< red, green, blue
     float deviation[kChannels] = {};
 
