@@ -8,6 +8,7 @@
 #include "artifacts/file.hpp"
 #include "data/arrays/array.hpp"
 #include "data/files/hash.hpp"
+#include "data/frames/reference.hpp"
 #include "data/text/quote.hpp"
 
 namespace etlc::embedded {
@@ -25,8 +26,10 @@ const artifacts::Kind kKind{"embedded.json",
                             Code::invalid_embedded,
                             Code::unreadable_data_file};
 
+/// Describes an encoder. `array` names its embeddings of the reference frames in an archive that is
+/// written.
 template <class Archive>
-void encoder_members(Archive& archive, auto& encoder) {
+void encoder_members(Archive& archive, auto& encoder, const std::string& array) {
     archive("declaration", encoder.declaration);
     archive("model", encoder.model, Hash{});
     archive("settings", encoder.settings);
@@ -35,6 +38,11 @@ void encoder_members(Archive& archive, auto& encoder) {
     archive("dimension", dimension);
     std::string found = fingerprint(encoder);
     archive("fingerprint", found, Hash{});
+    const std::uint64_t columns = encoder.references.size() / data::kReferenceFrames;
+    const auto shape =
+        archive("references",
+                artifacts::Array{array, {data::kReferenceFrames, columns}, "frames x dimension"},
+                encoder.references, artifacts::Presence::where_any);
     if constexpr (Archive::kReads) {
         encoder.dimension = static_cast<std::uint32_t>(
             std::min<std::uint64_t>(dimension, std::numeric_limits<std::uint32_t>::max()));
@@ -44,6 +52,11 @@ void encoder_members(Archive& archive, auto& encoder) {
                             "it",
                             in_quotes(archive.place("fingerprint")), in_quotes(found),
                             in_quotes(fingerprint(encoder))));
+        const std::vector<std::uint64_t> expected = {data::kReferenceFrames, encoder.dimension};
+        if (!shape.empty() && shape != expected)
+            archive.refuse(fmt::format("{} has the shape {} x {}, expected {} x {}",
+                                       in_quotes(archive.place("references")), shape[0], shape[1],
+                                       expected[0], expected[1]));
     }
 }
 
@@ -72,10 +85,12 @@ void entry_members(Archive& archive, auto& entry, const std::string& array, cons
 
 template <class Archive>
 void file_members(Archive& archive, auto& file) {
+    std::size_t encoders = 0;
     std::size_t entries = 0;
     archive("spec", file.spec);
-    archive("encoders", file.encoders,
-            [](auto& one, const std::string&, auto& encoder) { encoder_members(one, encoder); });
+    archive("encoders", file.encoders, [&](auto& one, const std::string&, auto& encoder) {
+        encoder_members(one, encoder, fmt::format("references-{}", ++encoders));
+    });
     archive("entries", file.entries, [&](auto& one, const std::string&, auto& entry) {
         entry_members(one, entry, fmt::format("rows-{}", ++entries), file);
     });

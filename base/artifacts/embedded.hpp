@@ -24,6 +24,9 @@ struct Encoder {
     std::string settings;     ///< canonical text, with those of the .json beside the model
     std::string kind;         ///< kOnnxRuntime and its version, or kCommand
     std::uint32_t dimension = 0;
+    /// Its embeddings of the reference frames (data/frames/reference.hpp), a row each; empty in
+    /// files of earlier versions.
+    std::vector<float> references;
 };
 
 /// Returns the identity of an encoder: XXH64 of model, settings and kind, 16 hex digits.
@@ -65,7 +68,8 @@ std::string default_path(const std::string& spec_path);
 diag::Result<File> read(const std::string& path);
 diag::Result<File> parse(std::string_view bytes, const std::string& path);
 
-/// Returns the bytes of the archive: embedded.json, and float32 arrays "rows-1", "rows-2", ...
+/// Returns the bytes of the archive: embedded.json, and float32 arrays "references-1", ..., of
+/// encoders, and "rows-1", ..., of entries.
 std::string write(const File& file);
 
 /// The encoders of an episode's inputs: input name -> fingerprint. An .npz episode that `etlc

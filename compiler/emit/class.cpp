@@ -237,6 +237,7 @@ std::string reset_words(const Context& context) {
 
 void print_interface(Printer& out, const Context& context, const std::vector<Member>& all) {
     print_constructors(out, context);
+    print_reference_interface(out, context);
     print_doc(out, reset_words(context));
     out.open("constexpr void reset() noexcept {");
     for (const Member& member : all)

@@ -45,6 +45,8 @@ struct Context {
     std::vector<plan::Parameter> parameters = {};  ///< of a retargetable class
     std::uint64_t shape = 0;                       ///< of such a class; 0 while the shape is
                                                    ///< computed
+    /// Whether sketches of reference frames are printed. They are no part of the shape.
+    bool with_references = true;
     /// Returns whether all numbers of the spec are parameters of the monitor.
     bool retargetable() const { return model.retargetable; }
     /// Returns code for a parameter: "numbers_ + targets::goal", "numbers_[thresholds::near]".
@@ -197,6 +199,12 @@ void print_retarget_interface(Printer& out, const Context& context);
 /// Prints measure() of a monitor without parameters.
 void print_unknown_atoms(Printer& out, const Context& context);
 void print_shadow(Printer& out, const Context& context);
+
+// Reference frames. These print nothing for a spec without encoders, or not embedded yet.
+bool has_references(const Context& context);
+void print_references(Printer& out, const Context& context);
+/// Prints encoder_agrees() and encoder_difference().
+void print_reference_interface(Printer& out, const Context& context);
 
 // Telemetry of named predicates.
 std::vector<Member> telemetry_members(const Context& context);

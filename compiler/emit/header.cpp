@@ -75,6 +75,7 @@ std::set<std::string> runtime_headers(const Context& context) {
         headers.insert({"temporal/handover", "temporal/window"});
     if (any_stream(plan, {StreamOp::widening})) headers.insert("temporal/widening");
     if (plan.recorder) headers.insert("temporal/recorder");
+    if (has_references(context)) headers.insert("reference");
     if (context.retargetable()) headers.insert({"params/params", "params/shadow"});
     for (const Names::OfReading& reading : context.names.readings) {
         if (!reading.guards.empty()) headers.insert("temporal/machine");
@@ -138,6 +139,7 @@ void print_body(Printer& out, const Context& context) {
         print_parameters(out, context);
     else
         print_constants(out, context);
+    print_references(out, context);
     print_tables(out, context);
     print_class(out, context);
     print_shadow(out, context);
@@ -162,7 +164,8 @@ std::string without_comments(std::string_view text) {
 std::uint64_t shape(const plan::Plan& plan, const std::string& version) {
     Options options;
     options.version = version;
-    const Context context = context_of(plan, options);
+    Context context = context_of(plan, options);
+    context.with_references = false;
     Printer out;
     print_includes(out, context, version, false);
     print_body(out, context);

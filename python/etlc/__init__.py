@@ -25,7 +25,7 @@ from .errors import (
     SpecError,
     UndecidedError,
 )
-from .monitor import Input, Measurement, Monitor
+from .monitor import REFERENCE_FRAMES, Input, Measurement, Monitor
 from .verdicts import Episode, EpisodeVerdicts, Explanation, Verdict, Verdicts
 
 __version__: str = _native.etlc_version().decode()
@@ -46,6 +46,7 @@ __all__ = [
     "Measurement",
     "Monitor",
     "NotKeptError",
+    "REFERENCE_FRAMES",
     "SpecError",
     "UndecidedError",
     "Verdict",

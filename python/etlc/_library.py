@@ -12,7 +12,7 @@ from typing import Any, Callable
 from .errors import BusyError, ClosedError, Error, InputError, NotKeptError, SpecError
 from .errors import UndecidedError, diagnostics_of
 
-API_VERSION = 2
+API_VERSION = 3
 
 F32, BOOL, F16, I8 = range(4)
 INPUTS, MONITORS, PREDICATES, LETS = range(4)
@@ -108,6 +108,9 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "etlc_position": [c_uint64, c_uint32, POINTER(c_uint64)],
     "etlc_measure": [c_uint64, c_uint32, POINTER(Measured)],
     "etlc_let": [c_uint64, c_uint32, c_void_p],
+    "etlc_encoder_difference": [
+        c_uint64, c_char_p, c_uint32, POINTER(c_float), c_size_t, POINTER(c_double)
+    ],  # fmt: skip
     "etlc_count": [c_uint64, c_uint32, POINTER(Counts)],
     "etlc_incidents": [c_uint64, POINTER(c_uint32), POINTER(c_uint32)],
     "etlc_incident": [c_uint64, c_uint32, POINTER(c_void_p), POINTER(c_size_t)],

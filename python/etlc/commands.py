@@ -181,6 +181,7 @@ def embed(
     *,
     output: str | os.PathLike[str] | None = None,
     settings: Mapping[str, object] | None = None,
+    write_reference: str | os.PathLike[str] | None = None,
     onnxruntime: str | os.PathLike[str] | None = None,
     encoder_command: str | None = None,
     encoder_timeout: int | None = None,
@@ -193,6 +194,7 @@ def embed(
         data: recordings to turn into episodes: videos, folders of images, patterns.
         output: the folder for the episodes; required with `data`.
         settings: other values for constants.
+        write_reference: a folder for the reference frames, which `Monitor.encoder_agrees` is about.
         onnxruntime: the library that runs the spec's networks, or its folder; by default
             the one of the environment, pip, npm or the system.
         encoder_command: a command that encodes (docs/encoders.md), in place of the spec's network.
@@ -207,8 +209,8 @@ def embed(
     """
     ran = _run(
         "embed", [spec], data, settings, None,
-        {"-o": output, "--onnxruntime": onnxruntime, "--encoder-cmd": encoder_command,
-         "--encoder-timeout": encoder_timeout},
+        {"-o": output, "--write-reference": write_reference, "--onnxruntime": onnxruntime,
+         "--encoder-cmd": encoder_command, "--encoder-timeout": encoder_timeout},
     )  # fmt: skip
     path = _output(spec, output, ".embedded.npz")
     return Written(path, ran.report, ran.diagnostics)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import ctypes
 import difflib
 import os
-from ctypes import byref, c_char_p, c_size_t, c_uint32, c_uint64, c_void_p
+from ctypes import POINTER, byref, c_char_p, c_double, c_float, c_size_t, c_uint32, c_uint64
+from ctypes import c_void_p
 from dataclasses import dataclass
 from typing import Any, Callable, Mapping
 
@@ -18,6 +19,8 @@ from .errors import Error, EtlcWarning, InputError, diagnostics_of, warn, warn_o
 from .verdicts import VERDICT_DTYPE, Episode, Explanation, Verdicts
 
 _DTYPES = {F32: np.dtype("f4"), BOOL: np.dtype("u1"), F16: np.dtype("f2"), I8: np.dtype("i1")}
+
+REFERENCE_FRAMES = 4
 
 
 @dataclass(frozen=True)
@@ -454,6 +457,46 @@ class Monitor:
         return {
             "missing": counts.missing, "out_of_range": counts.out_of_range, "held": counts.held
         }  # fmt: skip
+
+    def encoder_difference(self, frame: int, embedding: Any, encoder: str | None = None) -> float:
+        """Returns how far this machine's encoder is from the one of calibration.
+
+        Args:
+            frame: the number of a reference frame, from 0 to REFERENCE_FRAMES - 1. `etlc embed
+                --write-reference FOLDER` writes them.
+            embedding: what the encoder makes of it.
+            encoder: the name of the encoder; may be left out where the spec has one.
+
+        Returns:
+            |z - r| / |r|, where r is what `etlc embed` made of the frame; infinity where the
+            embedding is not finite.
+
+        Raises:
+            NotKeptError: the embeddings of the spec were made by an earlier version of etlc embed.
+        """
+        array = conversion.as_elements(
+            "embedding", embedding, _DTYPES[F32], (np.size(embedding),)
+        )  # fmt: skip
+        values = np.ascontiguousarray(array)
+        if not 0 <= frame < REFERENCE_FRAMES:
+            raise InputError(f"frame is {frame}, expected 0 to {REFERENCE_FRAMES - 1}")
+        name = None if encoder is None else encoded("encoder", encoder)
+        difference = c_double()
+        call(
+            library.etlc_encoder_difference, self._session, name, frame,
+            values.ctypes.data_as(POINTER(c_float)), values.size, byref(difference),
+        )  # fmt: skip
+        return difference.value
+
+    def encoder_agrees(
+        self, frame: int, embedding: Any, encoder: str | None = None, tolerance: float = 1e-3
+    ) -> bool:
+        """Returns whether this machine's encoder is the one of calibration, but for rounding.
+
+        Ask for each reference frame before the first step: verdicts mean nothing with another
+        encoder. `encoder_difference` says what the arguments are. `tolerance` is its largest value.
+        """
+        return self.encoder_difference(frame, embedding, encoder) <= tolerance
 
     @property
     def incidents(self) -> tuple[bytes, ...]:

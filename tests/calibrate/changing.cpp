@@ -107,7 +107,8 @@ void field(Changing& changing, const std::string& name, Place place) {
 void visit(check::Model&, check::Encoder& of, Changing& changing) {
     changing.of("Encoder");
     auto& [name, model, preprocessor, image, mean, deviation, filter, resize, flip, channels,
-           margins, output, pool, declaration, dimension, fingerprint, otherwise, span] = of;
+           margins, output, pool, declaration, dimension, fingerprint, references, otherwise,
+           span] = of;
     field(changing, "name", name);
     field(changing, "model", model);
     field(changing, "preprocessor", preprocessor);
@@ -124,6 +125,7 @@ void visit(check::Model&, check::Encoder& of, Changing& changing) {
     field(changing, "declaration", declaration);
     field(changing, "dimension", dimension);
     field(changing, "fingerprint", fingerprint);
+    field(changing, "references", references);
     field(changing, "otherwise", otherwise);
     field(changing, "span", span);
 }

@@ -62,6 +62,8 @@ const std::set<std::string> kUnread{
     "Encoder.filter", "Encoder.resize", "Encoder.flip", "Encoder.channels", "Encoder.margins",
     "Encoder.output", "Encoder.pool", "Encoder.declaration", "Encoder.dimension",
     "Encoder.otherwise",
+    // Tells the robot whether it has the same encoder.
+    "Encoder.references",
     // Part of the hash of the values, or their source.
     "Projection.matrix", "Projection.offset", "Projection.origin", "Projection.path",
     "Projection.fitted", "Target.values", "Target.origin", "Target.path", "Target.encoded",

@@ -79,10 +79,11 @@ def main():
     video("today.mp4", np.arange(FRAMES) >= first)
 
     os.environ["PATH"] = os.path.dirname(ETLC) + ":" + os.environ["PATH"]
-    assert [command.split()[1] for command in COMMANDS] == ["embed", "calibrate", "run"], COMMANDS
+    assert [command.split()[1] for command in COMMANDS] == ["embed", "calibrate", "run", "embed"]
     said = [call("bash", "-c", command) for command in COMMANDS]
     assert f"labels: {sum(FRAMES - 1 - n for n in range(1, DEMOS + 1))} frames positive" in said[1]
     assert f"docked: satisfied for good from step {first} " in said[2], said[2]
+    assert sorted(os.listdir("references")) == [f"reference-{i}.png" for i in range(4)]
     labels = np.load("episodes/ep4.npz")["truth.at_bay"]
     assert labels[:-1].tolist() == [step >= 4 for step in range(FRAMES - 1)], labels
     assert np.isnan(labels[-1]), "an empty cell is missing"

@@ -3,6 +3,9 @@
 
 dimension='\002\000\000\000'
 row='\000\000\200\077\000\000\000\100' # 1, 2
+# Behind what a spec names, an encoder gets the four reference frames of 480 x 640 pixels.
+references=$row$row$row$row
+count='n=$(wc -c); n=$((n < 3686432 ? n / 11 : (n - 3686432) / 11 + 4))'
 
 # decodes [STATUS WORDS]: makes a program in place of etlc-embed, which prints one pixel per file,
 # and this row per frame, then exits with STATUS.
@@ -13,7 +16,7 @@ case \$1 in
 images) shift; for file; do printf '\\001\\000\\000\\000\\001\\000\\000\\000abc'; done ;;
 video) printf '\\001\\000\\000\\000\\001\\000\\000\\000abc' ;;
 onnxruntime) echo "\${VERSION:-1.30.0}"; echo /a/library; exit 0 ;;
-encode) n=\$((\$(wc -c) / 11)); printf '$dimension'
+encode) $count; printf '$dimension'
     while [ \$n -gt 0 ]; do printf '$row'; n=\$((n - 1)); done ;;
 esac
 echo "${2:-}" >&2
@@ -39,11 +42,12 @@ END
 
 # embeds_each ARGUMENT...: `etlc embed` with an encoder that prints this row for every frame.
 embeds_each() {
-    "$ETLC" embed t.etl "$@" --encoder-cmd "n=\$((\$(wc -c) / 11)); printf '$dimension'
+    "$ETLC" embed t.etl "$@" --encoder-cmd "$count; printf '$dimension'
         while [ \$n -gt 0 ]; do printf '$row'; n=\$((n - 1)); done"
 }
 
 # embeds BYTES ARGUMENT...: `etlc embed` with an encoder that reads all frames and writes these.
+# Behind rows of frames belong $references.
 embeds() {
     "$ETLC" embed t.etl --encoder-cmd "cat > frames; printf '$1'" "${@:2}"
 }

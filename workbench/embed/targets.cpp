@@ -8,6 +8,7 @@
 #include "data/arrays/array.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
+#include "data/frames/reference.hpp"
 #include "embed/embed.hpp"
 
 namespace etlc::embed {
@@ -18,7 +19,7 @@ using check::Encoded;
 using check::Index;
 using diag::Code;
 
-/// Encodes all that one encoder encodes.
+/// Encodes all that one encoder encodes: what the spec names, and the reference frames.
 class Targets {
 public:
     Targets(const check::Model& model, Index encoder, const Request& request, embedded::File& file,
@@ -31,15 +32,16 @@ public:
           sink_(sink) {}
 
     bool embed() {
-        std::unique_ptr<Encoder> running;
-        for (const Encoded& encoded : model_.encoded) {
-            if (encoded.encoder != index_) continue;
-            if (!running && !(running = start())) return false;
-            if (!add(*running, encoded)) return false;
-        }
-        if (!running) return true;
-        if (auto trouble = running->finish()) return report(*trouble, {}, {});
-        file_.encoders[encoder_.name].dimension = running->dimension();
+        const std::unique_ptr<Encoder> running = start();
+        if (!running) return false;
+        for (const Encoded& encoded : model_.encoded)
+            if (encoded.encoder == index_ && !add(*running, encoded)) return false;
+        embedded::Encoder& made = file_.encoders[encoder_.name];
+        const auto keep = [&](std::vector<float> rows) { made.references = std::move(rows); };
+        auto trouble = running->add(*data::reference_frames(), "reference frames", keep);
+        if (!trouble) trouble = running->finish();
+        if (trouble) return report(*trouble, {}, {});
+        made.dimension = running->dimension();
         return true;
     }
 

@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* The version of this header. A library accepts programs of its own and of earlier versions. */
-#define ETLC_API_VERSION 2u
+#define ETLC_API_VERSION 3u
 
 /* ---- errors --------------------------------------------------------------------------------- */
 
@@ -288,6 +288,19 @@ enum { ETLC_TEXT = 0, ETLC_JSON = 1 };
  * proportional to the episode. */
 ETLC_EXPORT etlc_status etlc_explain(etlc_session session, uint32_t monitor, uint32_t format,
                                      const char **text);
+
+/* ---- encoders ------------------------------------------------------------------------------- */
+
+enum { ETLC_REFERENCE_FRAMES = 4 };
+
+/* Compares an encoder with that of calibration. `frame`: of the reference frames that `etlc embed
+ * --write-reference` writes, from 0. `embedding`: what the encoder makes of it. `encoder`: its name
+ * in the spec; null where the spec has one encoder. `difference` is |z - r| / |r|, where r is what
+ * `etlc embed` made of the frame; infinite where z is not finite. Up to 1e-3 is rounding; verdicts
+ * mean nothing with another encoder. */
+ETLC_EXPORT etlc_status etlc_encoder_difference(etlc_session session, const char *encoder,
+                                                uint32_t frame, const float *embedding,
+                                                size_t elements, double *difference);
 
 /* ---- incidents ------------------------------------------------------------------------------ */
 

@@ -1,6 +1,9 @@
-// Queries after a step: measurements, lets, counts, explanations and incidents.
+// Queries: measurements, lets, counts, explanations and incidents of a step; encoders.
+#include <cmath>
 #include <cstring>
+#include <limits>
 
+#include "data/frames/reference.hpp"
 #include "library/call.hpp"
 
 namespace etlc::library {
@@ -15,6 +18,33 @@ etlc_status check_monitor(const Session& session, std::uint32_t monitor) {
 etlc_status refuse_undecided(const Session& session, std::uint32_t monitor) {
     return refuse(ETLC_UNDECIDED, "monitor '{}' has no verdict yet",
                   session.plan().monitors[monitor].name);
+}
+
+static_assert(ETLC_REFERENCE_FRAMES == data::kReferenceFrames);
+
+/// Returns the encoder of this name, of the only one where there is no name; null where the call
+/// has been refused.
+const check::Encoder* find_encoder(const Session& session, const char* name, etlc_status& refused) {
+    const std::vector<check::Encoder>& encoders = session.model().encoders;
+    if (name == nullptr && encoders.size() == 1) return &encoders[0];
+    for (const check::Encoder& encoder : encoders)
+        if (name != nullptr && encoder.name == name) return &encoder;
+    refused =
+        name == nullptr
+            ? refuse(ETLC_NO_SUCH, "encoder is null, and the spec has {} encoders", encoders.size())
+            : refuse(ETLC_NO_SUCH, "the spec has no encoder '{}'", name);
+    return nullptr;
+}
+
+/// Returns |z - r| / |r|, or |z| where r is 0.
+double relative_difference(const float* z, const float* r, std::size_t elements) {
+    double difference = 0, length = 0;
+    for (std::size_t i = 0; i < elements; ++i) {
+        difference += (double{z[i]} - r[i]) * (double{z[i]} - r[i]);
+        length += double{r[i]} * r[i];
+    }
+    const double relative = std::sqrt(difference / (length > 0 ? length : 1));
+    return std::isfinite(relative) ? relative : std::numeric_limits<double>::infinity();
 }
 
 /// Calls `work(recorder)` where the spec was opened with a recorder.
@@ -103,6 +133,32 @@ etlc_status etlc_explain(etlc_session session, uint32_t monitor, uint32_t format
         if (const std::string why = opened.why_unexplained(); !why.empty())
             return refuse(ETLC_NOT_KEPT, "{}", why);
         *text = opened.explain(monitor, format == ETLC_JSON).c_str();
+        return ETLC_OK;
+    });
+}
+
+etlc_status etlc_encoder_difference(etlc_session session, const char* encoder, uint32_t frame,
+                                    const float* embedding, size_t elements, double* difference) {
+    return with_session(session, [&](Session& opened) -> etlc_status {
+        if (embedding == nullptr) return refuse_null("embedding");
+        if (difference == nullptr) return refuse_null("difference");
+        etlc_status refused = ETLC_OK;
+        const check::Encoder* const found = find_encoder(opened, encoder, refused);
+        if (found == nullptr) return refused;
+        if (frame >= data::kReferenceFrames)
+            return refuse(ETLC_NO_SUCH, "there is no reference frame {}, only {}", frame,
+                          data::kReferenceFrames);
+        const std::size_t dimension = found->references.size() / data::kReferenceFrames;
+        if (dimension == 0)
+            return refuse(ETLC_NOT_KEPT,
+                          "what encoder '{}' makes of the reference frames is not known: run etlc "
+                          "embed again",
+                          found->name);
+        if (elements != dimension)
+            return refuse(ETLC_WRONG_NUMBER, "embedding has {} elements, encoder '{}' makes {}",
+                          elements, found->name, dimension);
+        *difference =
+            relative_difference(embedding, &found->references[frame * dimension], dimension);
         return ETLC_OK;
     });
 }

@@ -156,6 +156,22 @@ std::optional<Failure> ImageDecoder::decode(std::string_view bytes, Frame& frame
     return std::nullopt;
 }
 
+diag::Result<std::string> png_of(const Frame& frame) {
+    auto child = Child::start(
+        embedder_path(), {"png"},
+        {.max_silence_seconds = frames::kMaxSilenceSeconds, .fed = true, .heard = true});
+    if (!child) return no_embedder();
+    std::string head;
+    frames::append(head, frame.height);
+    frames::append(head, frame.width);
+    if (child->give(head)) static_cast<void>(child->give(frame.rgb));  // why not, it says
+    child->give_no_more();
+    std::string png;
+    for (char byte = 0; !child->at_end() && child->read(&byte, 1);) png += byte;
+    if (child->exit_status() == 0 && !png.empty()) return png;
+    return Failure{Code::no_embedder, fmt::format("what writes PNG {}", child->ending())};
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -68,6 +68,9 @@ private:
     std::unique_ptr<Child> child_;
 };
 
+/// Returns the bytes of a PNG file.
+diag::Result<std::string> png_of(const Frame& frame);
+
 /// Returns the path of the program that decodes files and runs networks.
 std::string embedder_path();
 diag::Failure no_embedder();

@@ -201,6 +201,7 @@ void check_embeddings(Context& c) {
             continue;
         }
         encoder.fingerprint = embedded::fingerprint(found->second);
+        encoder.references = found->second.references;
         encoder.otherwise = embedded::fingerprints_otherwise(found->second);
         is_up_to_date(c, Code::embedded_stale, encoder.span,
                       fmt::format("'{}' is not the encoder that made {}", encoder.name,

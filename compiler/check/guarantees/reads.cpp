@@ -100,7 +100,7 @@ private:
         // The fingerprint covers the model, the preprocessing and the runtime.
         const auto& [name, model, preprocessor, image, mean, deviation, filter, resize, flip,
                      channels, margins, output, pool, declaration, dimension, fingerprint,
-                     otherwise, span] = model_.encoders[index];
+                     references, otherwise, span] = model_.encoders[index];
         add("encoder " + name, fingerprint.empty() ? declaration : kHashed + fingerprint);
         return name;
     }

@@ -39,6 +39,9 @@ struct Encoder {
     std::string declaration;       ///< canonical text
     std::uint32_t dimension = 0;   ///< of its inputs; 0 if there are none
     std::string fingerprint;       ///< embedded::fingerprint; empty before `etlc embed`
+    /// Its embeddings of the reference frames, `dimension` elements each; empty before `etlc
+    /// embed`.
+    std::vector<float> references;
     /// Fingerprints of the same model in other runtimes, with the names of these.
     std::map<std::string, std::string> otherwise;
     Span span;

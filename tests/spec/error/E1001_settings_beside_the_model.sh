@@ -2,5 +2,5 @@
 . "$SPECS/../encoding.bash"
 for settings in '{"image": [2, 2]}' '{"size": [2, 2]}' '{"mean": 0.5}' '[1]' '{'; do
     echo "$settings" > net.json
-    embeds "$dimension$row$row"
+    embeds "$dimension$row$row$references"
 done

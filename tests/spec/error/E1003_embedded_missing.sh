@@ -2,7 +2,7 @@
 . "$SPECS/../encoding.bash"
 "$ETLC" t.etl -o m.hpp
 "$ETLC" t.etl --check
-embeds "$dimension$row$row" > /dev/null
+embeds "$dimension$row$row$references" > /dev/null
 sed -i 's/images("bay\/\*.png")/images("bay\/1.png")/' t.etl
 "$ETLC" t.etl -o m.hpp
 sed -i 's/ net/ other/' t.etl

@@ -1,7 +1,7 @@
 # Changes of everything that embeddings are made from: images, model, settings. Building a monitor
 # does not need the original files.
 . "$SPECS/../encoding.bash"
-embeds "$dimension$row$row" > /dev/null
+embeds "$dimension$row$row$references" > /dev/null
 echo another > bay/2.png
 echo three > bay/3.png
 "$ETLC" t.etl --check

@@ -5,7 +5,7 @@
 "$ETLC" embed t.etl --encoder-cmd 'sleep 60' --encoder-timeout 1
 embeds ""
 embeds "$dimension$row"
-embeds "$dimension$row$row$row"
+embeds "$dimension$row$row$row$references"
 embeds "\\000\\000\\000\\000"
-"$ETLC" embed t.etl --encoder-cmd "cat > frames; printf '$dimension$row$row'; exit 4"
+"$ETLC" embed t.etl --encoder-cmd "cat > frames; printf '$dimension$row$row$references'; exit 4"
 ls

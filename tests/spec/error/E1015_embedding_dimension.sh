@@ -2,4 +2,4 @@
 . "$SPECS/../encoding.bash"
 embeds "\\003\\000\\000\\000$row$row"
 sed -i 's/^input/input y : f32[3] by net;\ninput/' t.etl
-embeds "$dimension$row$row"
+embeds "$dimension$row$row$references"

@@ -7,6 +7,7 @@
 
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
+#include "data/frames/reference.hpp"
 #include "data/recordings/open.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/process/output_file.hpp"
@@ -95,6 +96,25 @@ void allow_many_files() {
     static_cast<void>(::setrlimit(RLIMIT_NOFILE, &files));
 }
 
+std::vector<std::string> reference_paths(const std::string& folder) {
+    std::vector<std::string> paths;
+    for (std::uint32_t i = 0; i < data::kReferenceFrames && !folder.empty(); ++i)
+        paths.push_back((fs::path(folder) / fmt::format("reference-{}.png", i)).string());
+    return paths;
+}
+
+bool write_references(const std::vector<std::string>& paths, OutputFiles& files, diag::Sink& sink) {
+    for (std::uint32_t i = 0; i < paths.size(); ++i) {
+        const auto png = data::png_of(data::reference_frame(i));
+        if (!png) {
+            sink.report(data::in_file(png.failure(), paths[i]));
+            return false;
+        }
+        if (!files.add(paths[i], *png)) return false;
+    }
+    return true;
+}
+
 bool make_folder(const std::string& folder, diag::Sink& sink) {
     std::error_code error;
     fs::create_directories(folder, error);
@@ -169,7 +189,10 @@ bool embed(const source::File& file, const Request& request, diag::Sink& sink) {
         inputs.push_back(data::trace_file(recording.path));
         if (!recording.beside.empty()) inputs.push_back(recording.beside);
     }
+    const std::vector<std::string> references = reference_paths(request.embed.references);
+    outputs.insert(outputs.end(), references.begin(), references.end());
     if (!recordings.empty() && !make_folder(request.output, sink)) return false;
+    if (!references.empty() && !make_folder(request.embed.references, sink)) return false;
     if (!check_outputs(outputs, inputs, sink)) return false;
 
     allow_many_files();
@@ -178,6 +201,7 @@ bool embed(const source::File& file, const Request& request, diag::Sink& sink) {
         return files.add(episode_path(request.output, recording), bytes);
     };
     return (!has_targets || embed::embed_targets(*model, asked, *embeddings, sink)) &&
+           write_references(references, files, sink) &&
            embed::embed_recordings(*model, *embeddings, recordings, asked, keep, sink) &&
            (!has_targets || files.add(result, embedded::write(*embeddings))) &&
            files.add(

@@ -69,6 +69,7 @@ struct Request : pipeline::Options {
         embed::Running running;
         /// Cameras of data sets and arrays by input; "" stands for all inputs.
         std::map<std::string, std::string> cameras;
+        std::string references;  ///< folder for the reference frames; empty: they are not written
     } embed;
 
     struct Fit {

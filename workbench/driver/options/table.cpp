@@ -284,6 +284,9 @@ std::vector<Option> make_options() {
         {embed, "--shard", form("I/N", read_shard),
          "make episodes only of this shard of the recordings; the first shard also encodes what "
          "the spec names"},
+        {embed, "--write-reference", text("FOLDER", in(&Call::embed, &Call::Embed::references)),
+         "folder for the reference frames, .png files: a robot encodes them to show that its "
+         "encoder is that of calibration"},
         {embed, "--onnxruntime",
          text("PATH", in(&Call::embed, &Call::Embed::running, &embed::Running::onnxruntime)),
          "ONNX Runtime, which runs the models: the library or its folder (default: "

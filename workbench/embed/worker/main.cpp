@@ -102,6 +102,8 @@ int run(const std::vector<std::string>& words) {
     } else if (command == "given") {
         limit_resources(kMaxMemoryBytes);
         send_given_images();
+    } else if (command == "png") {
+        write_png();
     } else if (command == "video" && words.size() >= 2) {
         limit_resources(kMaxMemoryBytes);
         send_video(words[1], Words(rest(2)));
@@ -113,7 +115,8 @@ int run(const std::vector<std::string>& words) {
     } else {
         refuse(kWrongCall,
                "etlc-embed belongs to etlc: etlc-embed images FILE..., etlc-embed given, "
-               "etlc-embed video FILE, etlc-embed encode MODEL.onnx, etlc-embed onnxruntime");
+               "etlc-embed png, etlc-embed video FILE, etlc-embed encode MODEL.onnx, etlc-embed "
+               "onnxruntime");
     }
     return EXIT_SUCCESS;
 }

@@ -38,6 +38,8 @@ private:
 void send_images(const std::vector<std::string>& paths);
 /// Decodes images whose bytes arrive on standard input.
 void send_given_images();
+/// Writes the frame on standard input as PNG.
+void write_png();
 void send_video(const std::string& path, const Words& options);
 void encode(const std::string& model, const Words& options);
 /// Prints the version and the path of ONNX Runtime, a line each.
