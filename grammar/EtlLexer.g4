@@ -51,6 +51,8 @@ IN      : 'in' ;
 HOLD    : 'hold' ;
 MISSING : 'missing' ;
 SCALE   : 'scale' ;
+STALE   : 'stale' ;
+AFTER   : 'after' ;
 F32     : 'f32' ;
 F16     : 'f16' ;
 I8      : 'i8' ;

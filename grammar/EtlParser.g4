@@ -19,7 +19,7 @@ declaration
     | PERIOD (NUMBER timeUnit | name timeUnit?) rounding? SEMICOLON       # PeriodDeclaration
     | CONST name ASSIGN MINUS? NUMBER unit? SEMICOLON                     # ConstDeclaration
     | ENCODER name ASSIGN load (COMMA setting)* SEMICOLON                  # EncoderDeclaration
-    | INPUT name (COMMA name)* COLON type encodedBy? range? hold? missing? SEMICOLON
+    | INPUT name (COMMA name)* COLON type encodedBy? range? hold? missing? stale? SEMICOLON
                                                                           # InputDeclaration
     | PROJECTION name ASSIGN (fitted | numbers (OFFSET numbers)?) SEMICOLON
                                                                           # ProjectionDeclaration
@@ -199,6 +199,10 @@ missing
     : MISSING op=(TRUE | FALSE)
     ;
 
+stale
+    : COMMA STALE AFTER amount unit?
+    ;
+
 // ---- data
 
 numbers
@@ -267,7 +271,7 @@ unit
 
 name
     : IDENTIFIER
-    | IN | HOLD | MISSING | SCALE
+    | IN | HOLD | MISSING | SCALE | STALE | AFTER
     | F32 | F16 | I8 | BOOL
     | RESTARTABLE | REPEATING
     | RISE | FALL | HELD

@@ -141,7 +141,8 @@ struct Expr {
 /// The unit of explicit numbers of steps: `2 steps`, `1 step`.
 inline constexpr std::string_view kStepsUnit = "steps";
 
-/// One bound of an interval, or the time in `held` or `hold`: steps, a duration, or inf.
+/// One bound of an interval, or the time in `held`, `hold` or `stale after`: steps, a duration, or
+/// inf.
 struct Bound {
     Number number;
     std::string unit;  ///< "", "us", "ms", "s", "min", kStepsUnit
@@ -236,6 +237,7 @@ struct Input {
     std::optional<Range> range;
     std::optional<Bound> hold;
     std::optional<bool> missing;  ///< value that replaces a missing sample
+    std::optional<Bound> stale;   ///< `stale after D`
     Span span;
 };
 

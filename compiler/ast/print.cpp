@@ -223,7 +223,9 @@ std::string text_of(const Input& input) {
     if (input.range)
         result += fmt::format(" in [{}, {}]", input.range->low.text, input.range->high.text);
     if (input.hold) result += fmt::format(" hold {}", text_of(*input.hold));
-    return result + text_of_missing(input.missing);
+    result += text_of_missing(input.missing);
+    if (input.stale) result += fmt::format(", stale after {}", text_of(*input.stale));
+    return result;
 }
 
 std::string text_of(const Projection& projection) {

@@ -14,19 +14,34 @@ using check::Index;
 using check::InputType;
 using plan::StreamOp;
 
-std::vector<Member> own_members(const Context& context) {
-    const plan::Plan& plan = context.plan;
+const char* element_type(InputType type) {
+    if (type == InputType::i8) return "int8_t";
+    return type == InputType::f16 ? "uint16_t" : "float";
+}
+
+/// Returns the members that keep samples: for `stale after` and `hold`.
+std::vector<Member> sample_members(const Context& context) {
     std::vector<Member> result;
-    for (Index i : plan.inputs) {
-        const auto held = context.names.hold_member.find(i);
-        if (held == context.names.hold_member.end()) continue;
+    for (const auto& [i, name] : context.names.stale_member) {
+        const check::Input& input = context.model.inputs[i];
+        result.push_back({fmt::format("etlmon::StaleAfter<{}, {}, {}>", element_type(input.type),
+                                      input.dimension, input.stale_after),
+                          name, fmt::format("last {}, and how often it came in a row", input.name),
+                          name + ".reset();", ""});
+    }
+    for (const auto& [i, name] : context.names.hold_member) {
         const check::Input& input = context.model.inputs[i];
         const char* type = input.type == InputType::boolean ? "uint32_t" : "float";
         result.push_back(
-            {fmt::format("etlmon::Hold<{}, {}, {}>", type, input.dimension, input.hold),
-             held->second, fmt::format("last {} that was present", input.name),
-             held->second + ".reset();", ""});
+            {fmt::format("etlmon::Hold<{}, {}, {}>", type, input.dimension, input.hold), name,
+             fmt::format("last {} that was present", input.name), name + ".reset();", ""});
     }
+    return result;
+}
+
+std::vector<Member> own_members(const Context& context) {
+    const plan::Plan& plan = context.plan;
+    std::vector<Member> result = sample_members(context);
     for (const auto& [d, name] : context.names.search_member) {
         const check::Target& target = context.model.targets[context.model.distances[d].target];
         result.push_back({fmt::format("etlmon::Search<{}, {}>", target.rows, target.dimension),
@@ -157,7 +172,9 @@ void print_class_constants(Printer& out, const Context& context) {
                        "min, max, compare in the worst case");
     sizes.emplace_back(
         fmt::format("static constexpr uint32_t kDistanceElements = {};", cost.distance_operations),
-        "target elements compared in a step");
+        context.names.stale_member.empty() ? "target elements compared in a step"
+                                           : "elements of targets and last samples compared in a "
+                                             "step");
     print_aligned(out, sizes, "///<");
     print_recorder_constants(out, context);
     out.line();

@@ -64,6 +64,7 @@ std::set<std::string> runtime_headers(const Context& context) {
         if (input.type == InputType::f16 || input.type == InputType::i8)
             headers.insert("distance/widen");
         if (input.hold > 0) headers.insert("temporal/hold");
+        if (input.stale_after > 0) headers.insert("temporal/stale");
     }
     if (any_stream(plan, {StreamOp::delay, StreamOp::shift})) headers.insert(words.delays);
     if (std::any_of(plan.monitors.begin(), plan.monitors.end(),

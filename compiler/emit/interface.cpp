@@ -35,6 +35,10 @@ std::string remark_on(const check::Input& input) {
                         input.range.high));
     if (input.type == InputType::f16) add("IEEE bits of float16");
     if (input.type == InputType::i8) add(fmt::format("value = {} x integer", input.scale));
+    if (input.stale_after > 0)
+        add(input.stale_after == 1
+                ? "missing where it repeats"
+                : fmt::format("missing after {} equal samples in a row", input.stale_after));
     if (input.hold > 0)
         add(fmt::format("held for {} missing step{}", input.hold, input.hold == 1 ? "" : "s"));
     if (input.missing) add(fmt::format("counts as {} when missing", *input.missing));

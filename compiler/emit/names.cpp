@@ -124,7 +124,7 @@ private:
         std::map<check::Index, int> uses = scalar_uses(plan_);
         for (check::Index i : plan_.inputs) {
             const check::Input& input = model_.inputs[i];
-            if (input.type == check::InputType::scalar && input.hold == 0 && uses[i] == 1) continue;
+            if (uses[i] == 1 && !input.has_state()) continue;  // a scalar, read in place
             if (input.type == check::InputType::f32 && plan::left_to_kernels(plan_, i)) {
                 if (plan::shares_direction(plan_, i))
                     names_.direction_local[i] = local(measure_, input.name + "_direction");
@@ -133,6 +133,8 @@ private:
             names_.input_local[i] = local(measure_, input.name + "_sample");
             names_.input_buffer[i] = local(measure_, input.name + "_values");
             if (input.hold > 0) names_.hold_member[i] = member(members_, input.name + "_held");
+            if (input.stale_after > 0)
+                names_.stale_member[i] = member(members_, input.name + "_repeats");
         }
         for (check::Index p : plan_.predicates) {
             const check::Predicate& predicate = model_.predicates[p];
@@ -346,11 +348,10 @@ private:
             if (plan::searches(plan_, d))
                 names_.search_member[d] = member(members_, target + "_search");
             if (const plan::NarrowSet* set = plan::narrow_set(plan_, d)) {
-                auto [narrow, first] = narrow_arrays.try_emplace(entry->second);
+                auto [at, first] = narrow_arrays.try_emplace(entry->second);
                 if (first)
-                    narrow->second =
-                        constants_.claim(entry->second + "_" + plan::word(set->storage));
-                names_.narrow_array[d] = narrow->second;
+                    at->second = constants_.claim(entry->second + "_" + plan::word(set->storage));
+                names_.narrow_array[d] = at->second;
             }
             if (!distance.weights.empty())
                 names_.weight_array[d] = constants_.claim(target + "_weights");

@@ -50,6 +50,7 @@ struct Names {
     std::map<check::Index, std::string> adaptation_constant;  ///< and the constants of its
                                                               ///< adaptation
     std::map<check::Index, std::string> hold_member;
+    std::map<check::Index, std::string> stale_member;
     struct OfStream {
         std::string local;   ///< empty: an atom or a constant
         std::string member;  ///< empty: no state

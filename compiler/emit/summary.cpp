@@ -303,9 +303,11 @@ void print_summary(Printer& out, const Context& context) {
     out.line("//");
     print_sentences(
         out, "//",
-        "state B: bytes of state of a monitor by itself; what several share is counted for each. "
-        "operations: min, max and comparisons of robustness keys in the worst-case step. distance "
-        "elements: target elements that a step compares with its input.");
+        fmt::format("state B: bytes of state of a monitor by itself; what several share is counted "
+                    "for each. operations: min, max and comparisons of robustness keys in the "
+                    "worst-case step. distance elements: target elements that a step compares with "
+                    "its input{}.",
+                    context.names.stale_member.empty() ? "" : ", and elements of its last sample"));
     if (context.stores_targets())
         out.line("// Besides state B, a monitor holds a pointer to its targets.");
 }

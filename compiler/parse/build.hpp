@@ -103,6 +103,8 @@ private:
     ast::Interval interval(Grammar::IntervalContext& context) const;
     ast::Bound bound(Grammar::BoundContext& context) const;
     std::string unit(Grammar::UnitContext& context) const;
+    /// Returns a number of steps, or a duration; the unit is null if not written.
+    ast::Bound time(Grammar::AmountContext& amount, Grammar::UnitContext* of) const;
     static ast::Comparison comparison(Grammar::ComparisonOperatorContext& context);
 
     std::string text(const Token& token) const { return text_of(token, file_); }

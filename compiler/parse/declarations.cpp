@@ -104,20 +104,23 @@ std::optional<ast::Name> Builder::encoded_by(Grammar::EncodedByContext* context)
     return name(*context->name());
 }
 
+ast::Bound Builder::time(Grammar::AmountContext& amount, Grammar::UnitContext* of) const {
+    ast::Bound result{number(amount), "", span_of(amount)};
+    if (of == nullptr) return result;
+    result.unit = unit(*of);
+    result.span = source::join(result.span, span_of(*of));
+    return result;
+}
+
 ast::Input Builder::input(Grammar::InputDeclarationContext& context, source::Span span) const {
     ast::Input result;
     for (const Grammar::NameContext* const n : context.name()) result.names.push_back(name(*n));
     result.type = type(*context.type());
     result.encoder = encoded_by(context.encodedBy());
     if (auto* const limits = context.range()) result.range = range(*limits);
-    if (auto* const hold = context.hold()) {
-        result.hold = {number(*hold->amount()), "", span_of(*hold->amount())};
-        if (hold->unit() != nullptr) {
-            result.hold->unit = unit(*hold->unit());
-            result.hold->span = source::join(result.hold->span, span_of(*hold->unit()));
-        }
-    }
+    if (auto* const hold = context.hold()) result.hold = time(*hold->amount(), hold->unit());
     result.missing = missing(context.missing());
+    if (auto* const stale = context.stale()) result.stale = time(*stale->amount(), stale->unit());
     result.span = span;
     return result;
 }

@@ -117,14 +117,15 @@ bool operators_could_follow(const Stuck& stuck) {
 
 /// Tokens that messages name by their spelling.
 constexpr std::array kSpelled = std::to_array<std::size_t>(
-    {EtlParser::MONITOR,      EtlParser::IN,     EtlParser::HOLD,      EtlParser::MISSING,
-     EtlParser::SCALE,        EtlParser::OFFSET, EtlParser::FITTED,    EtlParser::FRAMES,
-     EtlParser::STRIDE,       EtlParser::OF,     EtlParser::WHERE,     EtlParser::BY,
-     EtlParser::IMAGES,       EtlParser::IMAGE,  EtlParser::DEVIATION, EtlParser::MEAN,
-     EtlParser::RESIZE,       EtlParser::FLIP,   EtlParser::CHANNELS,  EtlParser::MARGINS,
-     EtlParser::PREPROCESSOR, EtlParser::OUTPUT, EtlParser::POOL,      EtlParser::ASSIGN,
-     EtlParser::LPAREN,       EtlParser::RPAREN, EtlParser::LBRACKET,  EtlParser::RBRACKET,
-     EtlParser::COMMA,        EtlParser::COLON,  EtlParser::SEMICOLON});
+    {EtlParser::MONITOR,   EtlParser::IN,       EtlParser::HOLD,         EtlParser::MISSING,
+     EtlParser::SCALE,     EtlParser::STALE,    EtlParser::AFTER,        EtlParser::OFFSET,
+     EtlParser::FITTED,    EtlParser::FRAMES,   EtlParser::STRIDE,       EtlParser::OF,
+     EtlParser::WHERE,     EtlParser::BY,       EtlParser::IMAGES,       EtlParser::IMAGE,
+     EtlParser::DEVIATION, EtlParser::MEAN,     EtlParser::RESIZE,       EtlParser::FLIP,
+     EtlParser::CHANNELS,  EtlParser::MARGINS,  EtlParser::PREPROCESSOR, EtlParser::OUTPUT,
+     EtlParser::POOL,      EtlParser::ASSIGN,   EtlParser::LPAREN,       EtlParser::RPAREN,
+     EtlParser::LBRACKET,  EtlParser::RBRACKET, EtlParser::COMMA,        EtlParser::COLON,
+     EtlParser::SEMICOLON});
 
 /// The parser reads lists in loops too, so another item is no longer expected where the list may
 /// end.
@@ -196,7 +197,8 @@ std::vector<std::string> expected_spellings(const Stuck& stuck) {
                                  "since", "calibrated"})
             words.emplace_back(word);
     if (stuck.rule == EtlParser::RuleDeclaration && stuck.declaration == EtlParser::INPUT)
-        for (const char* word : {"by", "in", "hold", "scale", "missing"}) words.emplace_back(word);
+        for (const char* word : {"by", "in", "hold", "scale", "missing", "stale", "after"})
+            words.emplace_back(word);
     return words;
 }
 

@@ -22,6 +22,22 @@ bool valid(const check::Input& input, const std::vector<float>& sample) {
     return true;
 }
 
+bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+    if (a.size() != b.size()) return false;
+    for (std::size_t n = 0; n < a.size(); ++n)
+        if (a[n] != b[n] || std::signbit(a[n]) != std::signbit(b[n])) return false;
+    return true;
+}
+
+/// "The first N equal samples in a row count. Every later one counts as missing, until a different
+/// sample comes": returns whether the last is a later one. `seen`: the valid samples so far.
+bool stale(const check::Input& input, const std::vector<std::vector<float>>& seen) {
+    if (input.stale_after == 0 || seen.size() <= input.stale_after) return false;
+    for (std::size_t back = 1; back <= input.stale_after; ++back)
+        if (!same_bits(seen.back(), seen[seen.size() - 1 - back])) return false;
+    return true;
+}
+
 /// Evaluates in double; a NaN anywhere makes the whole expression NaN, also through min and max.
 double evaluate(const check::Model& model, const Expr& expr, const Samples& samples) {
     std::vector<double> a;
@@ -55,11 +71,14 @@ std::vector<Samples> accept(const check::Model& model, const Trace& trace) {
     std::vector<std::vector<float>> last(model.inputs.size());  // the last present sample
     std::vector<std::uint32_t> held(model.inputs.size(),
                                     0);  // consecutive steps that it has replaced
+    std::vector<std::vector<std::vector<float>>> seen(model.inputs.size());  // the valid samples
     for (const Step& step : trace) {
         Samples samples(model.inputs.size());
         for (std::size_t n = 0; n < model.inputs.size(); ++n) {
             for (const double element : step[n]) samples[n].push_back(static_cast<float>(element));
-            if (!samples[n].empty() && valid(model.inputs[n], samples[n])) {
+            const bool is_valid = !samples[n].empty() && valid(model.inputs[n], samples[n]);
+            if (is_valid) seen[n].push_back(samples[n]);
+            if (is_valid && !stale(model.inputs[n], seen[n])) {
                 last[n] = samples[n];
                 held[n] = 0;
             } else {

@@ -14,8 +14,8 @@ namespace etlc::reference {
 /// Per input, its sample as the monitor gets it; empty where missing after `hold`.
 using Samples = std::vector<std::vector<float>>;
 
-/// Returns the samples of every step: narrowed to float32, without invalid ones, with `hold`
-/// applied.
+/// Returns the samples of every step: narrowed to float32, without invalid and stale ones, with
+/// `hold` applied.
 std::vector<Samples> accept(const check::Model& model, const Trace& trace);
 
 /// The delta of a predicate, nothing where unknown; the nearest row of a plain distance.

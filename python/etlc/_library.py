@@ -46,7 +46,8 @@ class InputDescription(ctypes.Structure):
     _fields_ = [
         ("struct_size", c_uint32), ("type", c_uint32), ("dimension", c_uint32),
         ("hold", c_uint32), ("low", c_float), ("high", c_float), ("scale", c_float),
-        ("is_embedding", c_uint32), ("is_used", c_uint32), ("name", c_char_p),
+        ("is_embedding", c_uint32), ("is_used", c_uint32), ("stale_after", c_uint32),
+        ("name", c_char_p),
     ]  # fmt: skip
 
 

@@ -32,6 +32,7 @@ class Input:
         dtype: the type of its elements: float32, bool, float16 or int8.
         shape: () for a scalar or bool, (D,) for an embedding.
         hold: the number of missing samples in a row that the last one replaces.
+        stale_after: the number of equal samples in a row that count; 0: all of them.
         low, high: the range of a scalar; values outside count as missing.
         is_used: whether a monitor uses it.
     """
@@ -40,6 +41,7 @@ class Input:
     dtype: np.dtype
     shape: tuple[int, ...]
     hold: int
+    stale_after: int
     low: float
     high: float
     is_used: bool
@@ -167,7 +169,7 @@ class Monitor:
                 one.name.decode(),
                 np.dtype(bool) if one.type == BOOL else _DTYPES[one.type],
                 (one.dimension,) if one.is_embedding else (),
-                one.hold, one.low, one.high, bool(one.is_used),
+                one.hold, one.stale_after, one.low, one.high, bool(one.is_used),
             )
             for one in inputs
         }  # fmt: skip
@@ -450,7 +452,10 @@ class Monitor:
         return verdict.robustness if known else float("nan")
 
     def sample_counts(self, name: str) -> dict[str, int]:
-        """Counts the samples of an input that were missing, out_of_range and held."""
+        """Counts the samples of an input that were missing, out_of_range and held.
+
+        Stale samples count as missing.
+        """
         at = self._at({one: i for i, one in enumerate(self.inputs)}, "input", name)
         counts = _library.Counts()
         call(library.etlc_count, self._session, at, byref(counts))

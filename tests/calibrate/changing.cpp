@@ -281,7 +281,8 @@ void Changing::note(const std::string& name) {
 
 void visit(check::Model& model, check::Input& of, Changing& changing) {
     changing.of("Input");
-    auto& [name, type, dimension, scale, range, has_range, hold, missing, encoder, span] = of;
+    auto& [name, type, dimension, scale, range, has_range, hold, missing, stale_after, encoder,
+           span] = of;
     field(changing, "name", name);
     field(changing, "type", type);
     field(changing, "dimension", dimension);
@@ -290,6 +291,7 @@ void visit(check::Model& model, check::Input& of, Changing& changing) {
     field(changing, "has_range", has_range);
     field(changing, "hold", hold);
     field(changing, "missing", missing);
+    field(changing, "stale_after", stale_after);
     field(changing, "encoder", Place{encoder, model.encoders.size()});
     field(changing, "span", span);
 }

@@ -74,6 +74,19 @@ def gaps(value):
     return edit
 
 
+def frozen(z):
+    z = z.copy()
+    z[3:8] = z[3]
+    return z
+
+
+def without_stale(z):
+    """The effect of `stale after 2` on frozen frames."""
+    z = frozen(z)
+    z[5:8] = np.nan
+    return z
+
+
 def first(n):
     return lambda z: z[:n]
 
@@ -126,6 +139,8 @@ EPISODE_ROADS = [
     ("f32", first(3), npz("f4"), first(2), npz("f4"), "E0667"),
     ("f16", first(6), npz("f4"), first(5), npz("f2"), "E0667"),
     ("f32 hold 3", gaps(np.nan), npz("f4"), lambda z: held(gaps(np.nan)(z)), npz("f4"), "E0664"),
+    ("f32 , stale after 2", frozen, npz("f4"), without_stale, csv, "E0664"),
+    ("f16 , stale after 2", without_stale, npz("f2"), frozen, npz("f8"), "E0664"),
 ]
 
 

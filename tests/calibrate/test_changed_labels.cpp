@@ -132,6 +132,7 @@ TEST(ChangedSpecs, WhatIsFittedIsRefusedOrTheSame) {
         {"spec t;", "spec t; // a remark\n"},
         {"spec t;", "spec t; rate 10 Hz;"},
         {"hold 1", "hold 2"},
+        {"hold 1", "hold 1, stale after 3"},
         {"f32[2] hold 1", "f16[2] hold 1"},
         {"x, y : f32", "x, y : f32 in [0, 0.7]"},
         {"[[1, 0], [0, 2]]", "[[1, 0], [0, 3]]"},

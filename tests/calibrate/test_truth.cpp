@@ -61,7 +61,8 @@ TEST(Truth, IsWhatTheReferenceSaysOfEveryFrame) {
     Random random(20261120);
     for (int spec = 0; spec < 400; ++spec) {
         const std::string text = fmt::format(
-            "spec t; input a, b : bool; input x : f32 in [-0.75, 1]; input y : f32 hold 1; target "
+            "spec t; input a, b : bool; input x : f32 in [-0.75, 1]; input y : f32 hold 1, stale "
+            "after 1; target "
             "goal = [[0.5, 0.5]];\n"
             "sliding monitor m = {};",
             past_formula(random, 4));

@@ -85,7 +85,7 @@ class Describing(unittest.TestCase):
         self.assertEqual(len(dock.fingerprint), 3)
         self.assertEqual(
             dock.inputs["z"],
-            etlc.Input("z", np.dtype("f4"), (3,), 1, -np.inf, np.inf, True),
+            etlc.Input("z", np.dtype("f4"), (3,), 1, 0, -np.inf, np.inf, True),
         )
         self.assertEqual(dock.inputs["charge"].shape, ())
         self.assertEqual(dock.inputs["charge"].high, 1)

@@ -184,6 +184,24 @@ TEST(Interface, EveryKindOfNotFiniteCountsAsMissing) {
     EXPECT_EQ(counts.missing, 1U);
 }
 
+TEST(Interface, StaleSamplesCountAsMissing) {
+    Opened frozen(
+        options_of("spec frozen; input x : f32 hold 1, stale after 2; monitor m = G x > 0;"));
+    etlc_input input{};
+    input.struct_size = sizeof input;
+    ASSERT_EQ(etlc_describe_input(frozen, 0, &input), ETLC_OK);
+    EXPECT_EQ(input.hold, 1U);
+    EXPECT_EQ(input.stale_after, 2U);
+    const float x = 1;
+    for (int step = 0; step < 5; ++step)
+        ASSERT_EQ(frozen.step({{&x, 1, ETLC_F32}}), ETLC_OK) << etlc_message();
+    etlc_counts counts{};
+    ASSERT_EQ(etlc_count(frozen, 0, &counts), ETLC_OK);
+    EXPECT_EQ(counts.missing, 3U);
+    EXPECT_EQ(counts.held, 1U);
+    EXPECT_EQ(frozen.verdicts[0].status & (ETLC_SATISFIED | ETLC_VIOLATED), 0U);
+}
+
 TEST(Interface, AlarmsRestartsAndResets) {
     Opened dock(options_of(kDock));
     Seen seen;

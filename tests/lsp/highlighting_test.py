@@ -15,6 +15,7 @@ MARKS = "keyword", "storage", "support", "constant.language"
 PHRASES = {
     "in": "input x : f32 in [0, 1];", "hold": "input z : f32[2] hold 3;",
     "missing": "input b : bool missing false;", "scale": "input z : i8[4] scale 0.5;",
+    "stale": "input z : f32[2], stale after 5;", "after": "input z : f32[2], stale after 0.5 s;",
     "f32": "input x : f32;", "f16": "input x : f16[2];", "i8": "input x : i8[2] scale 1;",
     "bool": "input x : bool;", "restartable": "restartable monitor m = G p;",
     "repeating": "repeating monitor m = G p;", "rise": "let a = rise p;",

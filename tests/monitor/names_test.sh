@@ -18,7 +18,7 @@ flags=(-std=c++17 -O0 -Wall -Wextra -Wshadow -Werror)
 
 cat >base.txt <<'END'
 input x : f32 in [-2, 2];
-input y : f32 hold 1;
+input y : f32 hold 1, stale after 3;
 input on : bool;
 input beat : bool hold 2;
 input z, w : f32[2];

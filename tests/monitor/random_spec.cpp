@@ -23,7 +23,7 @@ public:
         for (const char* name : {"x", "y"}) result += scalar(name);
         result += fmt::format("input on : bool{}{};\n", hold(), missing());
         dimension_ = random_.between(1, 5);
-        result += fmt::format("input v : {}{};\n", embedding(), hold());
+        result += fmt::format("input v : {}{}{};\n", embedding(), hold(), stale());
         for (const char* name : {"near", "far"}) result += target(name, dimension_);
         result += target("spots", 2);
         result += projections();
@@ -57,6 +57,9 @@ private:
     std::string hold() {
         return random_.chance(0.3) ? fmt::format(" hold {}", random_.between(1, 3)) : "";
     }
+    std::string stale() {
+        return random_.chance(0.2) ? fmt::format(", stale after {}", random_.between(1, 3)) : "";
+    }
     std::string missing() {
         if (missing_share_ == 0 || !random_.chance(missing_share_)) return "";
         return random_.chance(0.5) ? " missing true" : " missing false";
@@ -80,7 +83,7 @@ private:
         const char* range = random_.chance(0.6)   ? " in [-4, 4]"
                             : random_.chance(0.3) ? " in [-3.5, inf]"
                                                   : "";
-        return fmt::format("input {} : f32{}{};\n", name, range, hold());
+        return fmt::format("input {} : f32{}{}{};\n", name, range, hold(), stale());
     }
 
     std::string embedding() {

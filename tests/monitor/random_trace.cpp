@@ -62,6 +62,16 @@ std::vector<double> extreme_sample(Random& random, const check::Input& input) {
     return sample;
 }
 
+/// Returns the last sample once more, sometimes with a zero of the other sign, which is another
+/// sample. An int8 has only one zero.
+std::vector<double> repeated_sample(Random& random, const check::Input& input,
+                                    std::vector<double> sample) {
+    const bool flips = input.type != InputType::i8 && random.chance(0.2);
+    for (double& value : sample)
+        if (flips && value == 0) value = -value;
+    return sample;
+}
+
 std::vector<std::string> columns(const check::Input& input) {
     if (!input.is_embedding()) return {input.name};
     std::vector<std::string> result;
@@ -90,17 +100,22 @@ reference::Trace random_trace(const check::Model& model, std::uint64_t seed,
                               const TraceShape& shape) {
     Random random(seed);
     reference::Trace trace;
+    std::vector<std::vector<double>> last(model.inputs.size());  // the last sample of each input
     for (std::size_t n = 0; n < shape.steps; ++n) {
         reference::Step step;
         for (const check::Input& input : model.inputs) {
+            std::vector<double>& before = last[step.size()];
             if (random.chance(shape.missing))
                 step.emplace_back();
+            else if (input.stale_after > 0 && !before.empty() && random.chance(0.6))
+                step.push_back(repeated_sample(random, input, before));
             else if (random.chance(shape.invalid))
                 step.push_back(invalid_sample(random, input));
             else if (shape.extreme > 0 && random.chance(shape.extreme))
                 step.push_back(extreme_sample(random, input));
             else
                 step.push_back(valid_sample(random, input, shape.grid));
+            if (!step.back().empty()) before = step.back();
         }
         trace.push_back(std::move(step));
     }

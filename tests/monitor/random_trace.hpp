@@ -1,6 +1,7 @@
 // Random traces for a spec, and traces as CSV.
 // Takes: the typed spec and a seed. Gives: samples with gaps. Keeps true: the same seed gives the
-// same trace; values of an f16 or i8 embedding are exact in that type.
+// same trace; inputs with `stale after` often repeat their sample; values of an f16 or i8 embedding
+// are exact in that type.
 #pragma once
 
 #include <cstdint>

@@ -108,6 +108,26 @@ TEST_P(PlanInTwoParts, TakesFewOperations) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, PlanInTwoParts, testing::Values("monitor", "repeating monitor"));
 
+/// Samples that repeat, differ or are missing, in all sequences of seven.
+TEST(PlanExhaustive, StaleSamples) {
+    constexpr std::size_t kSteps = 7;
+    for (const char* after : {"", ", stale after 1", ", stale after 2", ", stale after 3"})
+        for (const char* hold : {"", " hold 1", " hold 2"}) {
+            const auto model = load(
+                fmt::format("spec s; input x : f32{}{}; sliding monitor m = x > 1;", hold, after));
+            ASSERT_TRUE(model);
+            PlanRunner runner(*model, kRoomy);
+            for (std::size_t n = 0; n < 4 * 4 * 4 * 4 * 4 * 4 * 4; ++n) {
+                const reference::Step samples[] = {{{}}, {{1}}, {{2}}, {{9.5}}};
+                reference::Trace trace;
+                for (std::size_t step = 0, rest = n; step < kSteps; ++step, rest /= 4)
+                    trace.push_back(samples[rest % 4]);
+                expect_agreement(*model, runner, trace, 0);
+                if (HasFatalFailure()) return;
+            }
+        }
+}
+
 struct RandomCase {
     const char* name;
     SpecShape shape;

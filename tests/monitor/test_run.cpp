@@ -166,4 +166,22 @@ TEST_F(Run, SummaryCountsVerdictsAndSamples) {
     EXPECT_TRUE(fs::exists(folder_ / "rows.csv"));
 }
 
+/// An int8 has no -0, a float32 has.
+TEST_F(Run, CountsStaleSamples) {
+    const std::string spec =
+        "spec watch;\n"
+        "rate 4 Hz;\n"
+        "input x : f32 hold 1, stale after 0.5 s;\n"
+        "input z : i8[2] scale 0.5, stale after 1;\n"
+        "target origin = [[0, 0]];\n"
+        "sliding monitor low = x < 1;\n"
+        "sliding monitor near = l2(z, origin) <= 1;\n";
+    EXPECT_EQ(watched("--summary", spec, "x,z[0],z[1]\n0,0,1\n0,-0,1\n,,\n0,0,1\n0,1,0\n-0,0,1\n"),
+              "low: never violated, least robustness 1 at step 0 (0 s); unknown on 2 steps\n"
+              "near: never violated, least robustness 0.5 at step 0 (0 s); unknown on 3 steps\n"
+              "6 steps\n"
+              "input x: 1 missing, 2 stale, of which 1 held\n"
+              "input z: 1 missing, 2 stale\n");
+}
+
 }  // namespace

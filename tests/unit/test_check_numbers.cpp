@@ -264,6 +264,41 @@ TEST(Steps, AreAUnitOfBoundsHoldsAndConstants) {
     EXPECT_EQ(holds, (std::vector<std::uint32_t>{2, 5, 4, 3}));
 }
 
+TEST(Steps, AreThoseAfterWhichASampleIsStale) {
+    const Checked checked(
+        "spec t; rate 10 Hz, durations up; const n = 3 steps; const d = 0.35 s; const k = 7; "
+        "input p : f32, stale after 2; input q : f32 in [0, 1] hold 1, stale after 1 step; "
+        "input r : f16[2] hold n, stale after n; input o : i8[2] scale 1, stale after d; "
+        "input u : f32[2], stale after k; input v : f32;"
+        "target t = [[0, 0]]; monitor m = G (p > q && v > 0 && l2(r, t) > 1 && l2(o, t) > 1 && "
+        "l2(u, t) > 1);");
+    ASSERT_EQ(checked.codes(), "") << checked.diagnostics();
+    std::vector<std::uint32_t> most;
+    for (const Input& input : checked.model->inputs) most.push_back(input.stale_after);
+    EXPECT_EQ(most, (std::vector<std::uint32_t>{2, 1, 3, 4, 7, 0}));
+    EXPECT_EQ(checked.model->rounded.count("d = 0.35 s"), 1U);
+}
+
+TEST(Steps, AfterWhichASampleIsStaleAreAtLeastOne) {
+    const auto codes = [](const std::string& after) {
+        return with_rate("input x : f32, stale after " + after +
+                         "; monitor m = G (p && q && x > 1);");
+    };
+    for (const char* good : {"1", "1 step", "2147483646", "100 ms", "n", "0.1 s"})
+        EXPECT_EQ(codes(std::string(good) == "n" ? "n; const n = 2 steps" : good), "") << good;
+    for (const char* bad : {"0", "0 steps", "1.5", "2147483647", "0 s", "0 ms", "n; const n = -1"})
+        EXPECT_EQ(codes(bad), "E0319") << bad;
+    EXPECT_EQ(codes("20 ms"), "E0505");
+    EXPECT_EQ(codes("1e9 s"), "E0507");
+    EXPECT_EQ(Checked("spec t; input x : f32, stale after 1 s; monitor m = F x > 1;").codes(),
+              "E0503");
+    EXPECT_EQ(Checked("spec t; rate 10 Hz, durations down; input x : f32, stale after 20 ms; "
+                      "monitor m = F x > 1;")
+                  .codes(),
+              "E0515");
+    EXPECT_EQ(with_rate("input b : bool, stale after 2; monitor m = G (p && q && b);"), "E0319");
+}
+
 TEST(Steps, AreNoTime) {
     EXPECT_EQ(with_rate("monitor m = F[1 step, 2 s] (p && q);"), "E0504");
     EXPECT_EQ(with_rate("monitor m = F[0, 1.5 steps] (p && q);"), "E0506");

@@ -20,6 +20,10 @@ TEST(Declarations, EachForm) {
         {"input z : i8[32];", "(input z :i8 (dimension 32))"},
         {"input z : i8[32] scale 0.05 hold 3;",
          "(input z :i8 (dimension 32) (scale 0.05) (hold 3))"},
+        {"input z : f32[2] by net hold 2, stale after 5;",
+         "(input z :f32 (dimension 2) (by net) (hold 2) (stale 5))"},
+        {"input stale, after : f32, stale after after ms;",
+         "(input stale after :f32 (stale afterms))"},
         {"input a, b : bool hold 1;", "(input a b :bool (hold 1))"},
         {"input g : f32 in [0, 1];", "(input g :f32 (range 0 1))"},
         {"input g : f32 in [-inf, inf] hold 2;", "(input g :f32 (range -inf inf) (hold 2))"},
@@ -277,10 +281,10 @@ TEST(Expressions, EveryKindOfWeights) {
 
 TEST(ContextualWords, AreNamesWhereTheyCannotBeKeywords) {
     for (const std::string word :
-         {"in",      "hold", "scale",     "f32",         "f16",   "i8",  "bool", "steps",
-          "step",    "Hz",   "us",        "ms",          "s",     "min", "max",  "mean",
-          "kth",     "l2",   "l2sq",      "l1",          "linf",  "abs", "sqrt", "cosine",
-          "angular", "f1",   "conformal", "mahalanobis", "alpha", "x"}) {
+         {"in",   "hold",   "stale",   "after", "scale",     "f32",         "f16",   "i8",
+          "bool", "steps",  "step",    "Hz",    "us",        "ms",          "s",     "min",
+          "max",  "mean",   "kth",     "l2",    "l2sq",      "l1",          "linf",  "abs",
+          "sqrt", "cosine", "angular", "f1",    "conformal", "mahalanobis", "alpha", "x"}) {
         EXPECT_EQ(tree_of_declaration("input " + word + " : f32 in [0, 1] hold 2;"),
                   "(input " + word + " :f32 (range 0 1) (hold 2))");
         EXPECT_EQ(tree_of_formula(word), word);

@@ -255,6 +255,31 @@ TEST(Reference, HoldStandsInForAtMostNSteps) {
     EXPECT_EQ(run.missing_steps, 2U);
 }
 
+TEST(Reference, StaleSamplesAreMissing) {
+    Spec spec;
+    const Index p = spec.sample();
+    spec.model.inputs[0].stale_after = 2;
+    spec.monitor(p, true);
+    // The third 5 in a row is stale. Neither the missing sample nor the 9, which is out of range,
+    // ends the row; another sample does, and 0 is another than -0.
+    reference::Trace trace = scalars({5, 5, 5, 0, 9, 5, 4, 5, 0, -0.0, 0, 0, 0});
+    trace[3][0] = kMissing;
+    const auto run = evaluate(spec.model, trace);
+    EXPECT_EQ(robustness(run), (List{5, 5, -8, -8, -8, -8, 4, 5, 0, 0, 0, 0, -8}));
+    EXPECT_EQ(run.verdicts[2][0].status, Status::unknown);
+    EXPECT_EQ(run.missing_steps, 5U);
+}
+
+TEST(Reference, HoldReplacesStaleSamples) {
+    Spec spec;
+    const Index p = spec.sample();
+    spec.model.inputs[0].stale_after = 1;
+    spec.model.inputs[0].hold = 2;
+    spec.monitor(p, true);
+    EXPECT_EQ(robustness(evaluate(spec.model, scalars({5, 5, 5, 5, 4, 5}))),
+              (List{5, 5, 5, -8, 4, 5}));
+}
+
 TEST(Reference, MissingStepsCountOnlyWhatMonitorsDependOn) {
     Spec spec;
     const Index p = spec.sample();

@@ -190,6 +190,7 @@ std::string word(const Input& d) {
     if (d.encoder) items.push_back(list("by", {d.encoder->text}));
     if (d.range) items.push_back(list("range", {d.range->low.text, d.range->high.text}));
     if (d.hold) items.push_back(list("hold", {d.hold->number.text + d.hold->unit}));
+    if (d.stale) items.push_back(list("stale", {d.stale->number.text + d.stale->unit}));
     return list("input", items);
 }
 

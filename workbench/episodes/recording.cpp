@@ -45,6 +45,7 @@ std::string name_of(const Input& input) {
         name += fmt::format(" in [{:.9g}, {:.9g}]", input.range.low, input.range.high);
     if (input.hold > 0) name += fmt::format(" hold {}", input.hold);
     if (input.missing) name += *input.missing ? " missing true" : " missing false";
+    if (input.stale_after > 0) name += fmt::format(" stale after {}", input.stale_after);
     return name;
 }
 
@@ -278,6 +279,7 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
     for (const Index input : inputs)
         result.narrowed_.push_back(std::find(wanted.inputs.begin(), wanted.inputs.end(), input) !=
                                    wanted.inputs.end());
+    result.freshness_.resize(inputs.size());
     result.samples_.resize(model.inputs.size());
     result.frame_.resize(model.inputs.size());
     return result;
@@ -310,6 +312,9 @@ diag::Result<bool> Recording::narrow() {
         auto sample =
             plan::narrow(model_->inputs[input], sample_.present[c], sample_.values[c], why);
         if (!sample) return Failure{Code::trace_value, fmt::format("step {}: {}", frames_, why)};
+        const check::Input& of = model_->inputs[input];
+        if (is_there(of, *sample) && !freshness_[c].accepts(of, sample->values))
+            *sample = {.is_stale = true};
         samples_[input] = std::move(*sample);
     }
     return true;

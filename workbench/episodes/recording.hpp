@@ -57,7 +57,8 @@ public:
 
     /// Reads the next frame; returns false at the end of the episode.
     virtual diag::Result<bool> next() = 0;
-    /// Returns the samples of this frame by index of the model's inputs; unwanted ones are absent.
+    /// Returns the samples of this frame by index of the model's inputs; unwanted ones are absent,
+    /// and stale ones.
     virtual const std::vector<plan::Sample>& samples() const = 0;
     /// Returns the label of a wanted predicate in this frame.
     virtual Label label(Index predicate) const = 0;
@@ -167,9 +168,10 @@ private:
     bool is_unmarked_ = false;
     Seen seen_;
     std::unique_ptr<data::Trace> trace_;
-    std::vector<Index> channel_inputs_;  ///< per channel of an input, the input
-    std::vector<bool> narrowed_;         ///< per such channel: whether its samples are wanted
-    std::vector<Source> sources_;        ///< per predicate of the model
+    std::vector<Index> channel_inputs_;       ///< per channel of an input, the input
+    std::vector<bool> narrowed_;              ///< per such channel: whether its samples are wanted
+    std::vector<plan::Freshness> freshness_;  ///< per such channel
+    std::vector<Source> sources_;             ///< per predicate of the model
     std::unique_ptr<TruthEvaluator> truth_;
     data::Sample sample_;
     std::vector<plan::Sample> samples_;

@@ -37,6 +37,17 @@ bool usable(const Input& input, const std::vector<double>& sample) {
     });
 }
 
+/// Returns whether the sample is not stale: monitors compare what they get.
+bool is_fresh(const Input& input, const std::vector<double>& sample, plan::Freshness& freshness) {
+    if (input.stale_after == 0) return true;
+    std::string why;
+    const auto narrowed = plan::narrow(input, true, sample, why);
+    const bool comparable =
+        narrowed && std::all_of(narrowed->values.begin(), narrowed->values.end(),
+                                [](float x) { return std::isfinite(x); });
+    return !comparable || freshness.accepts(input, narrowed->values);
+}
+
 }  // namespace
 
 TruthEvaluator::TruthEvaluator(const check::Model& model, const std::vector<Index>& formulas)
@@ -66,6 +77,7 @@ void TruthEvaluator::reset() {
     values_.assign(model_.inputs.size(), {});
     held_.assign(model_.inputs.size(), {});
     ages_.assign(model_.inputs.size(), 0);
+    freshness_.assign(model_.inputs.size(), {});
 }
 
 void TruthEvaluator::step(const Frame& frame) {
@@ -77,7 +89,7 @@ void TruthEvaluator::step(const Frame& frame) {
 void TruthEvaluator::take_inputs(const Frame& frame) {
     for (const Index i : inputs_) {
         const Input& input = model_.inputs[i];
-        if (usable(input, frame[i])) {
+        if (usable(input, frame[i]) && is_fresh(input, frame[i], freshness_[i])) {
             held_[i] = frame[i];
             ages_[i] = 0;
             if (input.type == check::InputType::i8)

@@ -1,7 +1,8 @@
 // Evaluates truths: formulas over the present and past of recorded inputs, frame by frame, as
 // docs/language.md defines them, read as Boolean. A missing sample may leave a truth unknown.
-// Everything is computed in double with exact comparisons and literals as written; `hold` and
-// ranges apply as in the monitor. The work of a step does not depend on the length of a window.
+// Everything is computed in double with exact comparisons and literals as written; `hold`,
+// `stale after` and ranges apply as in the monitor. The work of a step does not depend on the
+// length of a window.
 #pragma once
 
 #include <cstdint>
@@ -60,7 +61,8 @@ private:
     Frame values_;                  ///< per input, after `hold`
     Frame held_;
     std::vector<std::uint32_t> ages_;
-    std::uint64_t frame_ = 0;  ///< from 1; 0 before the first
+    std::vector<plan::Freshness> freshness_;  ///< per input
+    std::uint64_t frame_ = 0;                 ///< from 1; 0 before the first
 };
 
 /// The ground-truth monitor: the same formulas, in which bool inputs with the labels replace the

@@ -141,7 +141,8 @@ typedef struct etlc_input {
   float high;
   float scale;      /* ETLC_I8: the value of 1 */
   uint32_t is_embedding;
-  uint32_t is_used; /* 0: no monitor uses it, and etlc_step() ignores it */
+  uint32_t is_used;     /* 0: no monitor uses it, and etlc_step() ignores it */
+  uint32_t stale_after; /* equal samples in a row that count; 0: all of them */
   const char *name;
 } etlc_input;
 
@@ -273,7 +274,7 @@ ETLC_EXPORT etlc_status etlc_measure(etlc_session session, uint32_t predicate,
 ETLC_EXPORT etlc_status etlc_let(etlc_session session, uint32_t let, etlc_verdict *verdict);
 
 typedef struct etlc_counts {
-  uint64_t missing;      /* samples that were missing, or not finite */
+  uint64_t missing;      /* samples that were missing, not finite or stale */
   uint64_t out_of_range; /* samples of a scalar out of its range */
   uint64_t held;         /* of both, samples that the last one replaced */
 } etlc_counts;

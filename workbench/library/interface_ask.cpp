@@ -116,7 +116,7 @@ etlc_status etlc_count(etlc_session session, uint32_t input, etlc_counts* counts
         const std::size_t inputs = opened.model().inputs.size();
         if (input >= inputs) return refuse_index("input", input, inputs);
         const plan::SampleCounts& of = opened.evaluator().sample_counts()[input];
-        *counts = {of.missing, of.out_of_range, of.held};
+        *counts = {of.missing + of.stale, of.out_of_range, of.held};
         return ETLC_OK;
     });
 }

@@ -87,6 +87,7 @@ etlc_status etlc_describe_input(etlc_session session, uint32_t input, etlc_input
         out.scale = of.scale;
         out.is_embedding = of.is_embedding() ? 1 : 0;
         out.is_used = opened.is_used(input) ? 1 : 0;
+        out.stale_after = of.stale_after;
         out.name = of.name.c_str();
         return ETLC_OK;
     });

@@ -274,6 +274,7 @@ Json inputs_json(const plan::Plan& plan, const Totals& totals) {
         inputs.push_back({{"name", plan.model->inputs[plan.inputs[i]].name},
                           {"missing", counts.missing},
                           {"out_of_range", counts.out_of_range},
+                          {"stale", counts.stale},
                           {"held", counts.held}});
     }
     return inputs;

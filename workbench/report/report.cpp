@@ -41,7 +41,7 @@ Row row_of(const Tracks& tracks) {
     row.frames = tracks.frames;
     row.outcomes = tracks.outcomes;
     for (const plan::SampleCounts& counts : tracks.sample_counts)
-        row.missing += counts.missing + counts.out_of_range;
+        row.missing += counts.missing + counts.out_of_range + counts.stale;
     return row;
 }
 
@@ -156,6 +156,7 @@ public:
         for (std::size_t i = 0; i < totals.sample_counts.size(); ++i) {
             totals.sample_counts[i].missing += packed.sample_counts[i].missing;
             totals.sample_counts[i].out_of_range += packed.sample_counts[i].out_of_range;
+            totals.sample_counts[i].stale += packed.sample_counts[i].stale;
             totals.sample_counts[i].held += packed.sample_counts[i].held;
         }
         if (ranked_) packed.row.rank = rank_.at(packed.row.path);

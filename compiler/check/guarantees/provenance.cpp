@@ -18,9 +18,10 @@ using Hashes = std::map<std::string, std::string>;
 /// Samples used unchanged need no hash: the rest of the declaration is part of the episode.
 void add_input(const Input& input, Hashes& hashes) {
     const bool narrowed = input.type == InputType::f16 || input.type == InputType::i8;
-    if (!narrowed && !input.has_range && input.hold == 0) return;
-    hashes[input.name] = data::content_hash({static_cast<std::uint64_t>(input.type), input.hold},
-                                            {input.scale, input.range.low, input.range.high});
+    if (!narrowed && !input.has_range && !input.has_state()) return;
+    std::vector<std::uint64_t> kind{static_cast<std::uint64_t>(input.type), input.hold};
+    if (input.stale_after > 0) kind.push_back(input.stale_after);
+    hashes[input.name] = data::content_hash(kind, {input.scale, input.range.low, input.range.high});
 }
 
 /// Adds the encoder of the input, if it has one.

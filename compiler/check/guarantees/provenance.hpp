@@ -36,7 +36,7 @@ struct Provenance {
     std::string truth;
     /// Content hashes: targets by name; weights of mahalanobis distances by the distance's text; by
     /// input name, the declaration of inputs whose samples it changes (float16 or int8, scale,
-    /// range and hold); and fingerprints of encoders.
+    /// range, hold and staleness); and fingerprints of encoders.
     std::map<std::string, std::string> targets;
     /// Such hashes for the truth formula.
     std::map<std::string, std::string> truth_targets;

@@ -85,14 +85,15 @@ public:
 
 private:
     std::string add_input(Index index) {
-        const auto& [name, type, dimension, scale, range, has_range, hold, missing, encoder, span] =
-            model_.inputs[index];
+        const auto& [name, type, dimension, scale, range, has_range, hold, missing, stale_after,
+                     encoder, span] = model_.inputs[index];
         std::string text = fmt::format("{}[{}]", word(type), dimension);
         if (scale != 1) text += fmt::format(" scale {}", scale);
         if (has_range) text += fmt::format(" in [{}, {}]", range.low, range.high);
         if (hold > 0) text += fmt::format(" hold {}", hold);
         if (missing) text += fmt::format(" missing {}", *missing);
         if (encoder != kNone) text += " by " + add_encoder(encoder);
+        if (stale_after > 0) text += fmt::format(", stale after {}", stale_after);
         return add("input " + name, std::move(text));
     }
 

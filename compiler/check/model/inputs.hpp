@@ -67,10 +67,14 @@ struct Input {
     /// Number of successive missing samples that the last present one replaces.
     std::uint32_t hold = 0;
     std::optional<bool> missing;  ///< value of missing samples of a bool
-    Index encoder = kNone;        ///< makes it from images; in Model::encoders
+    /// Number of equal samples in a row that count; later ones are missing. 0: all count.
+    std::uint32_t stale_after = 0;
+    Index encoder = kNone;  ///< makes it from images; in Model::encoders
     Span span;
 
     bool is_embedding() const { return type != InputType::scalar && type != InputType::boolean; }
+    /// Returns whether a step uses earlier samples, so that every sample has to be looked at.
+    bool has_state() const { return hold > 0 || stale_after > 0; }
 };
 
 /// A linear map of points: P(z) = A (z - m).

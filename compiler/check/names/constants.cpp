@@ -159,7 +159,7 @@ private:
     void replace(ast::Encoder& encoder) { replace(encoder.settings); }
     void replace(ast::Type& type) { each(type.dimension, type.scale); }
     void replace(ast::Range& range) { each(range.low, range.high); }
-    void replace(ast::Input& input) { each(input.type, input.range, input.hold); }
+    void replace(ast::Input& input) { each(input.type, input.range, input.hold, input.stale); }
     void replace(ast::Projection& projection) { each(projection.matrix, projection.offset); }
     void replace(ast::Target& target) { replace(target.sources); }
     void replace(ast::Predicate& p) { each(p.expression, p.threshold); }

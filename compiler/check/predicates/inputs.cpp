@@ -1,10 +1,11 @@
-// Checks inputs: types, ranges, hold.
+// Checks inputs: types, ranges, hold, staleness.
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "check/context/context.hpp"
 #include "check/numbers/decimal.hpp"
+#include "check/numbers/duration.hpp"
 #include "check/time/time.hpp"
 
 namespace etlc::check {
@@ -17,6 +18,8 @@ using diag::Code;
 constexpr std::uint32_t kMaxDimension = 1U << 20U;
 /// Limit on the steps for which a sample may replace later ones.
 constexpr std::uint32_t kMaxHold = kMaxBound;
+/// Limit on the equal samples in a row that may count.
+constexpr std::uint32_t kMaxRepeats = kMaxBound;
 
 /// Checks one declaration, whose names differ in nothing else.
 class InputCheck {
@@ -33,6 +36,7 @@ public:
         input.hold = hold();
         input.encoder = encoder(input);
         input.missing = missing(input.type);
+        input.stale_after = stale_after(input.type);
         return input;
     }
 
@@ -151,6 +155,33 @@ private:
         const auto steps = bound_steps(c_, hold);
         if (!steps) broken_ = true;
         return steps.value_or(0);
+    }
+
+    /// A bool may well stay as it is for hours, so it has no such limit.
+    std::uint32_t stale_after(InputType type) {
+        if (!declaration_.stale) return 0;
+        const ast::Bound& most = *declaration_.stale;
+        if (type == InputType::boolean) {
+            report(Code::stale_form, most.span,
+                   "only an embedding or a scalar can be stale; this input is a bool");
+            return 0;
+        }
+        if (is_duration(most)) {
+            const auto steps = bound_steps(c_, most);
+            if (!steps) broken_ = true;
+            if (steps == 0U) report_stale(most);
+            return steps.value_or(0);
+        }
+        const auto steps = Decimal::parse(most.number.text).whole(kMaxRepeats);
+        if (!steps || *steps == 0) report_stale(most);
+        if (most.unit == ast::kStepsUnit) c_.steps_on_purpose = true;
+        return static_cast<std::uint32_t>(steps.value_or(0));
+    }
+
+    void report_stale(const ast::Bound& most) {
+        report(Code::stale_form, most.span,
+               fmt::format("stale after {} is not a whole number of steps from 1 to {}",
+                           with_unit(shown(most.number), most.unit), kMaxRepeats));
     }
 
     /// All inputs of an encoder have the dimension of its embeddings.

@@ -11,22 +11,34 @@ using check::InputType;
 
 namespace {
 
-/// Returns whether an input is read on demand. One with `hold` is read at every step.
+/// Returns whether an input is read on demand. One with `hold` or `stale after` is read at every
+/// step.
 bool on_demand(const Context& context, Index i) {
-    return context.on_demand && context.model.inputs[i].hold == 0;
+    return context.on_demand && !context.model.inputs[i].has_state();
 }
 
-std::string accepted(const check::Input& input) {
-    if (!input.has_range) return fmt::format("etlmon::accept(in.{})", input.name);
-    return fmt::format("etlmon::accept(in.{}, {}, {})", input.name, float_literal(input.range.low),
-                       float_literal(input.range.high));
+std::string accepted(const Context& context, Index i) {
+    const check::Input& input = context.model.inputs[i];
+    const std::string range = input.has_range
+                                  ? fmt::format(", {}, {}", float_literal(input.range.low),
+                                                float_literal(input.range.high))
+                                  : "";
+    const std::string sample = fmt::format("etlmon::accept(in.{}{})", input.name, range);
+    if (input.stale_after == 0) return sample;
+    return fmt::format("{}.accept({})", context.names.stale_member.at(i), sample);
 }
 
-/// Returns the condition that the embedding is present, as far as its kernels do not check it.
+/// Returns the condition that the embedding is present and not stale, as far as its kernels do not
+/// check it.
 std::string present(const Context& context, Index i) {
     const std::string& name = context.model.inputs[i].name;
-    return plan::left_to_kernels(context.plan, i) ? fmt::format("in.{}.present()", name)
-                                                  : fmt::format("etlmon::present(in.{})", name);
+    if (plan::left_to_kernels(context.plan, i)) return fmt::format("in.{}.present()", name);
+    const auto stale = context.names.stale_member.find(i);
+    const std::string fresh =
+        stale == context.names.stale_member.end()
+            ? ""
+            : fmt::format(" && {}.accepts(in.{}.data())", stale->second, name);
+    return fmt::format("etlmon::present(in.{}){}", name, fresh);
 }
 
 std::string widening(const Context& context, Index i) {
@@ -49,7 +61,8 @@ void print_widened(Printer& out, const Context& context, Index i) {
     const std::string& buffer = context.names.input_buffer.at(i);
     out.line("float {}[{}];", buffer, input.dimension);
     out.line("const float* {} = nullptr;", local);
-    out.open(fmt::format("if ({}) {{", present(context, i)));
+    print_wrapped(out, fmt::format("if ({}) {{", present(context, i)));
+    out.indent();
     print_wrapped(out, widening(context, i));
     out.line("{} = {};", local, buffer);
     out.close();
@@ -115,12 +128,12 @@ void print_scalar(Printer& out, const Context& context, Index i) {
     const std::string& local = context.names.input_local.at(i);
     if (on_demand(context, i))
         print_wrapped(out, fmt::format("const etlmon::Lazy {}([&]() noexcept {{ return {}; }});",
-                                       local, accepted(input)));
+                                       local, accepted(context, i)));
     else if (input.hold > 0)
         print_wrapped(out, fmt::format("const float {} = {}.take({});", local,
-                                       context.names.hold_member.at(i), accepted(input)));
+                                       context.names.hold_member.at(i), accepted(context, i)));
     else
-        print_wrapped(out, fmt::format("const float {} = {};", local, accepted(input)));
+        print_wrapped(out, fmt::format("const float {} = {};", local, accepted(context, i)));
 }
 
 /// Returns a pointer to the elements as float32, null if they are missing.
@@ -169,7 +182,7 @@ std::string sample(const Context& context, Index i) {
     const auto local = context.names.input_local.find(i);
     if (local != context.names.input_local.end())
         return local->second + (on_demand(context, i) ? "()" : "");
-    return input.type == InputType::scalar ? accepted(input) : "in." + input.name;
+    return input.type == InputType::scalar ? accepted(context, i) : "in." + input.name;
 }
 
 void print_input(Printer& out, const Context& context, Index i) {

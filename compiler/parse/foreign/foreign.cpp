@@ -160,12 +160,20 @@ std::string note_on_sign(const Stuck& stuck, const Token& found) {
     if (stuck.declaration == EtlParser::INPUT &&
         stuck.rule_around() == EtlParser::RuleDeclaration && stuck.expects(EtlParser::COLON))
         return "the type follows the name: input x : f32;";
+    if (stuck.declaration == EtlParser::INPUT && is(&found, {EtlParser::STALE}) &&
+        stuck.expects(EtlParser::SEMICOLON))
+        return "'stale after' follows a comma: input x : f32, stale after 5;";
+    if (stuck.declaration == EtlParser::INPUT && is(stuck.previous, {EtlParser::COMMA}) &&
+        stuck.rule_around() == EtlParser::RuleStale)
+        return "only 'stale after' follows a comma: input x : f32 hold 2, stale after 5;";
     if (!is(&found, {EtlParser::ASSIGN, EtlParser::COLON}) || stuck.previous == nullptr) return {};
     switch (stuck.previous->getType()) {
         case EtlParser::RATE: return "a rate has no '=': rate 10 Hz;";
         case EtlParser::PERIOD: return "a period has no '=': period 50 ms;";
         case EtlParser::SPEC: return "a file begins with 'spec NAME;'";
         case EtlParser::HOLD: return "'hold' has no '=': hold 3 steps";
+        case EtlParser::STALE: return "after 'stale' comes 'after': stale after 5";
+        case EtlParser::AFTER: return "'stale after' has no '=': stale after 5";
         case EtlParser::SCALE: return "'scale' has no '=': scale 0.5";
         case EtlParser::MISSING: return "'missing' has no '=': missing false";
         case EtlParser::BY: return "'by' has no '=': by ENCODER";

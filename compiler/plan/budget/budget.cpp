@@ -170,11 +170,26 @@ Cost projection_cost(const check::Model& model, const check::Point& point) {
             .distance_operations = std::uint64_t{map.rows} * map.dimension};
 }
 
+std::uint64_t bytes_of_element(check::InputType type) {
+    if (type == check::InputType::i8) return sizeof(std::int8_t);
+    return type == check::InputType::f16 ? sizeof(std::uint16_t) : sizeof(float);
+}
+
 Cost hold_cost(const check::Input& input) {
     if (input.hold == 0) return {};
     return {.state_bytes = (std::uint64_t{input.dimension} + 1) * kWord,
             .code_bytes = kCodePerRing,
             .operations = 1};
+}
+
+/// Returns the cost of `stale after`: the last sample as the input stores it, and a counter.
+Cost stale_cost(const check::Input& input) {
+    if (input.stale_after == 0) return {};
+    const std::uint64_t sample = bytes_of_element(input.type) * input.dimension;
+    return {.state_bytes = (sample + kWord - 1) / kWord * kWord + kWord,
+            .code_bytes = kCodePerRing,
+            .operations = 1,
+            .distance_operations = input.is_embedding() ? input.dimension : 0};
 }
 
 /// Collects the parts of a plan that one monitor, or all of them, need.
@@ -217,7 +232,8 @@ public:
         }
         sum.target_bytes = target_bytes(plan_, distances_, Vectors::with);
         sum.scalar_target_bytes = target_bytes(plan_, distances_, Vectors::without);
-        for (Index i : inputs_) sum = sum + hold_cost(model.inputs[i]);
+        for (Index i : inputs_)
+            sum = sum + hold_cost(model.inputs[i]) + stale_cost(model.inputs[i]);
         return sum;
     }
 

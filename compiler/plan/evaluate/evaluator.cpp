@@ -32,7 +32,11 @@ Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
     prepare_distances();
     inputs_.resize(model_.inputs.size());
     held_.resize(model_.inputs.size());
-    for (const Index i : plan.inputs) held_[i].values.reserve(model_.inputs[i].dimension);
+    freshness_.resize(model_.inputs.size());
+    for (const Index i : plan.inputs) {
+        held_[i].values.reserve(model_.inputs[i].dimension);
+        if (model_.inputs[i].stale_after > 0) freshness_[i].reserve(model_.inputs[i].dimension);
+    }
     distances_.resize(model_.distances.size());
     enclosed_.resize(model_.distances.size());
     measured_.resize(model_.predicates.size());
@@ -59,6 +63,7 @@ void Evaluator::reset() {
         held.values.clear();
         held.age = 0;
     }
+    for (Freshness& freshness : freshness_) freshness.reset();
     counts_.assign(model_.inputs.size(), {});
     for (StreamState& state : stream_states_) reset_stream(state);
     for (std::size_t i = 0; i < plan_.readings.size(); ++i)
@@ -150,19 +155,23 @@ bool in_range(const check::Input& input, const Sample& sample) {
 
 }  // namespace
 
-/// `hold N`: the last present sample replaces at most N missing ones in a row.
+/// `stale after N`: a sample that comes more often in a row counts as missing. `hold N`: the last
+/// present sample replaces at most N missing ones in a row.
 void Evaluator::take_inputs(const std::vector<Sample>& samples) {
     for (Index i : plan_.inputs) {
         const check::Input& input = model_.inputs[i];
         Held& held = held_[i];
         const bool there = is_there(samples[i]);
-        if (there && in_range(input, samples[i])) {
+        const bool usable = there && in_range(input, samples[i]);
+        if (usable && freshness_[i].accepts(input, samples[i].values)) {
             held.values = samples[i].values;
             held.age = 0;
             inputs_[i] = held.values.data();
         } else {
             const bool stands_in = !held.values.empty() && held.age < input.hold;
-            ++(there ? counts_[i].out_of_range : counts_[i].missing);
+            ++(usable || samples[i].is_stale ? counts_[i].stale
+               : there                       ? counts_[i].out_of_range
+                                             : counts_[i].missing);
             if (stands_in) ++counts_[i].held;
             held.age = saturating_increment(held.age);
             inputs_[i] = stands_in ? held.values.data() : nullptr;

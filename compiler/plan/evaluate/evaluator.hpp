@@ -55,10 +55,10 @@ private:
 
 /// Counts of the samples of one input since reset().
 struct SampleCounts {
-    std::uint64_t missing = 0;  ///< absent, or not finite
-    std::uint64_t out_of_range =
-        0;                   ///< a scalar out of its declared range, which counts as missing
-    std::uint64_t held = 0;  ///< of both, those replaced by `hold`
+    std::uint64_t missing = 0;       ///< absent, or not finite
+    std::uint64_t out_of_range = 0;  ///< a scalar out of its declared range: counts as missing
+    std::uint64_t stale = 0;         ///< repeated too often: counts as missing
+    std::uint64_t held = 0;          ///< of all these, those replaced by `hold`
 };
 
 class Evaluator {
@@ -188,6 +188,7 @@ private:
     std::vector<const float*>
         inputs_;  ///< per input of the model: this step's values; null: missing
     std::vector<Held> held_;
+    std::vector<Freshness> freshness_;  ///< per input of the model
     std::vector<SampleCounts> counts_;
     std::vector<etlmon::Measured> distances_;
     /// Per distance: the same, with bounds for narrow targets.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "plan/targets/narrow_targets.hpp"
@@ -35,12 +36,28 @@ std::optional<Sample> narrow(const check::Input& input, bool present,
                                   input.name, i, number);
                 return std::nullopt;
             }
-            sample.values.push_back(static_cast<float>(number) * input.scale);
+            // An int8 has no -0.
+            sample.values.push_back((static_cast<float>(number) + 0.0F) * input.scale);
             continue;
         }
         sample.values.push_back(static_cast<float>(number));
     }
     return sample;
+}
+
+bool Freshness::accepts(const check::Input& input, const std::vector<float>& values) {
+    if (input.stale_after == 0) return true;
+    const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
+    const bool same =
+        repeats_ > 0 && std::equal(values.begin(), values.end(), last_.begin(), last_.end(),
+                                   [&](float a, float b) { return bits(a) == bits(b); });
+    if (!same) {
+        last_ = values;
+        repeats_ = 0;
+    }
+    if (repeats_ == input.stale_after) return false;
+    ++repeats_;
+    return true;
 }
 
 }  // namespace etlc::plan

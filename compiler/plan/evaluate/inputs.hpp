@@ -16,6 +16,7 @@ namespace etlc::plan {
 struct Sample {
     bool present = false;
     std::vector<float> values;
+    bool is_stale = false;  ///< missing, because it came too often in a row
 };
 
 /// Returns the channel of an input in a recording.
@@ -25,5 +26,19 @@ data::Channel channel_of(const check::Input& input);
 /// found and expected.
 std::optional<Sample> narrow(const check::Input& input, bool present,
                              const std::vector<double>& numbers, std::string& why);
+
+/// Applies `stale after N` to the samples of one input.
+class Freshness {
+public:
+    /// Makes room, so that no later call allocates.
+    void reserve(std::uint32_t dimension) { last_.reserve(dimension); }
+    void reset() { repeats_ = 0; }
+    /// Takes the next sample that is present, finite and in range; returns whether it is used.
+    bool accepts(const check::Input& input, const std::vector<float>& values);
+
+private:
+    std::vector<float> last_;
+    std::uint32_t repeats_ = 0;  ///< times that it was used in a row; 0: there is none
+};
 
 }  // namespace etlc::plan

@@ -31,7 +31,7 @@ bool left_to_kernels(const Plan& plan, Index embedding) {
                checks_point(plan, d);  // projections check as kernels do
     };
     const check::Input& input = plan.model->inputs[embedding];
-    return input.is_embedding() && input.hold == 0 &&
+    return input.is_embedding() && !input.has_state() &&
            std::all_of(plan.distances.begin(), plan.distances.end(), leaves);
 }
 

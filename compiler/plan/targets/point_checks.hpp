@@ -15,7 +15,8 @@ std::vector<Index> projected_points(const check::Model& model, const std::vector
 /// measures every row in the header. Others are called only where they are.
 bool checks_point(const Plan& plan, Index distance);
 
-/// Returns whether all kernels of an embedding check it; with `hold`, step() has to check first.
+/// Returns whether all kernels of an embedding check it; with `hold` or `stale after`, step() has
+/// to check first.
 bool left_to_kernels(const Plan& plan, Index embedding);
 
 /// Returns whether several distances need the length of this embedding at every step.

@@ -133,6 +133,7 @@ std::string RunSummary::of_input(check::Index input, const plan::SampleCounts& c
     if (counts.missing > 0) parts.push_back(fmt::format("{} missing", counts.missing));
     if (counts.out_of_range > 0)
         parts.push_back(fmt::format("{} out of range", counts.out_of_range));
+    if (counts.stale > 0) parts.push_back(fmt::format("{} stale", counts.stale));
     std::string text = fmt::format("{}", fmt::join(parts, ", "));
     if (counts.held > 0) text += fmt::format(", of which {} held", counts.held);
     return fmt::format("input {}: {}\n", plan_.model->inputs[input].name, text);
@@ -155,7 +156,8 @@ std::string RunSummary::text(std::uint64_t steps, const plan::Evaluator& evaluat
     text += fmt::format("{}\n", diag::counted(steps, "step"));
     for (const check::Index input : plan_.inputs) {
         const plan::SampleCounts& counts = evaluator.sample_counts()[input];
-        if (counts.missing + counts.out_of_range > 0) text += of_input(input, counts);
+        if (counts.missing + counts.out_of_range + counts.stale > 0)
+            text += of_input(input, counts);
     }
     return text;
 }

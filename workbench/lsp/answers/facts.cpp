@@ -37,6 +37,10 @@ Sentences about(const Model& model, const check::Input& input) {
     if (input.hold > 0)
         facts.push_back(fmt::format("The last sample stands in for up to {} missing ones in a row.",
                                     input.hold));
+    if (input.stale_after > 0)
+        facts.push_back(
+            fmt::format("A sample counts as missing when it has come more than {} in a row.",
+                        diag::counted(input.stale_after, "time")));
     if (input.missing)
         facts.push_back(fmt::format("Where it is missing it counts as {}.", *input.missing));
     if (input.encoder < model.encoders.size())

@@ -124,6 +124,7 @@ public:
             visit(input.range->high);
         }
         visit(input.hold);
+        visit(input.stale);
     }
 
     void visit(const ast::Projection& projection) {

@@ -94,12 +94,13 @@ function remarks() {
   const found = [`${counted(data.episodes, "episode")}, ${counted(data.steps, "step")}.`];
   if (!data.has_truth) found.push(`Without truths: ${data.why_no_truth}.`);
   for (const input of data.inputs) {
-    const missing = input.missing + input.out_of_range;
+    const missing = input.missing + input.out_of_range + input.stale;
     if (missing > 0)
       found.push(`${input.name}: ${counted(missing, "sample")} missing` +
+        (input.stale > 0 ? `, ${input.stale} of them stale` : "") +
         (input.held > 0 ? `, ${input.held} held.` : "."));
   }
-  if (data.inputs.every((input) => input.missing + input.out_of_range === 0))
+  if (data.inputs.every((input) => input.missing + input.out_of_range + input.stale === 0))
     found.push("No sample is missing.");
   found.push(...(figures?.reservations ?? []));
   return found.join(" ");
