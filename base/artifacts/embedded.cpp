@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "artifacts/file.hpp"
 #include "data/arrays/array.hpp"
@@ -99,16 +100,27 @@ void file_members(Archive& archive, auto& file) {
 
 constexpr auto kMembers = [](auto& archive, auto& file) { file_members(archive, file); };
 
-diag::Result<Marks> marks_from(const std::string& path) {
-    const auto archive = data::Archive::open({path, {}, false});
-    if (!archive) return Marks{};  // reading its arrays reports what is wrong
-    if (!archive->has_file(kKind.member)) return Marks{};
+/// What an episode says of its embeddings.
+struct Said {
     Marks marks;
+    Origins origins;
+};
+
+constexpr auto kSaidMembers = [](auto& archive, auto& said) {
+    archive("inputs", said.marks, Hash{});
+    archive("origins", said.origins, Hash{}, artifacts::Presence::where_any);
+};
+
+diag::Result<Said> said_in(const std::string& path) {
+    const auto archive = data::Archive::open({path, {}, false});
+    if (!archive) return Said{};  // reading its arrays reports what is wrong
+    if (!archive->has_file(kKind.member)) return Said{};
+    Said said;
     const auto failure = artifacts::read_description(kKind, *archive, [&](artifacts::Reader& root) {
-        root.read_file([&](auto& members) { members("inputs", marks, Hash{}); });
+        root.read_file([&](auto& members) { kSaidMembers(members, said); });
     });
     if (failure) return *failure;
-    return marks;
+    return said;
 }
 
 }  // namespace
@@ -155,12 +167,20 @@ std::string write(const File& file) {
 
 diag::Result<Marks> read_marks(const std::string& path) {
     if (!path.ends_with(".npz")) return Marks{};
-    return data::within_memory([&] { return marks_from(path); });
+    auto said = data::within_memory([&] { return said_in(path); });
+    if (!said) return said.failure();
+    return std::move(said->marks);
 }
 
-std::string write_marks(const Marks& marks) {
+Origins read_origins(const std::string& path) {
+    auto said = data::within_memory([&] { return said_in(path); });
+    return said ? std::move(said->origins) : Origins{};
+}
+
+std::string write_marks(const Marks& marks, const Origins& origins) {
+    const Said said{marks, origins};
     return artifacts::file_text(kKind.newest_format, nullptr,
-                                [&](auto& members) { members("inputs", marks, Hash{}); });
+                                [&](auto& members) { kSaidMembers(members, said); });
 }
 
 }  // namespace etlc::embedded

@@ -75,8 +75,12 @@ std::string write(const File& file);
 /// The encoders of an episode's inputs: input name -> fingerprint. An .npz episode that `etlc
 /// embed` wrote holds them in its member embedded.json.
 using Marks = std::map<std::string, std::string>;
-std::string write_marks(const Marks& marks);
+/// A hash for each of these inputs: of its embeddings, and of all that they were made from.
+using Origins = std::map<std::string, std::string>;
+std::string write_marks(const Marks& marks, const Origins& origins = {});
 /// Returns an empty map for an episode without marks.
 diag::Result<Marks> read_marks(const std::string& path);
+/// Returns an empty map for a file without origins, and for one that cannot be read.
+Origins read_origins(const std::string& path);
 
 }  // namespace etlc::embedded

@@ -119,11 +119,12 @@ void Reader::operator()(const std::string& key, std::map<std::string, std::strin
     for (const std::string& name : all->keys) inner(name, texts[name]);
 }
 
-void Reader::operator()(const std::string& key, std::map<std::string, std::string>& hashes, Hash) {
-    const Json& all = get(key, Json::Kind::object, "an object");
-    for (std::size_t i = 0; i < all.keys.size(); ++i)
-        hashes[all.keys[i]] = data::hash_text(
-            hash_of(all.items[i], place(key) + "." + all.keys[i], shared_.kind.invalid));
+void Reader::operator()(const std::string& key, std::map<std::string, std::string>& hashes, Hash,
+                        Presence presence) {
+    const Json* all = find(key, Json::Kind::object, "an object", presence);
+    for (std::size_t i = 0; all != nullptr && i < all->keys.size(); ++i)
+        hashes[all->keys[i]] = data::hash_text(
+            hash_of(all->items[i], place(key) + "." + all->keys[i], shared_.kind.invalid));
 }
 
 void Reader::operator()(const std::string& key, std::vector<double>& scores) {

@@ -102,7 +102,8 @@ public:
     void operator()(const std::string& key, std::uint64_t& count);
     void operator()(const std::string& key, float& number);
     void operator()(const std::string& key, std::map<std::string, std::string>& texts);
-    void operator()(const std::string& key, std::map<std::string, std::string>& hashes, Hash);
+    void operator()(const std::string& key, std::map<std::string, std::string>& hashes, Hash,
+                    Presence presence = Presence::always);
     void operator()(const std::string& key, std::vector<double>& scores);
     void operator()(const std::string& key, std::vector<std::uint64_t>& episodes, Presence);
     void operator()(const std::string& key, data::KnownEpisodes& recordings, Presence);

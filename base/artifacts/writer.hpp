@@ -72,9 +72,9 @@ public:
     void operator()(const std::string& key, float number);
     void operator()(const std::string& key, const std::map<std::string, std::string>& texts,
                     Presence presence = Presence::where_any);
-    void operator()(const std::string& key, const std::map<std::string, std::string>& hashes,
-                    Hash) {
-        (*this)(key, hashes, Presence::always);
+    void operator()(const std::string& key, const std::map<std::string, std::string>& hashes, Hash,
+                    Presence presence = Presence::always) {
+        (*this)(key, hashes, presence);
     }
     void operator()(const std::string& key, const std::vector<double>& scores);
     void operator()(const std::string& key, const std::vector<std::uint64_t>& episodes, Presence);

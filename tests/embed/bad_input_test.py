@@ -260,7 +260,7 @@ def late_frames_are_those_of_all():
     refused(["video", "damaged.mp4"], "damaged")
 
 
-def nothing_is_written():
+def what_is_whole_is_written():
     pathlib.Path("t.etl").write_text("""spec t;
 rate 10 Hz;
 encoder net = load("net.onnx"), image [8, 8];
@@ -288,7 +288,9 @@ while head := sys.stdin.buffer.read(8):
         said = call(ETLC, "embed", "t.etl", "--data", "v.mp4", data, "-o", "out", *good,
                     status=1)[1]
         assert all(word in said for word in words), (data, said)
-        assert not os.listdir("out") and not os.path.exists("t.embedded.npz"), data
+        assert os.listdir("out") == ["v.npz"] and not os.path.exists("t.embedded.npz"), data
+        assert np.load("out/v.npz")["z"].shape == (24, 4), "the episode before it is whole"
+        os.remove("out/v.npz")
     # Commands that exit or hang while a pipe holds less than the remaining input.
     make_video("large.mp4", "-c:v", "libx264", frames=20, size="640x480")
     for command, words in (("exit 3", ["exit status 3"]), ("sleep 60", ["said nothing for 1"]),
@@ -312,5 +314,5 @@ with tempfile.TemporaryDirectory() as folder:
     images_are_refused()
     videos_are_refused()
     late_frames_are_those_of_all()
-    nothing_is_written()
+    what_is_whole_is_written()
     os.chdir("/")

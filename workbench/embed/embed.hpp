@@ -1,8 +1,11 @@
 // `etlc embed`: embeddings of the images and videos that a spec names, and episodes of recordings.
-// Takes: the model of check_encoded. Gives: the file of embeddings, and episodes as the bytes of
-// .npz archives. Keeps true: each encoder is started once; errors name their image, video or model.
+// Takes: the model of check_encoded. Gives: the file of embeddings, and episodes, .npz archives,
+// each on disk as soon as it is made. Keeps true: each encoder is started once; an interrupted call
+// and its repetition write the bytes of one call; errors name their image, video or model.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -17,10 +20,20 @@
 
 namespace etlc::embed {
 
+/// How far the episodes of a call are.
+struct Progress {
+    std::size_t done = 0;
+    std::size_t of = 0;
+    std::size_t encoded = 0;   ///< of those done; the others were there
+    std::uint64_t frames = 0;  ///< given to encoders
+};
+
 struct Request {
     Running running;
     std::string version;      ///< of etlc
     data::NamesInFile names;  ///< names of inputs and labels in data sets and arrays
+    std::string folder;       ///< of the episodes; it exists
+    std::function<void(const Progress&)> progress;  ///< empty where nobody would see it
 };
 
 /// Describes the encoders, without embeddings: their models and settings. Stores the settings of a
@@ -33,12 +46,13 @@ std::optional<embedded::File> describe_encoders(check::Model& model, Request& re
 bool embed_targets(const check::Model& model, const Request& request, embedded::File& file,
                    diag::Sink& sink);
 
-/// Receives the bytes of each episode; reports an error and returns false where it cannot.
-using Keep = std::function<bool(const Recording&, const std::string& bytes)>;
+/// Returns the path of the episode of a recording.
+std::string episode_path(const std::string& folder, const Recording& recording);
 
 /// Makes an episode of each recording, with the encoded inputs and those that it has columns of.
-bool embed_recordings(const check::Model& model, const embedded::File& file,
-                      const std::vector<Recording>& recordings, const Request& request,
-                      const Keep& keep, diag::Sink& sink);
+/// Embeddings that an episode on disk has already are kept. An error leaves the episodes before it.
+std::optional<Progress> embed_recordings(const check::Model& model, const embedded::File& file,
+                                         const std::vector<Recording>& recordings,
+                                         const Request& request, diag::Sink& sink);
 
 }  // namespace etlc::embed

@@ -115,7 +115,8 @@ std::optional<Trouble> Encoder::add(data::FrameSource& frames, const std::string
 std::optional<Trouble> Encoder::finish() {
     child_->give_no_more();
     if (auto failure = take(true)) return Trouble{std::move(*failure)};
-    if (!child_->at_end())
+    has_surplus_ = !child_->at_end();
+    if (has_surplus_)
         return Trouble{
             {Code::encoder_failed, fmt::format("'{}' wrote more than {}, one a frame", name_,
                                                diag::counted(taken_, "embedding"))}};

@@ -53,6 +53,10 @@ public:
     /// Ends the input and waits for all embeddings.
     std::optional<Trouble> finish();
 
+    /// Returns whether it wrote more embeddings than it got frames, which `finish` finds: perhaps
+    /// none belongs to its frame.
+    bool has_surplus() const { return has_surplus_; }
+
     /// Returns the dimension, 0 before it is known.
     std::uint32_t dimension() const { return dimension_; }
 
@@ -84,6 +88,7 @@ private:
     bool is_command_;
     std::unique_ptr<data::Child> child_;
     std::uint32_t dimension_ = 0;
+    bool has_surplus_ = false;
     std::uint64_t given_ = 0;  ///< frames
     std::uint64_t taken_ = 0;  ///< embeddings
     std::deque<Job> jobs_;

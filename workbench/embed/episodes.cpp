@@ -1,8 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <functional>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -12,12 +13,11 @@
 
 #include "check/model/model.hpp"
 #include "data/arrays/npz_writer.hpp"
+#include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
-#include "data/recordings/open.hpp"
-#include "data/text/number.hpp"
-#include "data/text/quote.hpp"
-#include "data/traces/csv.hpp"
 #include "diag/diag.hpp"
+#include "embed/columns.hpp"
+#include "embed/earlier.hpp"
 #include "embed/embed.hpp"
 #include "embed/recordings.hpp"
 
@@ -28,113 +28,7 @@ namespace {
 using check::Index;
 using check::kNone;
 using diag::Code;
-
-using data::Channel;
 using diag::Failure;
-
-/// Returns how a column is read, by its name.
-diag::Result<Channel> channel_of(const check::Model& model, const data::ElementName& column) {
-    Channel channel{column.array, column.element ? Channel::Kind::vector : Channel::Kind::scalar, 1,
-                    false};
-    if (column.array.starts_with("truth.")) channel.kind = Channel::Kind::boolean;
-    for (const check::Input& input : model.inputs) {
-        if (input.name != column.array) continue;
-        if (input.encoder != check::kNone)
-            return Failure{
-                Code::no_such_channel,
-                fmt::format("has a column {}, which '{}' makes of the frames",
-                            data::in_quotes(column.array), model.encoders[input.encoder].name),
-                1, 1};
-        if (input.type == check::InputType::boolean) channel.kind = Channel::Kind::boolean;
-    }
-    return channel;
-}
-
-diag::Result<std::vector<Channel>> channels_of(const check::Model& model, const std::string& path) {
-    auto source = data::open_file(path);
-    if (!source) return source.failure();
-    data::CsvReader header(std::move(*source));
-    const auto read = header.next();
-    if (!read) return read.failure();
-    std::vector<Channel> channels;
-    for (std::size_t i = 0; *read && i < header.cells(); ++i) {
-        const data::ElementName column = data::element_name(header.cell(i));
-        const auto same = [&](const Channel& other) { return other.name == column.array; };
-        const auto known = std::find_if(channels.begin(), channels.end(), same);
-        if (known != channels.end()) {
-            known->width = std::max(known->width, column.element.value_or(0) + 1);
-            continue;
-        }
-        auto channel = channel_of(model, column);
-        if (!channel) return channel.failure();
-        channel->width = column.element.value_or(0) + 1;
-        channels.push_back(std::move(*channel));
-    }
-    constexpr std::uint32_t kMostElements = 1U << 20U;  // no row of a file has more cells
-    for (const Channel& channel : channels)
-        if (channel.width > kMostElements)
-            return Failure{Code::trace_shape,
-                           fmt::format("has a column {}[{}], expected at most {} elements",
-                                       channel.name, channel.width - 1, kMostElements),
-                           1, 1};
-    return channels;
-}
-
-/// Reads every `stride`-th step of a trace.
-diag::Result<std::vector<Array>> read_arrays(data::Trace& trace,
-                                             const std::vector<Channel>& channels,
-                                             std::uint64_t stride) {
-    std::vector<Array> arrays;
-    for (const Channel& channel : channels)
-        arrays.push_back({channel.name, channel.width, {}, channel.kind == Channel::Kind::vector});
-    data::Sample sample;
-    for (std::uint64_t step = 0;; ++step) {
-        const auto more = trace.next(sample);
-        if (!more) return more.failure();
-        if (!*more) return arrays;
-        if (step % stride != 0) continue;
-        for (std::size_t c = 0; c < arrays.size(); ++c)
-            for (const double value : sample.values[c])
-                arrays[c].values.push_back(sample.present[c]
-                                               ? static_cast<float>(value)
-                                               : std::numeric_limits<float>::quiet_NaN());
-    }
-}
-
-/// Reads the .csv file beside a recording: a column for each number, a row for each step, labels in
-/// columns `truth.NAME`, empty cells for missing samples. A column with the name of an encoded
-/// input is a failure. Failures have E08 codes and do not repeat the path.
-diag::Result<std::vector<Array>> arrays_beside(const check::Model& model, const std::string& path) {
-    const auto channels = channels_of(model, path);
-    if (!channels) return channels.failure();
-    const auto trace = data::open_trace(path, *channels);
-    if (!trace) return trace.failure();
-    return read_arrays(**trace, *channels, 1);
-}
-
-/// Reads the inputs that no encoder makes, and the labels that `names` has, from
-/// `recording.columns`. Failures do not repeat the path.
-diag::Result<std::vector<Array>> arrays_in(const check::Model& model, const Recording& recording,
-                                           const data::NamesInFile& names) {
-    std::vector<Channel> channels;
-    for (const check::Input& input : model.inputs) {
-        if (input.encoder != check::kNone) continue;
-        Channel channel{input.name, Channel::Kind::scalar, 1, false};
-        if (input.type == check::InputType::boolean) channel.kind = Channel::Kind::boolean;
-        if (input.is_embedding()) {
-            channel.kind = Channel::Kind::vector;
-            channel.width = input.dimension;
-        }
-        channels.push_back(std::move(channel));
-    }
-    for (const auto& [name, in_file] : names)
-        if (name.starts_with("truth."))
-            channels.push_back({name, Channel::Kind::boolean, 1, false});
-    if (channels.empty()) return std::vector<Array>{};
-    const auto trace = data::open_trace(recording.columns, data::renamed(channels, names));
-    if (!trace) return trace.failure();
-    return read_arrays(**trace, channels, recording.stride);
-}
 
 /// Returns the inputs that an encoder makes.
 std::vector<Index> encoded_inputs(const check::Model& model) {
@@ -144,41 +38,84 @@ std::vector<Index> encoded_inputs(const check::Model& model) {
     return found;
 }
 
+/// Frames of another source. `passed` is called for each.
+class CountedFrames final : public data::FrameSource {
+public:
+    CountedFrames(data::FrameSource& frames, std::function<void()> passed)
+        : frames_(frames), passed_(std::move(passed)) {}
+
+    diag::Result<bool> next(data::Frame& frame) override {
+        auto more = frames_.next(frame);
+        if (more && *more) passed_();
+        return more;
+    }
+
+private:
+    data::FrameSource& frames_;
+    std::function<void()> passed_;
+};
+
+/// The embeddings of an input, and what they were made from.
+struct Made {
+    std::string origin;
+    std::vector<float> rows;
+};
+
 class Episodes {
 public:
     Episodes(const check::Model& model, const embedded::File& file,
-             const std::vector<Recording>& recordings, const Request& request, const Keep& keep,
-             diag::Sink& sink)
+             const std::vector<Recording>& recordings, const Request& request, diag::Sink& sink)
         : model_(model),
           recordings_(recordings),
           request_(request),
-          keep_(keep),
           sink_(sink),
           inputs_(encoded_inputs(model)),
-          made_(recordings.size()) {
+          earlier_(request.running, request.version),
+          made_(recordings.size()),
+          is_encoded_(recordings.size(), inputs_.empty()),
+          is_stored_(recordings.size()) {
+        progress_.of = recordings.size();
         for (const Index input : inputs_) {
             const std::string& encoder = model.encoders[model.inputs[input].encoder].name;
             marks_[model.inputs[input].name] = embedded::fingerprint(file.encoders.at(encoder));
         }
     }
 
-    bool make() {
-        if (recordings_.empty()) return true;
-        if (!has_cameras()) return false;
-        std::map<Index, std::unique_ptr<Encoder>> encoders;
-        for (const Index input : inputs_)
-            if (!start(model_.inputs[input].encoder, encoders)) return false;
-        for (std::size_t r = 0; r < recordings_.size(); ++r) {
-            for (const Index input : inputs_)
-                if (!add(*encoders.at(model_.inputs[input].encoder), r, input)) return false;
-            if (inputs_.empty() && !failed_) write(r);
+    std::optional<Progress> make() {
+        if (!has_cameras()) return std::nullopt;
+        data::remove_left_over(request_.folder);
+        add_all();
+        // An error keeps the episodes before it, however far the encoders had got.
+        for (const auto& [index, encoder] : encoders_) {
+            if (!encoder) continue;
+            auto trouble = index == broken_ ? std::nullopt : encoder->finish();
+            if (trouble) stop(trouble->failure, model_path(index));
+            if (encoder->has_surplus()) discard();
         }
-        for (const auto& [index, encoder] : encoders)
-            if (auto trouble = encoder->finish()) return fail(trouble->failure, model_path(index));
-        return !failed_;
+        if (first_trouble_ && !has_failed()) sink_.report(*first_trouble_);
+        if (first_trouble_ || has_failed()) return std::nullopt;
+        return progress_;
     }
 
 private:
+    bool has_failed() const { return end_ < recordings_.size(); }
+
+    void add_all() {
+        for (std::size_t r = 0; r < end_; ++r) {
+            for (const Index input : inputs_)
+                if (!add(r, input)) return;
+            if (inputs_.empty()) write(r);
+        }
+    }
+
+    /// Removes the episodes of this call, also those that it kept: the same encoder made them.
+    void discard() {
+        std::error_code error;
+        for (std::size_t r = 0; r < recordings_.size(); ++r)
+            if (is_stored_[r])
+                std::filesystem::remove(episode_path(request_.folder, recordings_[r]), error);
+    }
+
     /// Refuses two inputs by one encoder for a recording with one camera.
     bool has_cameras() {
         for (const Recording& recording : recordings_) {
@@ -204,66 +141,113 @@ private:
         return data::beside(model_.file.path(), model_.encoders[encoder].model);
     }
 
-    /// Runs all encoders at once, so that episodes are written while the next ones are read.
-    bool start(Index index, std::map<Index, std::unique_ptr<Encoder>>& encoders) {
-        std::unique_ptr<Encoder>& place = encoders[index];
-        if (place) return true;
+    /// Returns the encoder, which runs from its first frames on; null where it cannot be started.
+    /// All run at once, so that episodes are written while the next ones are read.
+    Encoder* running(Index index) {
+        std::unique_ptr<Encoder>& place = encoders_[index];
+        if (place) return place.get();
         auto started = Encoder::start(model_.encoders[index], model_path(index), request_.running);
-        if (!started) return fail(started.failure(), model_path(index));
-        place = std::move(*started);
-        return true;
+        if (started)
+            place = std::move(*started);
+        else
+            stop(started.failure(), model_path(index));
+        return place.get();
     }
 
-    bool add(Encoder& encoder, std::size_t recording, Index input) {
+    /// Keeps the embeddings that the episode has, or encodes the frames.
+    bool add(std::size_t recording, Index index) {
+        const check::Input& input = model_.inputs[index];
         const Recording& from = recordings_[recording];
-        auto frames = from.open(model_.inputs[input].name);
-        if (!frames) return fail(frames.failure(), from.path);
+        // Before the frames are read, so that a file that changes meanwhile is encoded again.
+        std::string origin = earlier_.origin(from, input.name, marks_.at(input.name));
+        auto known =
+            embeddings_in(episode_path(request_.folder, from), input.name, input.dimension, origin);
+        if (!known) return encode(recording, index, std::move(origin));
+        take(recording, index, {std::move(origin), std::move(*known)});
+        return !has_failed();
+    }
+
+    bool encode(std::size_t recording, Index index, std::string origin) {
+        const check::Input& input = model_.inputs[index];
+        const Recording& from = recordings_[recording];
+        Encoder* const encoder = running(input.encoder);
+        if (encoder == nullptr) return false;
+        auto frames = from.open(input.name);
+        if (!frames) return stop(frames.failure(), from.path);
+        CountedFrames counted(**frames, [this] {
+            ++progress_.frames;
+            show();
+        });
+        is_encoded_[recording] = true;
         const auto trouble =
-            encoder.add(**frames, from.path, [this, recording, input](std::vector<float> rows) {
-                take(recording, input, std::move(rows));
+            encoder->add(counted, from.path, [this, recording, index, origin](auto rows) {
+                take(recording, index, {origin, std::move(rows)});
             });
-        if (!trouble) return !failed_;
-        if (trouble->of_encoder)
-            return fail(trouble->failure, model_path(model_.inputs[input].encoder));
+        if (!trouble) return !has_failed();
+        if (trouble->of_encoder) {
+            broken_ = input.encoder;
+            return stop(trouble->failure, model_path(input.encoder));
+        }
         const bool is_of_images = from.files.size() > 1;
-        return fail(trouble->failure, is_of_images && trouble->frame < from.files.size()
+        return stop(trouble->failure, is_of_images && trouble->frame < from.files.size()
                                           ? from.files[trouble->frame]
                                           : from.path);
     }
 
     /// Writes the episode once it has all its inputs.
-    void take(std::size_t recording, Index input, std::vector<float> rows) {
-        made_[recording][input] = std::move(rows);
-        if (made_[recording].size() == inputs_.size() && !failed_) write(recording);
+    void take(std::size_t recording, Index input, Made made) {
+        made_[recording][input] = std::move(made);
+        if (made_[recording].size() == inputs_.size() && recording < end_) write(recording);
+    }
+
+    void show() const {
+        if (request_.progress) request_.progress(progress_);
     }
 
     void write(std::size_t r) {
+        if (!is_written(r)) end_ = r;
+        ++progress_.done;
+        if (is_encoded_[r]) ++progress_.encoded;
+        show();
+    }
+
+    bool is_written(std::size_t r) {
         const Recording& from = recordings_[r];
         std::vector<Array> arrays;
-        for (auto& [index, values] : made_[r]) {
+        embedded::Origins origins;
+        for (auto& [index, made] : made_[r]) {
             const check::Input& input = model_.inputs[index];
-            arrays.push_back({input.name, input.dimension, std::move(values), true});
+            if (!made.origin.empty())
+                origins[input.name] = bound(made.origin, input.dimension, made.rows);
+            arrays.push_back({input.name, input.dimension, std::move(made.rows), true});
         }
         made_[r].clear();
-        if (!add_columns(from, arrays)) {
-            failed_ = true;
-            return;
-        }
+        if (!add_columns(from, arrays)) return false;
         std::vector<data::ArchiveMember> members;
-        if (!marks_.empty()) members.push_back({"embedded.json", embedded::write_marks(marks_)});
+        if (!marks_.empty())
+            members.push_back({"embedded.json", embedded::write_marks(marks_, origins)});
         const std::uint64_t steps = arrays.empty() ? 0 : steps_of(arrays[0]);
         for (const Array& array : arrays) {
-            if (steps_of(array) != steps && !failed_)
-                failed_ =
-                    !fail({Code::trace_shape, fmt::format("'{}' has {}, '{}' has {}", array.name,
-                                                          diag::counted(steps_of(array), "step"),
-                                                          arrays[0].name, steps)},
-                          from.beside.empty() ? from.path : from.beside);
+            if (steps_of(array) != steps)
+                return fail({Code::trace_shape, fmt::format("'{}' has {}, '{}' has {}", array.name,
+                                                            diag::counted(steps_of(array), "step"),
+                                                            arrays[0].name, steps)},
+                            from.beside.empty() ? from.path : from.beside);
             std::vector<std::uint64_t> shape = {steps_of(array)};
             if (array.is_vector) shape.push_back(array.width);
             members.push_back({array.name + ".npy", data::npy_bytes(shape, array.values)});
         }
-        if (!failed_) failed_ = !keep_(from, data::npz_bytes(members));
+        is_stored_[r] = store(from, data::npz_bytes(members));
+        return is_stored_[r];
+    }
+
+    /// Writes an episode, unless the file has these bytes.
+    bool store(const Recording& from, const std::string& bytes) {
+        const std::string path = episode_path(request_.folder, from);
+        const auto old = data::read_file(path, bytes.size(), Code::unwritable_output);
+        if (old && *old == bytes) return true;
+        const auto failure = data::write_file_atomically(path, bytes, Code::unwritable_output);
+        return !failure || fail(*failure, path);
     }
 
     static std::uint64_t steps_of(const Array& array) { return array.values.size() / array.width; }
@@ -281,28 +265,45 @@ private:
         return from.beside.empty() || add(arrays_beside(model_, from.beside), from.beside);
     }
 
-    bool fail(const diag::Failure& failure, const std::string& path) {
+    bool fail(const Failure& failure, const std::string& path) {
         sink_.report(data::in_file(failure, path));
+        return false;
+    }
+
+    /// Ends the reading of recordings. The error is reported after those of earlier episodes.
+    bool stop(const Failure& failure, const std::string& path) {
+        if (!first_trouble_) first_trouble_ = data::in_file(failure, path);
         return false;
     }
 
     const check::Model& model_;
     const std::vector<Recording>& recordings_;
     const Request& request_;
-    const Keep& keep_;
     diag::Sink& sink_;
     std::vector<Index> inputs_;
     embedded::Marks marks_;
-    std::vector<std::map<Index, std::vector<float>>> made_;  ///< by recording
-    bool failed_ = false;
+    Earlier earlier_;
+    std::map<Index, std::unique_ptr<Encoder>> encoders_;
+    std::vector<std::map<Index, Made>> made_;  ///< by recording
+    std::vector<bool> is_encoded_;  ///< by recording; true where there is nothing to encode
+    std::vector<bool> is_stored_;   ///< by recording
+    Progress progress_;
+    std::size_t end_ = recordings_.size();  ///< an error in this recording was reported
+    Index broken_ = kNone;                  ///< the encoder that failed
+    std::optional<diag::Diagnostic> first_trouble_;
 };
 
 }  // namespace
 
-bool embed_recordings(const check::Model& model, const embedded::File& file,
-                      const std::vector<Recording>& recordings, const Request& request,
-                      const Keep& keep, diag::Sink& sink) {
-    return Episodes(model, file, recordings, request, keep, sink).make();
+std::string episode_path(const std::string& folder, const Recording& recording) {
+    return (std::filesystem::path(folder) / (recording.episode + ".npz")).string();
+}
+
+std::optional<Progress> embed_recordings(const check::Model& model, const embedded::File& file,
+                                         const std::vector<Recording>& recordings,
+                                         const Request& request, diag::Sink& sink) {
+    if (recordings.empty()) return Progress{};
+    return Episodes(model, file, recordings, request, sink).make();
 }
 
 }  // namespace etlc::embed

@@ -43,6 +43,25 @@ diag::Result<std::map<std::string, std::string>> cameras_of(const data::Dataset&
     return cameras;
 }
 
+/// The metadata place the frames in a video or in the rows.
+Origin origin_of_clip(const data::SoundEpisode& sound, const std::string& camera,
+                      std::uint64_t stride) {
+    const data::Dataset& set = *sound.set;
+    Origin origin;
+    origin.choice = fmt::format("{} {} {}", sound.episode->index, stride, camera);
+    const auto clip = sound.episode->clips.find(camera);
+    if (clip != sound.episode->clips.end()) origin.video = set.path_of(clip->second.path);
+    std::error_code error;
+    fs::recursive_directory_iterator it(set.path_of("meta"),
+                                        fs::directory_options::follow_directory_symlink, error);
+    for (; !error && it != fs::recursive_directory_iterator(); it.increment(error))
+        if (it->is_regular_file(error)) origin.files.push_back(it->path().string());
+    if (error) origin.files.push_back(set.path_of("meta"));  // a folder has no hash
+    std::sort(origin.files.begin(), origin.files.end());
+    origin.files.push_back(set.path_of(sound.episode->rows));
+    return origin;
+}
+
 Recording recording_of(const data::SoundEpisode& sound, std::uint64_t stride,
                        const std::map<std::string, std::string>& cameras) {
     const std::string& folder = sound.set->folder();
@@ -54,6 +73,9 @@ Recording recording_of(const data::SoundEpisode& sound, std::uint64_t stride,
     recording.has_one_camera = different.size() < 2;
     recording.open = [sound, stride, cameras](const std::string& input) {
         return data::open_clip(*sound.set, *sound.episode, cameras.at(input), stride);
+    };
+    recording.origin = [sound, stride, cameras](const std::string& input) {
+        return origin_of_clip(sound, cameras.at(input), stride);
     };
     recording.columns = recording.path;
     recording.stride = stride;
@@ -118,6 +140,9 @@ diag::Result<std::vector<Recording>> recordings_in_arrays(const std::string& pat
         recording.open = [whole = recording.path, search](const std::string& input) {
             return data::open_image_array(whole, search.camera(input));
         };
+        recording.origin = [file, group, search](const std::string& input) {
+            return Origin{{}, {file}, group + "\n" + search.camera(input)};
+        };
         recording.columns = recording.path;
         recordings.push_back(std::move(recording));
     }
@@ -142,6 +167,9 @@ Recording video(const std::string& path, double rate) {
             name,
             true,
             [path, rate](const std::string&) { return data::open_video(path, {.rate = rate}); },
+            [path, rate](const std::string&) {
+                return Origin{path, {}, fmt::format("{} steps a second", rate)};
+            },
             beside(file.parent_path(), name),
             {path}};
 }
@@ -154,6 +182,9 @@ Recording images(const std::string& folder, std::vector<std::string> paths) {
             name,
             true,
             [paths](const std::string&) { return data::open_images(paths); },
+            [paths](const std::string&) {
+                return Origin{{}, paths, "images"};
+            },
             beside(place.parent_path(), name),
             std::move(paths)};
 }

@@ -38,6 +38,13 @@ struct Search {
     std::string camera(const std::string& input) const;
 };
 
+/// All that decides which frames an input gets.
+struct Origin {
+    std::string video;               ///< its path; empty: the frames are not in a video
+    std::vector<std::string> files;  ///< other files, in an order that matters
+    std::string choice;              ///< which frames of them are taken
+};
+
 struct Recording {
     std::string path;     ///< for messages
     std::string episode;  ///< name of the episode's file, without its ending
@@ -45,6 +52,7 @@ struct Recording {
     bool has_one_camera = true;
     /// Opens the frames for an input, a frame a step. Failures do not repeat the path.
     std::function<diag::Result<std::unique_ptr<data::FrameSource>>(const std::string& input)> open;
+    std::function<Origin(const std::string& input)> origin;
     /// A .csv file of the same name beside it, with other inputs and labels; empty: none.
     std::string beside{};
     /// The video, or the image of each frame; empty: the file also holds other recordings.

@@ -289,6 +289,14 @@ std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files) {
     return {};
 }
 
+void remove_left_over(const std::string& folder) {
+    const Descriptor place(
+        uninterrupted([&] { return ::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC); }));
+    if (!place) return;
+    const Turn turn(*place);
+    if (turn.is_held()) clear(*place);
+}
+
 std::optional<diag::Failure> write_file_atomically(const std::string& path, std::string_view bytes,
                                                    diag::Code code) {
     auto file = AtomicFile::create(path, code);

@@ -82,6 +82,9 @@ private:
 /// mix.
 std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files);
 
+/// Removes the temporary files of killed processes from a folder.
+void remove_left_over(const std::string& folder);
+
 /// Writes `bytes` as the whole content of `path`.
 std::optional<diag::Failure> write_file_atomically(const std::string& path, std::string_view bytes,
                                                    diag::Code code);

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
@@ -84,16 +86,45 @@ embed::Search search_of(const check::Model& model, const Request& request) {
     return search;
 }
 
-std::string episode_path(const std::string& folder, const embed::Recording& recording) {
-    return (fs::path(folder) / (recording.episode + ".npz")).string();
-}
+/// The line on the terminal that says how far a call is; it is erased with this object.
+class ProgressLine {
+public:
+    ProgressLine() = default;
+    ProgressLine(const ProgressLine&) = delete;
+    ProgressLine& operator=(const ProgressLine&) = delete;
+    ~ProgressLine() {
+        if (width_ > 0) print_error(fmt::format("\r{:{}}\r", "", width_));
+    }
 
-/// Raises the limit of open files: all episodes are open until they get their names together.
-void allow_many_files() {
-    rlimit files{};
-    if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return;
-    files.rlim_cur = files.rlim_max;
-    static_cast<void>(::setrlimit(RLIMIT_NOFILE, &files));
+    void show(const embed::Progress& now) {
+        using namespace std::chrono;
+        constexpr auto kPause = milliseconds(100);  // faster than anybody reads
+        const auto time = steady_clock::now();
+        if (width_ > 0 && time < shown_ + kPause) return;
+        shown_ = time;
+        std::string text = fmt::format("{} of {}, {}", now.done, diag::counted(now.of, "episode"),
+                                       diag::counted(now.frames, "frame"));
+        const double seconds = duration<double>(time - begin_).count();
+        if (now.encoded > 0)
+            text += fmt::format(", {:.0f} s left", seconds / static_cast<double>(now.encoded) *
+                                                       static_cast<double>(now.of - now.done));
+        print_error(fmt::format("\r{:{}}", text, width_));
+        width_ = std::max(width_, text.size());
+    }
+
+private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    std::chrono::steady_clock::time_point shown_;
+    std::size_t width_ = 0;  ///< of the longest text so far
+};
+
+std::optional<embed::Progress> make_episodes(const check::Model& model, const embedded::File& file,
+                                             const std::vector<embed::Recording>& recordings,
+                                             embed::Request& asked, diag::Sink& sink) {
+    ProgressLine line;
+    if (progress_is_seen())
+        asked.progress = [&](const embed::Progress& progress) { line.show(progress); };
+    return embed::embed_recordings(model, file, recordings, asked, sink);
 }
 
 std::vector<std::string> reference_paths(const std::string& folder) {
@@ -136,7 +167,8 @@ std::uint32_t shard_of(const embed::Recording& recording, std::uint32_t shards) 
 }
 
 std::string report(const check::Model& model, const embedded::File& file,
-                   const std::vector<embed::Recording>& recordings, const std::string& folder) {
+                   const std::vector<embed::Recording>& recordings, const std::string& folder,
+                   const embed::Progress& made) {
     std::string text;
     for (const auto& [name, encoder] : file.encoders)
         text += fmt::format("encoder {}: dimension {}, {} {}\n", name, encoder.dimension,
@@ -149,9 +181,11 @@ std::string report(const check::Model& model, const embedded::File& file,
         for (const std::string& task : recording.tasks) ++tasks[task];
     for (const auto& [task, episodes] : tasks)
         text += fmt::format("task '{}': {}\n", task, diag::counted(episodes, "episode"));
-    if (!recordings.empty())
-        text += fmt::format("{} in {}\n", diag::counted(recordings.size(), "episode"), folder);
-    return text;
+    if (recordings.empty()) return text;
+    text += fmt::format("{} in {}", diag::counted(recordings.size(), "episode"), folder);
+    if (made.encoded < made.done)
+        text += fmt::format(", {} with embeddings of an earlier call", made.done - made.encoded);
+    return text + "\n";
 }
 
 }  // namespace
@@ -166,7 +200,7 @@ bool embed(const source::File& file, const Request& request, diag::Sink& sink) {
     if (!check_inputs(*model, request, sink)) return false;
     auto recordings = embed::find_recordings(search_of(*model, request), sink);
     if (sink.refused() || !has_inputs(*model, recordings, sink)) return false;
-    embed::Request asked{request.embed.running, library::kVersion, request.names};
+    embed::Request asked{request.embed.running, library::kVersion, request.names, {}, {}};
     auto embeddings = embed::describe_encoders(*model, asked, sink);
     if (!embeddings) return false;
     const ShardRequest& shard = request.shard;
@@ -185,7 +219,7 @@ bool embed(const source::File& file, const Request& request, diag::Sink& sink) {
     for (const check::Encoder& encoder : model->encoders)
         inputs.push_back((fs::path(file.path()).parent_path() / encoder.model).string());
     for (const embed::Recording& recording : recordings) {
-        outputs.push_back(episode_path(request.output, recording));
+        outputs.push_back(embed::episode_path(request.output, recording));
         inputs.push_back(data::trace_file(recording.path));
         if (!recording.beside.empty()) inputs.push_back(recording.beside);
     }
@@ -195,18 +229,15 @@ bool embed(const source::File& file, const Request& request, diag::Sink& sink) {
     if (!references.empty() && !make_folder(request.embed.references, sink)) return false;
     if (!check_outputs(outputs, inputs, sink)) return false;
 
-    allow_many_files();
+    asked.folder = request.output;
     OutputFiles files(sink);
-    const auto keep = [&](const embed::Recording& recording, const std::string& bytes) {
-        return files.add(episode_path(request.output, recording), bytes);
-    };
-    return (!has_targets || embed::embed_targets(*model, asked, *embeddings, sink)) &&
-           write_references(references, files, sink) &&
-           embed::embed_recordings(*model, *embeddings, recordings, asked, keep, sink) &&
-           (!has_targets || files.add(result, embedded::write(*embeddings))) &&
-           files.add(
-               std::string(kStandardOutput),
-               source::visible_lines(report(*model, *embeddings, recordings, request.output))) &&
+    if (has_targets && !embed::embed_targets(*model, asked, *embeddings, sink)) return false;
+    if (!write_references(references, files, sink)) return false;
+    const auto made = make_episodes(*model, *embeddings, recordings, asked, sink);
+    return made && (!has_targets || files.add(result, embedded::write(*embeddings))) &&
+           files.add(std::string(kStandardOutput),
+                     source::visible_lines(
+                         report(*model, *embeddings, recordings, request.output, *made))) &&
            files.commit();
 }
 

@@ -16,6 +16,7 @@
 #include <jerror.h>
 
 #include "data/frames/protocol.hpp"
+#include "embed/worker/prepare.hpp"
 #include "embed/worker/worker.hpp"
 
 namespace etlc::embed::worker {
@@ -30,12 +31,10 @@ using data::frames::kWrongCall;
 using Bytes = std::vector<std::uint8_t>;
 using View = std::span<const std::uint8_t>;
 
-constexpr std::size_t kRgb = 3;
+constexpr std::size_t kRgb = kChannels;
 
 struct Image {
-    std::size_t height = 0;
-    std::size_t width = 0;
-    Bytes rgb;
+    Frame frame;
     unsigned orientation = 1;  ///< EXIF orientation, 1 to 8
 };
 
@@ -98,10 +97,9 @@ public:
 
     Image decoded() {
         png_read_info(png_, info_);
-        Image image;
-        image.height = png_get_image_height(png_, info_);
-        image.width = png_get_image_width(png_, info_);
-        check_size(image.width, image.height);
+        const std::size_t height = png_get_image_height(png_, info_);
+        const std::size_t width = png_get_image_width(png_, info_);
+        check_size(width, height);
         if (png_get_bit_depth(png_, info_) == 16)
             refuse(kRefused, "has 16 bits a channel, expected 8: save it with 8");
         png_set_expand(png_);
@@ -109,13 +107,16 @@ public:
         png_set_interlace_handling(png_);
         png_read_update_info(png_, info_);
         const std::size_t channels = png_get_channels(png_, info_);
-        Bytes pixels(image.height * image.width * channels);
-        std::vector<png_bytep> rows(image.height);
+        Bytes pixels(height * width * channels);
+        std::vector<png_bytep> rows(height);
         for (std::size_t row = 0; row < rows.size(); ++row)
-            rows[row] = pixels.data() + row * image.width * channels;
+            rows[row] = pixels.data() + row * width * channels;
         png_read_image(png_, rows.data());
         png_read_end(png_, info_);
-        image.rgb = opaque(std::move(pixels), channels);
+        Image image;
+        image.frame.height = static_cast<int>(height);
+        image.frame.width = static_cast<int>(width);
+        image.frame.rgb = opaque(std::move(pixels), channels);
         png_bytep exif = nullptr;
         png_uint_32 size = 0;
         if (png_get_eXIf_1(png_, info_, &size, &exif) != 0)
@@ -168,18 +169,15 @@ public:
 
     Image decoded() {
         jpeg_read_header(&state_, TRUE);
-        Image image;
-        image.height = state_.image_height;
-        image.width = state_.image_width;
-        check_size(image.width, image.height);
+        check_size(state_.image_width, state_.image_height);
         if (state_.jpeg_color_space == JCS_CMYK || state_.jpeg_color_space == JCS_YCCK)
             refuse(kRefused, "is made for printing (CMYK), expected grey or RGB");
         state_.out_color_space = JCS_RGB;
-        image.orientation = orientation();
+        Image image{{static_cast<int>(state_.image_height), static_cast<int>(state_.image_width)},
+                    orientation()};
         jpeg_start_decompress(&state_);
-        image.rgb.resize(image.height * image.width * kRgb);
         while (state_.output_scanline < state_.output_height) {
-            JSAMPROW row = image.rgb.data() + state_.output_scanline * image.width * kRgb;
+            JSAMPROW row = image.frame.row(static_cast<int>(state_.output_scanline));
             jpeg_read_scanlines(&state_, &row, 1);
         }
         jpeg_finish_decompress(&state_);
@@ -218,24 +216,12 @@ private:
 };
 
 /// Rotates and mirrors an image by its EXIF orientation.
-Image upright(Image image) {
+Frame upright(Image image) {
     const unsigned kind = image.orientation;
-    if (kind == 1) return image;
-    const bool swaps = kind >= 5;
-    const bool from_bottom = kind == 3 || kind == 4 || kind == 6 || kind == 7;
-    const bool from_right = kind == 2 || kind == 3 || kind == 7 || kind == 8;
-    Image turned{image.height, image.width, Bytes(image.rgb.size())};
-    if (swaps) std::swap(turned.height, turned.width);
-    auto to = turned.rgb.begin();
-    for (std::size_t r = 0; r < turned.height; ++r)
-        for (std::size_t c = 0; c < turned.width; ++c) {
-            const std::size_t down = swaps ? c : r, along = swaps ? r : c;
-            const std::size_t row = from_bottom ? image.height - 1 - down : down;
-            const std::size_t column = from_right ? image.width - 1 - along : along;
-            const std::size_t from = kRgb * (row * image.width + column);
-            to = std::copy_n(image.rgb.begin() + std::ptrdiff_t(from), kRgb, to);
-        }
-    return turned;
+    if (kind == 1) return std::move(image.frame);
+    return turned(image.frame, {.swaps = kind >= 5,
+                                .from_bottom = kind == 3 || kind == 4 || kind == 6 || kind == 7,
+                                .from_right = kind == 2 || kind == 3 || kind == 7 || kind == 8});
 }
 
 void send_image(const Bytes& bytes) {
@@ -243,9 +229,9 @@ void send_image(const Bytes& bytes) {
     const bool is_png = bytes.size() >= 8 && png_sig_cmp(bytes.data(), 0, 8) == 0;
     const bool is_jpeg = bytes.size() >= 2 && bytes[0] == 0xff && bytes[1] == 0xd8;
     if (!is_png && !is_jpeg) refuse(kRefused, "is no image, expected PNG or JPEG");
-    const Image image = upright(is_png ? Png(bytes).decoded() : Jpeg(bytes).decoded());
-    write_frame(static_cast<std::uint32_t>(image.height), static_cast<std::uint32_t>(image.width),
-                image.rgb.data());
+    const Frame frame = upright(is_png ? Png(bytes).decoded() : Jpeg(bytes).decoded());
+    write_frame(static_cast<std::uint32_t>(frame.height), static_cast<std::uint32_t>(frame.width),
+                frame.rgb.data());
 }
 
 }  // namespace

@@ -1,100 +1,34 @@
-#include <sys/prctl.h>
-#include <sys/resource.h>
+// etlc-embed: everything but video.
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstdlib>
-#include <exception>
-#include <new>
+#include <filesystem>
 
 #include "data/frames/protocol.hpp"
 #include "embed/worker/worker.hpp"
 
 namespace etlc::embed::worker {
 
-using namespace data::frames;
-
-void refuse(int exit_status, const std::string& why) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    std::fflush(stderr);
-    ::_exit(exit_status);
-}
-
-void write_out(const void* bytes, std::size_t size) {
-    const auto* from = static_cast<const char*>(bytes);
-    while (size > 0) {
-        const ssize_t written = ::write(STDOUT_FILENO, from, size);
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) ::_exit(EXIT_FAILURE);
-        from += written;
-        size -= static_cast<std::size_t>(written);
-    }
-}
-
-void write_number(std::uint32_t number) {
-    unsigned char bytes[4];
-    for (unsigned i = 0; i < 4; ++i) bytes[i] = static_cast<unsigned char>(number >> (8 * i));
-    write_out(bytes, sizeof bytes);
-}
-
-void write_frame(std::uint32_t height, std::uint32_t width, const std::uint8_t* rgb) {
-    write_number(height);
-    write_number(width);
-    write_out(rgb, std::size_t{height} * width * 3);
-}
-
-bool read_in(void* to, std::size_t size) {
-    auto* at = static_cast<char*>(to);
-    std::size_t rest = size;
-    while (rest > 0) {
-        const ssize_t got = ::read(STDIN_FILENO, at, rest);
-        if (got < 0 && errno == EINTR) continue;
-        if (got <= 0 && rest < size) refuse(kWrongCall, "standard input ends in a frame");
-        if (got <= 0) return false;
-        at += got;
-        rest -= static_cast<std::size_t>(got);
-    }
-    return true;
-}
-
-std::vector<double> Words::numbers(std::string_view name, std::vector<double> usual) const {
-    for (std::size_t i = 0; i + 1 < words_.size(); i += 2) {
-        if (words_[i] != name) continue;
-        std::vector<double> result;
-        const char* at = words_[i + 1].c_str();
-        for (char* end = nullptr; *at != '\0'; at = *end == ',' ? end + 1 : end) {
-            result.push_back(std::strtod(at, &end));
-            if (end == at) refuse(kWrongCall, words_[i] + " takes numbers, not " + words_[i + 1]);
-        }
-        return result;
-    }
-    return usual;
-}
-
-std::string Words::text(std::string_view name, std::string usual) const {
-    for (std::size_t i = 0; i + 1 < words_.size(); i += 2)
-        if (words_[i] == name) return words_[i + 1];
-    return usual;
-}
-
 namespace {
 
-/// Limits the process, since a file may be damaged. `memory`: bytes; 0 for no limit, since models
-/// are trusted.
-void limit_resources(rlim_t memory) {
-    const rlimit space{memory, memory};
-    const rlimit nothing{0, 0};
-    if (memory > 0) ::setrlimit(RLIMIT_AS, &space);
-    ::setrlimit(RLIMIT_CORE, &nothing);
-    ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+using namespace data::frames;
+using Strings = std::vector<std::string>;
+
+/// Replaces this process by the program beside it that decodes video.
+void become_video_decoder(const Strings& words) {
+    std::error_code error;
+    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+    const std::string program = self.parent_path() / kVideoDecoder;
+    std::vector<char*> arguments;
+    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    ::execv(program.c_str(), arguments.data());
+    refuse(kRefused, program + ", which decodes video, cannot be run");
 }
 
-int run(const std::vector<std::string>& words) {
+void run(const Strings& words) {
     const std::string command = words.empty() ? "" : words[0];
     const auto rest = [&](std::size_t from) {
-        return std::vector<std::string>(words.begin() + static_cast<std::ptrdiff_t>(from),
-                                        words.end());
+        return Strings(words.begin() + static_cast<std::ptrdiff_t>(from), words.end());
     };
     if (command == "images") {
         limit_resources(kMaxMemoryBytes);
@@ -104,9 +38,8 @@ int run(const std::vector<std::string>& words) {
         send_given_images();
     } else if (command == "png") {
         write_png();
-    } else if (command == "video" && words.size() >= 2) {
-        limit_resources(kMaxMemoryBytes);
-        send_video(words[1], Words(rest(2)));
+    } else if (command == "video") {
+        become_video_decoder(words);
     } else if (command == "encode" && words.size() >= 2) {
         limit_resources(0);
         encode(words[1], Words(rest(2)));
@@ -118,7 +51,6 @@ int run(const std::vector<std::string>& words) {
                "etlc-embed png, etlc-embed video FILE, etlc-embed encode MODEL.onnx, etlc-embed "
                "onnxruntime");
     }
-    return EXIT_SUCCESS;
 }
 
 }  // namespace
@@ -126,14 +58,5 @@ int run(const std::vector<std::string>& words) {
 }  // namespace etlc::embed::worker
 
 int main(int argc, char** argv) {
-    using namespace etlc::embed::worker;
-    try {
-        const int status = run({argv + 1, argv + argc});
-        std::fflush(nullptr);
-        ::_exit(status);  // without waiting for threads of libraries
-    } catch (const std::bad_alloc&) {
-        refuse(etlc::data::frames::kRefused, "takes more memory than reading it may");
-    } catch (const std::exception& error) {
-        refuse(etlc::data::frames::kRefused, error.what());
-    }
+    return etlc::embed::worker::guarded(argc, argv, etlc::embed::worker::run);
 }

@@ -92,19 +92,9 @@ Frame resize_rows(const Frame& frame, int height, Filter filter) {
     return result;
 }
 
-Frame flipped(const Frame& frame, const Settings& settings) {
-    Frame result(frame.height, frame.width);
-    for (int r = 0; r < frame.height; ++r) {
-        const std::uint8_t* const from = frame.row(settings.upside_down ? frame.height - 1 - r : r);
-        for (int c = 0; c < frame.width; ++c)
-            std::copy_n(from + kChannels * (settings.mirrored ? frame.width - 1 - c : c), kChannels,
-                        result.row(r) + kChannels * c);
-    }
-    return result;
-}
-
-/// Resizes a frame to the size in the settings. The longer side is rounded down, as in torchvision
-/// and transformers.
+/// Resizes a frame to the size in the settings, as Pillow's Image.resize does: each pixel is a
+/// weighted mean of those below the filter, whose width grows with the reduction; columns first,
+/// then rows, in 8 bits. The longer side is rounded down, as in torchvision and transformers.
 Frame resized(const Frame& frame, const Settings& settings) {
     std::int64_t height = settings.resized_height, width = settings.resized_width;
     if (settings.shorter > 0) {
@@ -123,7 +113,8 @@ Frame resized(const Frame& frame, const Settings& settings) {
         height * width > std::int64_t{data::frames::kMaxPixels})
         refuse(kRefused, "takes frames of " + size(frame.height, frame.width) +
                              " that 'resize' makes too large: " + size(height, width));
-    return resize(frame, static_cast<int>(height), static_cast<int>(width), settings.filter);
+    return resize_rows(resize_columns(frame, static_cast<int>(width), settings.filter),
+                       static_cast<int>(height), settings.filter);
 }
 
 /// Returns spare / 2, rounded down as in transformers, or to the even number as by torchvision's
@@ -202,13 +193,28 @@ void put_interpolated(const Frame& frame, const Settings& settings, Planes plane
 
 }  // namespace
 
-Frame resize(const Frame& frame, int height, int width, Filter filter) {
-    return resize_rows(resize_columns(frame, width, filter), height, filter);
+Frame turned(const Frame& frame, const Turn& turn) {
+    const std::ptrdiff_t line = std::ptrdiff_t{kChannels} * frame.width;
+    const std::ptrdiff_t down = turn.from_bottom ? -line : line;
+    const std::ptrdiff_t along = turn.from_right ? -kChannels : kChannels;
+    const std::ptrdiff_t first = (turn.from_bottom ? line * (frame.height - 1) : 0) +
+                                 (turn.from_right ? line - kChannels : 0);
+    Frame result(turn.swaps ? frame.width : frame.height, turn.swaps ? frame.height : frame.width);
+    std::uint8_t* to = result.rgb.data();
+    for (int r = 0; r < result.height; ++r) {
+        std::ptrdiff_t from = first + r * (turn.swaps ? along : down);
+        for (int c = 0; c < result.width; ++c, from += turn.swaps ? down : along)
+            to = std::copy_n(frame.rgb.data() + from, kChannels, to);
+    }
+    return result;
 }
 
 void prepare(const Frame& frame, const Settings& settings, std::vector<float>& image) {
     const bool flips = settings.mirrored || settings.upside_down;
-    const Frame other = flips ? flipped(frame, settings) : Frame();
+    const Frame other =
+        flips
+            ? turned(frame, {.from_bottom = settings.upside_down, .from_right = settings.mirrored})
+            : Frame();
     const Frame& seen = flips ? other : frame;
     const Planes planes(settings, image);
     if (settings.filter == Filter::none) return put_interpolated(seen, settings, planes);

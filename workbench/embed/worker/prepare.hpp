@@ -52,9 +52,13 @@ private:
     }
 };
 
-/// Resizes a frame as Pillow's Image.resize does: each pixel is a weighted mean of those below the
-/// filter, whose width grows with the reduction; columns first, then rows, in 8 bits.
-Frame resize(const Frame& frame, int height, int width, Filter filter);
+/// How a frame is read to turn it.
+struct Turn {
+    bool swaps = false;  ///< rows become columns
+    bool from_bottom = false;
+    bool from_right = false;
+};
+Frame turned(const Frame& frame, const Turn& turn);
 
 /// Prepares a frame for a network. Flips it, then:
 /// - with a filter, resizes it and cuts the centre out, as torchvision's CenterCrop does; ends the

@@ -1,4 +1,4 @@
-// etlc-embed: decodes images and video and runs networks, in a separate process.
+// etlc-embed and etlc-embed-video: decode images and video and run networks, in separate processes.
 // Takes: the words of a call, and frames on standard input. Gives: frames or embeddings on standard
 // output, by the protocol of data/frames/protocol.hpp. Keeps true: an error is one line on standard
 // error and an exit status of that header; nothing is written after it.
@@ -11,6 +11,9 @@
 
 namespace etlc::embed::worker {
 
+/// The program beside etlc-embed that decodes video.
+inline constexpr std::string_view kVideoDecoder = "etlc-embed-video";
+
 /// Prints the reason and ends the process.
 [[noreturn]] void refuse(int exit_status, const std::string& why);
 
@@ -22,6 +25,13 @@ void write_frame(std::uint32_t height, std::uint32_t width, const std::uint8_t* 
 
 /// Reads `size` bytes; false at the end of standard input. Ends the process where the input is cut.
 bool read_in(void* to, std::size_t size);
+
+/// Limits the process, since a file may be damaged. `memory`: bytes; 0 for no limit, since models
+/// are trusted.
+void limit_resources(std::uint64_t memory);
+
+/// Passes the words of a call to `run`, and refuses what it throws.
+int guarded(int argc, char** argv, void (*run)(const std::vector<std::string>& words));
 
 /// The options of a call, each with a value: "--rate 30".
 class Words {

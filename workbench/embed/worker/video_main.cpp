@@ -1,0 +1,23 @@
+// etlc-embed-video: the only part that loads FFmpeg, whose libraries are many.
+#include "data/frames/protocol.hpp"
+#include "embed/worker/worker.hpp"
+
+namespace etlc::embed::worker {
+
+namespace {
+
+/// The words are those of etlc-embed behind "video".
+void run(const std::vector<std::string>& words) {
+    if (words.empty())
+        refuse(data::frames::kWrongCall, "etlc-embed-video belongs to etlc-embed: FILE ...");
+    limit_resources(data::frames::kMaxMemoryBytes);
+    send_video(words[0], Words({words.begin() + 1, words.end()}));
+}
+
+}  // namespace
+
+}  // namespace etlc::embed::worker
+
+int main(int argc, char** argv) {
+    return etlc::embed::worker::guarded(argc, argv, etlc::embed::worker::run);
+}
