@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes the wheel: the package, libetlc, the command, and the libraries that these load.
 
-make_wheel.py PYPROJECT LIBRARY COMMAND READER... FOLDER: the wheel goes into FOLDER.
+make_wheel.py PYPROJECT LIBRARY COMMAND PROGRAM... FOLDER: the wheel goes into FOLDER.
 Needs setuptools and wheel, and patchelf, which makes each file look for libraries beside it.
 """
 
@@ -31,14 +31,14 @@ def libraries_of(program):
     return {name: path for name, path in found.items() if not THERE.match(name)}
 
 
-def stage(folder, library, command, readers):
+def stage(folder, library, command, programs):
     """Copies the native files below `folder`, with paths that hold wherever it is unpacked."""
     places = {
         library: (folder / "lib" / "libetlc.so.1", "$ORIGIN"),
         command: (folder / "bin" / "etlc", "$ORIGIN/../lib"),
     }
-    for reader in readers:
-        places[reader] = (folder / "libexec" / "etlc" / Path(reader).name, "$ORIGIN/../../lib")
+    for program in programs:
+        places[program] = (folder / "libexec" / "etlc" / Path(program).name, "$ORIGIN/../../lib")
     for program in list(places):
         for name, path in libraries_of(program).items():
             places[path] = (folder / "lib" / name, "$ORIGIN")
@@ -50,12 +50,12 @@ def stage(folder, library, command, readers):
         subprocess.run(["patchelf", "--set-rpath", run_path, place], check=True)
 
 
-def main(pyproject, library, command, *readers, folder):
+def main(pyproject, library, command, *programs, folder):
     here = Path(__file__).parent
     with tempfile.TemporaryDirectory() as box:
         source = Path(box)
         shutil.copytree(here / "etlc", source / "etlc", ignore=shutil.ignore_patterns("__pyc*"))
-        stage(source / "etlc" / "_native", library, command, readers)
+        stage(source / "etlc" / "_native", library, command, programs)
         shutil.copy(pyproject, source)
         shutil.copy(here / "setup.py", source)
         dist = Path(folder)

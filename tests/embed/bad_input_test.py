@@ -1,9 +1,10 @@
 """bad_input_test.py ETLC: images and videos that are damaged, cut, or ambiguous are refused by
-name, and nothing is written; other encodings of the same image give the same frames; late frames
+name, and nothing is written; only the program for video loads FFmpeg; other encodings of the same image give the same frames; late frames
 of a video equal those of a full decode."""
 import itertools
 import os
 import pathlib
+import shutil
 import struct
 import subprocess
 import sys
@@ -58,6 +59,16 @@ def refused(words, fault, status=65):
 
 def noise(*shape, most=256):
     return random.integers(0, most, shape, np.uint16 if most > 256 else np.uint8)
+
+
+def only_video_loads_ffmpeg():
+    loaded = call("ldd", EMBEDDER)[0].decode()
+    assert "libpng" in loaded and "libav" not in loaded, loaded
+    assert "libavcodec" in call("ldd", EMBEDDER + "-video")[0].decode()
+    os.mkdir("alone")
+    shutil.copy(EMBEDDER, "alone/etlc-embed")
+    out, said = call("alone/etlc-embed", "video", "any.mp4", status=65)
+    assert not out and "alone/etlc-embed-video, which decodes video, cannot be run" in said, said
 
 
 def other_forms_say_the_same():
@@ -309,6 +320,7 @@ while head := sys.stdin.buffer.read(8):
 
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
+    only_video_loads_ffmpeg()
     other_forms_say_the_same()
     orientations_are_applied()
     images_are_refused()

@@ -20,7 +20,7 @@ python3 "$test" "$(dirname "$test")/../spec" >"$box/log" 2>&1 ||
     { cat "$box/log"; fail "the tests of the package"; }
 native=$(python3 -c 'import etlc; print(etlc._library.NATIVE)')
 [[ $native == "$box/venv/"* ]] || fail "another etlc is imported: $native"
-for program in lib/libetlc.so.1 bin/etlc libexec/etlc/etlc-read-{hdf5,parquet}; do
+for program in lib/libetlc.so.1 bin/etlc libexec/etlc/etlc-{read-hdf5,read-parquet,embed}; do
     others=$(ldd "$native/$program" | awk '$2 == "=>" {print $3}' | grep -v "^$native/" |
         grep -vE '/(lib(c|m|gcc_s|stdc\+\+|resolv))\.so[.0-9]*$' || true)
     [ -z "$others" ] || fail "$program loads from outside of the wheel: $others"
@@ -35,3 +35,8 @@ monitor m = F (gripper > 0.5);
 SPEC
 "$native/bin/etlc" run t.etl --trace "$data/trace.h5" | tail -1 | grep -qx \
     "6,m,0.25,0.25,inf,satisfied,1,0" || fail "the verdicts on an .h5 trace"
+
+# It decodes images and runs networks, and says what decodes video.
+"$native/libexec/etlc/etlc-embed" video any.mp4 2>said && fail "the wheel decodes video"
+grep -q "etlc-embed-video, which decodes video, cannot be run: .* package etlc-embed" said ||
+    fail "who decodes video: $(cat said)"

@@ -22,7 +22,9 @@ void become_video_decoder(const Strings& words) {
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
     ::execv(program.c_str(), arguments.data());
-    refuse(kRefused, program + ", which decodes video, cannot be run");
+    refuse(kRefused, program +
+                         ", which decodes video, cannot be run: the Debian package etlc-embed "
+                         "has it");
 }
 
 void run(const Strings& words) {
