@@ -86,6 +86,10 @@ def check_version(release, **how):
         frames = lerobot.frames_of(name, release, LENGTHS, episode, TOP)
         made = np.load(f"{name}.out/{name}-{episode:06}.npz")
         assert np.array_equal(made["z"], checksums(frames)), (release, episode)
+    for camera, kept in ((TOP, f"out, {len(LENGTHS)} with embeddings of an earlier call\n"),
+                         (WRIST, "out\n")):
+        again = embed("see.etl", "--data", name, "--camera", camera, "-o", f"{name}.out")
+        assert again.endswith(kept), again
 
     # Every second row and frame at half the rate.
     embed("slow.etl", "--data", name, "--camera", WRIST, "-o", f"{name}.slow")
@@ -125,6 +129,9 @@ def check_ends_at_last_frames():
         video = f"last/videos/{TOP}/chunk-000/file-{episode:03}.mp4"
         made = np.load(f"last.out/last-{episode:06}.npz")
         assert np.array_equal(made["z"], checksums(lerobot.raw_frames(video))), episode
+    lerobot.video(f"last/videos/{TOP}/chunk-000/file-002.mp4", LENGTHS[2], 7)
+    again = embed("see.etl", "--data", "last", "--camera", TOP, "-o", "last.out")
+    assert "last.out, 2 with embeddings of an earlier call\n" in again, again
     lerobot.video(f"last/videos/{TOP}/chunk-000/file-001.mp4", LENGTHS[1] - 1, 1)
     refused = embed("see.etl", "--data", "last", "--camera", TOP, "-o", "last.short", status=1)
     assert f"has only {LENGTHS[1] - 1} steps" in refused, refused
