@@ -49,6 +49,29 @@ void MonitorNode::take(const float* elements, std::size_t count) {
     ++taken_;
 }
 
+void MonitorNode::take_references(const float* elements, std::size_t count) {
+    constexpr std::uint32_t kFrames = patrol::Monitor::kReferenceFrames;
+    encoder_.level = Level::error;
+    encoder_.values.clear();
+    if (count != kFrames * kDimension) {
+        encoder_.message = "shows " + std::to_string(count) + " elements for the " +
+                           std::to_string(kFrames) + " reference frames, expected " +
+                           std::to_string(kFrames * kDimension);
+        return;
+    }
+    bool agrees = true;
+    for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
+        std::array<float, kDimension> z{};
+        std::copy_n(elements + frame * kDimension, kDimension, z.begin());
+        agrees &= patrol::Monitor::encoder_agrees(frame, z);
+        encoder_.values.push_back({"difference at frame " + std::to_string(frame),
+                                   text(patrol::Monitor::encoder_difference(frame, z))});
+    }
+    if (agrees) encoder_.level = Level::ok;
+    encoder_.message = agrees ? "is the one of calibration"
+                              : "is not the one of calibration: verdicts mean nothing";
+}
+
 Report MonitorNode::tick() {
     patrol::Inputs in;
     if (is_new_) in.z = newest_;
@@ -58,7 +81,7 @@ Report MonitorNode::tick() {
     files_.write(monitor_);
     Report report;
     report.verdicts = judge(report.verdicts_changed);
-    report.diagnostics = {status_of_embeddings(), status_of_incidents()};
+    report.diagnostics = {status_of_encoder(), status_of_embeddings(), status_of_incidents()};
     report.diagnostics.insert(report.diagnostics.end(), report.verdicts.begin(),
                               report.verdicts.end());
     return report;

@@ -38,7 +38,7 @@ struct Status {
 
 /// The result of a tick.
 struct Report {
-    std::vector<Status> diagnostics;  ///< of the embeddings, of the incidents, of each monitor
+    std::vector<Status> diagnostics;  ///< of encoder, embeddings, incidents, each monitor
     std::vector<Status> verdicts;     ///< of each monitor
     bool verdicts_changed = false;    ///< whether a verdict differs from the previous tick
 };
@@ -51,6 +51,10 @@ public:
     /// Takes an embedding. Refuses and counts one of another size.
     void take(const float* elements, std::size_t count);
 
+    /// Takes the embeddings of the reference frames, one after the other, as the robot's encoder
+    /// makes them. Refuses another number of elements.
+    void take_references(const float* elements, std::size_t count);
+
     Report tick();
 
     /// Begins a new episode: another patrol.
@@ -58,6 +62,7 @@ public:
 
 private:
     Status status_of_embeddings() const;
+    const Status& status_of_encoder() const { return encoder_; }
     Status status_of_incidents() const;
     std::vector<Status> judge(bool& changed);
 
@@ -71,6 +76,7 @@ private:
     std::uint64_t refused_ = 0;
     std::size_t refused_size_ = 0;  ///< size of the last refused one; 0: the last one was accepted
     std::vector<std::uint32_t> answers_;
+    Status encoder_{Level::warn, "patrol: encoder", "has not shown its reference embeddings", {}};
     IncidentFiles files_;
 };
 

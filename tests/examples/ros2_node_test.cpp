@@ -64,7 +64,7 @@ TEST_F(Node, PublishesVerdictsWhenOneChanges) {
     EXPECT_EQ(named(there.verdicts, "arrives").message, "satisfied for good");
     EXPECT_EQ(named(there.verdicts, "arrives").level, Level::ok);
     EXPECT_EQ(named(there.verdicts, "gives_way").message, "satisfied so far");
-    EXPECT_EQ(there.diagnostics.size(), 4U);
+    EXPECT_EQ(there.diagnostics.size(), 5U);
 }
 
 TEST_F(Node, OnlyAnAlarmIsAnError) {
@@ -107,6 +107,26 @@ TEST_F(Node, RefusesEmbeddingsOfAnotherSize) {
     EXPECT_EQ(status.message, "one has 3 elements, expected 4");
     EXPECT_EQ(status.values[2].value, "3");
     EXPECT_NE(named(report.verdicts, "arrives").message, "satisfied for good");
+}
+
+TEST_F(Node, KnowsWhetherTheEncoderIsThatOfCalibration) {
+    const auto status = [&] { return named(node_->tick().diagnostics, "encoder"); };
+    EXPECT_EQ(status().level, Level::warn) << "nothing is known yet";
+    // What encode.py makes of the frames of `etlc embed --write-reference`, to six digits.
+    std::vector<float> rows = {0.404191F, 0.479545F, 0.578909F, 0.105458F, 0.502219F, 0.596844F,
+                               0.3969F,   0.11468F,  0.59652F,  0.413343F, 0.498936F, 0.110381F,
+                               0.39376F,  0.500466F, 0.599884F, 0.117783F};
+    node_->take_references(rows.data(), rows.size());
+    EXPECT_EQ(status().level, Level::ok) << status().message;
+    EXPECT_EQ(status().message, "is the one of calibration");
+    EXPECT_EQ(status().values.size(), 4U);
+    node_->take_references(rows.data(), 12);
+    EXPECT_EQ(status().level, Level::error);
+    EXPECT_EQ(status().message, "shows 12 elements for the 4 reference frames, expected 16");
+    std::swap(rows[0], rows[2]);  // blue and red
+    node_->take_references(rows.data(), rows.size());
+    EXPECT_EQ(status().level, Level::error);
+    EXPECT_EQ(status().message, "is not the one of calibration: verdicts mean nothing");
 }
 
 TEST_F(Node, WhatIsNotFiniteIsMissing) {

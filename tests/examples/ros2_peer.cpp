@@ -1,6 +1,7 @@
 // ros2_peer: replaces the ROS 2 nodes around patrol_dds. Checks that an embedding on the wire is
 // the CDR of ROS 2, publishes embeddings until diagnostics report an alarm, and prints the
 // diagnostics of it and of an embedding of another size, and the messages for a late subscriber.
+// The encoder that it shows, all zeros, is not that of calibration.
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
 
@@ -42,8 +43,8 @@ public:
     Peer() : participant_(checked(dds_create_participant(domain(), nullptr, nullptr), "peer")) {}
     ~Peer() { dds_delete(participant_); }
 
-    dds_entity_t writer(const dds_topic_descriptor_t& type, const char* name) {
-        return checked(dds_create_writer(participant_, topic(type, name), qos(false), nullptr),
+    dds_entity_t writer(const dds_topic_descriptor_t& type, const char* name, bool latched) {
+        return checked(dds_create_writer(participant_, topic(type, name), qos(latched), nullptr),
                        name);
     }
     dds_entity_t reader(const dds_topic_descriptor_t& type, const char* name, bool latched) {
@@ -131,12 +132,16 @@ int main() {
     const auto& array = diagnostic_msgs_msg_dds__DiagnosticArray__desc;
     const auto& embedding = std_msgs_msg_dds__Float32MultiArray__desc;
     const dds_entity_t own = peer.reader(embedding, "rt/embedding", false);
-    const dds_entity_t writer = peer.writer(embedding, "rt/embedding");
+    const dds_entity_t writer = peer.writer(embedding, "rt/embedding", false);
+    const dds_entity_t references = peer.writer(embedding, "rt/reference_embeddings", true);
     const dds_entity_t diagnostics = peer.reader(array, "rt/diagnostics", false);
     publish(writer, {0, 0, 1, 0});
+    publish(references, std::vector<float>(16));  // the node may come later
     if (!is_cdr_of_ros(own)) return std::fputs("this is no CDR of ROS 2\n", stderr), 1;
     if (!publish_until(writer, {0, 0, 1, 0}, diagnostics, "patrol: gives_way",
                        "2 violated for good") ||
+        !publish_until(writer, {0, 0, 1, 0}, diagnostics, "patrol: encoder",
+                       "2 is not the one of calibration: verdicts mean nothing") ||
         !publish_until(writer, {0, 0, 1}, diagnostics, "patrol: embeddings",
                        "2 one has 3 elements, expected 4"))
         return 1;

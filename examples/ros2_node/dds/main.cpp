@@ -27,6 +27,9 @@ void run(const char* incident_folder) {
     for (int ticks = 0; stops == 0; ++ticks) {
         next += kTick;
         std::this_thread::sleep_until(next);
+        topics.take_references([&](const float* elements, std::size_t count) {
+            node.take_references(elements, count);
+        });
         topics.take([&](const float* elements, std::size_t count) { node.take(elements, count); });
         const Report report = node.tick();
         if (report.verdicts_changed) topics.publish_verdicts(report.verdicts);

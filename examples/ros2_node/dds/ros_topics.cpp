@@ -85,28 +85,31 @@ RosTopics::RosTopics(std::uint32_t domain)
     };
     // A best-effort reader accepts reliable writers too.
     const Qos sensor(DDS_RELIABILITY_BEST_EFFORT, DDS_DURABILITY_VOLATILE, 10);
-    const char* const embedding = "rt/embedding";
-    const dds_entity_t of = topic(std_msgs_msg_dds__Float32MultiArray__desc, embedding);
-    embeddings_ = checked(dds_create_reader(participant_, of, sensor, nullptr), embedding);
+    const Qos latched(DDS_RELIABILITY_RELIABLE, DDS_DURABILITY_TRANSIENT_LOCAL, 1);
+    const auto reader = [&](const char* name, const Qos& qos) {
+        const dds_entity_t of = topic(std_msgs_msg_dds__Float32MultiArray__desc, name);
+        return checked(dds_create_reader(participant_, of, qos, nullptr), name);
+    };
+    embeddings_ = reader("rt/embedding", sensor);
+    references_ = reader("rt/reference_embeddings", latched);
     diagnostics_ =
         writer("rt/diagnostics", Qos(DDS_RELIABILITY_RELIABLE, DDS_DURABILITY_VOLATILE, 10));
-    verdicts_ = writer("rt/patrol/verdicts",
-                       Qos(DDS_RELIABILITY_RELIABLE, DDS_DURABILITY_TRANSIENT_LOCAL, 1));
+    verdicts_ = writer("rt/patrol/verdicts", latched);
 }
 
-void RosTopics::take(const std::function<void(const float* elements, std::size_t count)>& each) {
+void RosTopics::take(dds_entity_t reader, const Each& each) {
     constexpr std::size_t kMost = 10;
     for (;;) {
         void* samples[kMost] = {};  // lent by DDS
         dds_sample_info_t infos[kMost];
-        const int count = checked(dds_take(embeddings_, samples, infos, kMost, kMost), "take");
+        const int count = checked(dds_take(reader, samples, infos, kMost, kMost), "take");
         if (count == 0) return;
         for (int i = 0; i < count; ++i) {
             if (!infos[i].valid_data) continue;  // a publisher left
             const auto& data = static_cast<const Embedding*>(samples[i])->data;
             each(data._buffer, data._length);
         }
-        checked(dds_return_loan(embeddings_, samples, count), "return_loan");
+        checked(dds_return_loan(reader, samples, count), "return_loan");
     }
 }
 

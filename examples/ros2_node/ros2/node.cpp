@@ -23,6 +23,11 @@ public:
             "embedding", rclcpp::SensorDataQoS(), [this](const Float32MultiArray& message) {
                 node_.take(message.data.data(), message.data.size());
             });
+        references_ = create_subscription<Float32MultiArray>(
+            "reference_embeddings", rclcpp::QoS(1).transient_local(),
+            [this](const Float32MultiArray& message) {
+                node_.take_references(message.data.data(), message.data.size());
+            });
         reset_ = create_service<Trigger>(
             "~/reset",
             [this](const Trigger::Request::SharedPtr, const Trigger::Response::SharedPtr response) {
@@ -64,6 +69,7 @@ private:
     rclcpp::Publisher<DiagnosticArray>::SharedPtr diagnostics_;
     rclcpp::Publisher<DiagnosticArray>::SharedPtr verdicts_;
     rclcpp::Subscription<Float32MultiArray>::SharedPtr embeddings_;
+    rclcpp::Subscription<Float32MultiArray>::SharedPtr references_;
     rclcpp::Service<Trigger>::SharedPtr reset_;
     rclcpp::TimerBase::SharedPtr timer_;
 };
