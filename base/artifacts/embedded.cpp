@@ -100,7 +100,7 @@ void file_members(Archive& archive, auto& file) {
 
 constexpr auto kMembers = [](auto& archive, auto& file) { file_members(archive, file); };
 
-/// What an episode says of its embeddings.
+/// Statements of an episode about its embeddings.
 struct Said {
     Marks marks;
     Origins origins;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Encodes frames for etlc embed, in place of the camera node's network: the mean of each colour, and
-the deviation of all pixels.
+"""Encodes frames for etlc embed, in place of the camera node's network: the mean of each colour,
+and the deviation of all pixels.
 
     etlc embed patrol.etl --encoder-cmd "python3 encode.py"
 """

@@ -34,7 +34,7 @@ const std::vector<Edit>& spec_edits() {
         {"y : f32;", "y : f32 in [0.1, 0.9];"},
         {"z : f32[2]", "z : f16[2]"},
         {"z : f32[2]", "z : f32[2] hold 2"},
-        {"z : f32[2] hold 1", "z : f32[2] hold 1, stale after 1"},
+        {"z : f32[2]", "z : f32[2], stale after 1"},
         {"y : f32;", "y : f32, stale after 2;"},
         {"bool missing false", "bool missing true"},
         {"bool missing false", "bool"},

@@ -1,6 +1,6 @@
 """bad_input_test.py ETLC: images and videos that are damaged, cut, or ambiguous are refused by
-name, and nothing is written; only the program for video loads FFmpeg; other encodings of the same image give the same frames; late frames
-of a video equal those of a full decode."""
+name, and nothing is written; only the program for video loads FFmpeg; other encodings of the same
+image give the same frames; late frames of a video equal those of a full decode."""
 import itertools
 import os
 import pathlib

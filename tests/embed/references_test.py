@@ -1,7 +1,8 @@
-"""references_test.py ETLC SOURCE CXX: a robot encodes the reference frames that `etlc embed` writes.
-The class, in any flavour of floating point and on a Cortex-M4F, and Python say that its encoder
-agrees where only float32 is rounded otherwise, and that it does not where one step of the
+"""references_test.py ETLC SOURCE CXX: a robot encodes the reference frames that `etlc embed`
+writes. The class, in any flavour of floating point and on a Cortex-M4F, and Python say that its
+encoder agrees where only float32 is rounded otherwise, and that it does not where one step of the
 preparation, or the model, is another one."""
+import io
 import json
 import os
 import re
@@ -9,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import zipfile
 
 import exports
 import numpy as np
@@ -129,21 +131,28 @@ def on_cortex_m4():
 
 def damaged_references_are_refused(kept):
     """Also files of earlier versions, which have none, give a class without encoder_agrees."""
-    with np.load("t.embedded.npz") as archive:
-        whole = dict(archive)
+    with zipfile.ZipFile("t.embedded.npz") as archive:
+        whole = {name: archive.read(name) for name in archive.namelist()}
     shape = "has the shape {} x {}, expected 4 x 40"
     nan = kept.copy()
     nan[2, 3] = np.nan
+
+    def write(path, members):
+        with zipfile.ZipFile(path, "w") as archive:
+            for name, content in members.items():
+                archive.writestr(name, content)
+
     for rows, fault in ((kept[:3], shape.format(3, 40)), (kept[:, 1:], shape.format(4, 39)),
                         (nan, "references-1"), (kept.astype("f8"), "references-1")):
-        np.savez("damaged.npz", **(whole | {"references-1": rows}))
+        member = io.BytesIO()
+        np.save(member, rows)
+        write("damaged.npz", whole | {"references-1.npy": member.getvalue()})
         done = subprocess.run([ETLC, "t.etl", "--check", "--embedded", "damaged.npz"],
                               capture_output=True, text=True)
         assert done.returncode == 1 and fault in done.stderr, (fault, done.stderr)
-    entries = json.loads(bytes(whole.pop("embedded.json")))
-    del entries["encoders"]["net"]["references"], whole["references-1"]
-    text = np.frombuffer(json.dumps(entries).encode(), np.uint8)
-    np.savez("earlier.npz", **{"embedded.json": text}, **whole)
+    entries = json.loads(whole["embedded.json"])
+    del entries["encoders"]["net"]["references"], whole["references-1.npy"]
+    write("earlier.npz", whole | {"embedded.json": json.dumps(entries)})
     assert "encoder_agrees" not in call(ETLC, "t.etl", "--embedded", "earlier.npz", "-o", "-")
 
 

@@ -47,7 +47,8 @@ DECODE = """#!/bin/sh
 shift
 exec cat "$@"
 """
-EPISODES, STEPS, TARGETS = 9, 4, 1
+EPISODES, STEPS = 9, 4
+TARGETS = 1 + 4  # reference frames too
 PAUSE = "0.004"
 numbers = random.Random(20)
 

@@ -78,7 +78,7 @@ TEST(ReferenceProperties, UnknownCoversEveryFilling) {
         auto model = load(
             random_spec(2000 + n, shape_of(n, n % 2 == 0 ? Formulas::prefix : Formulas::sliding)));
         ASSERT_TRUE(model);
-        for (check::Input& input : model->inputs) input.hold = 0;
+        for (check::Input& input : model->inputs) input.hold = input.stale_after = 0;
         const Trace trace = random_trace(*model, n, {.steps = kSteps, .missing = 0.2});
         const auto gapped = evaluate(*model, trace);
         for (int filling = 0; filling < 3; ++filling) {

@@ -20,8 +20,9 @@ for library in avcodec libpng libjpeg openmpi; do
 done
 dpkg-deb -x "$deb" "$box/root"
 # Each helper that is built has its own package, with the libraries that it needs.
-for helper in embed=libavcodec mpi=libopenmpi; do
-    name=etlc-${helper%=*} library=${helper#*=}
+for helper in "embed embed-video=libavcodec" mpi=libopenmpi; do
+    library=${helper#*=} programs=(${helper%=*})
+    name=etlc-${programs[0]}
     [ ! -e "$box/root/usr/libexec/etlc/$name" ] || fail "etlc holds $name"
     [ -e "$build_dir/$name" ] || continue
     own=$(echo "$box/$name"_"$version"_*.deb)
@@ -30,7 +31,8 @@ for helper in embed=libavcodec mpi=libopenmpi; do
     [[ $depends == *"$library"* && $depends == *"etlc (= $version)"* ]] ||
         fail "$name depends on $depends"
     dpkg-deb -x "$own" "$box/$name"
-    [ "$(find "$box/$name" -type f -o -type l)" = "$box/$name/usr/libexec/etlc/$name" ] ||
+    [ "$(cd "$box/$name" && find . -type f -o -type l | sort)" = \
+        "$(printf './usr/libexec/etlc/etlc-%s\n' "${programs[@]}")" ] ||
         fail "$name holds: $(find "$box/$name")"
 done
 [[ $("$box/root/usr/bin/etlc" --version) == *"$version"* ]] ||

@@ -1,7 +1,7 @@
 // Reference frames: pictures that etlc draws, the same in every version and on every machine. Two
 // encoders are the same if they make the same embeddings of these.
-// Keeps true: the pictures have detail at every scale, another mean for each colour and no symmetry,
-// so that another crop, filter, flip or order of channels changes their embeddings.
+// Keeps true: the pictures have detail at every scale, another mean for each colour and no
+// symmetry, so that another crop, filter, flip or order of channels changes their embeddings.
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,7 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// What is kept of an embedding r: its length, and 16 sums of its elements, each with its own signs
+/// A sketch of an embedding r: its length, and 16 sums of its elements, each with its own signs
 /// (random projections; Achlioptas, "Database-friendly random projections", 2003).
 struct Reference {
   float length;    ///< |r|; 1 where that is 0
