@@ -45,6 +45,7 @@ bool GeneratedProgram::command(const std::string& line) {
 bool GeneratedProgram::add(const check::Model& model, check::Values values,
                            const std::string& thresholds) {
     models_.push_back(model);
+    for (check::Let& let : models_.back().lets) let.telemetry = false;  // no --lets here
     explain_.push_back(values == check::Values::sourced);
     write_text(folder_ / (model.name + ".etl"), std::string(model.file.text()));
     if (!thresholds.empty()) write_text(folder_ / (model.name + ".thresholds.json"), thresholds);
