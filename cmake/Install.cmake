@@ -8,7 +8,8 @@ install(TARGETS etlc EXPORT etlcTargets RUNTIME)
 # Where etlc looks for it, relative to bin/.
 install(TARGETS etlc_read_hdf5 etlc_read_parquet RUNTIME DESTINATION libexec/etlc)
 if(TARGET etlc_embed_worker)
-  install(TARGETS etlc_embed_worker etlc_embed_video RUNTIME DESTINATION libexec/etlc COMPONENT embed)
+  install(TARGETS etlc_embed_worker etlc_embed_video
+    RUNTIME DESTINATION libexec/etlc COMPONENT embed)
 endif()
 if(TARGET etlc_mpi)
   install(TARGETS etlc_mpi RUNTIME DESTINATION libexec/etlc COMPONENT mpi)
