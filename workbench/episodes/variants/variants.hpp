@@ -1,7 +1,7 @@
 // Makes failures of a recorded episode, because most people record successes only. A variant is the
 // episode with its frames in another order: cut short, its phases swapped, played backward, or
-// frozen. It is read as a file with these frames would be, so truths, `hold` and `stale after`
-// apply to it anew.
+// frozen. It is read as a file with these frames would be, so truths, `hold` and `stale after` see
+// the new order.
 #pragma once
 
 #include <cstdint>
