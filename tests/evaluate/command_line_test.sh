@@ -96,6 +96,28 @@ table = list(csv.DictReader(open("rows.csv")))
 assert [row["episode"] for row in table] == [row["episode"] for row in rows]
 assert [float(row["near_f1"]) for row in table] == [row["predicates"]["near"]["f1"] for row in rows]
 END
+# Variants change nothing else: no threshold, no fold, no other figure. Bad kinds are refused.
+"$etlc" crossvalidate folded.etl --data episodes --folds 3 --json varied.json --by-episode \
+    --variants cut,frozen,reversed >varied.txt
+python3 - <<'END'
+import json
+plain, varied = json.load(open("folds.json")), json.load(open("varied.json"))
+kinds = varied.pop("variants")
+assert list(kinds) == ["cut", "frozen", "reversed"]
+assert kinds["reversed"] == {"made": 6, "without": 0}, kinds
+for name, monitor in varied["monitors"].items():
+    own = monitor.pop("variants")
+    assert list(own) == ["cut", "frozen", "reversed", "all"]
+    counts = [own[kind]["positives"] + own[kind]["negatives"] for kind in own]
+    assert counts[:3] == [kinds[kind]["made"] for kind in kinds] and sum(counts[:3]) == counts[3]
+    assert "duration" not in own["all"]
+assert plain == varied
+END
+for kinds in cut,cat '' cut, cut,cut; do
+    status=0
+    "$etlc" evaluate dock.etl --data episodes --variants "$kinds" 2>err.txt >/dev/null || status=$?
+    [ $status = 2 ] && grep -q -- --variants err.txt || fail "'$kinds': $status, $(cat err.txt)"
+done
 # The counts equal those of a separate calibration and evaluation for each fold.
 python3 - "$etlc" <<'END'
 import json, subprocess, sys

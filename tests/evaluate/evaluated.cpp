@@ -38,6 +38,7 @@ private:
 
 std::optional<evaluate::Judgement> run(const std::string& spec,
                                        const std::vector<std::string>& episodes, unsigned jobs,
+                                       const std::vector<episodes::Variant>& variants,
                                        diag::Sink& sink) {
     const Folder folder(episodes);
     const source::File file("t.etl", spec);
@@ -46,6 +47,7 @@ std::optional<evaluate::Judgement> run(const std::string& spec,
     evaluate::Request request;
     request.episodes = folder.files;
     request.jobs = jobs;
+    request.variants = variants;
     std::vector<std::size_t> all(episodes.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
     return evaluate::judge({{*compiled, std::nullopt, std::move(all)}}, request, sink);
@@ -62,23 +64,23 @@ check::Model model_of(const std::string& spec) {
 }
 
 evaluate::Judgement judged(const std::string& spec, const std::vector<std::string>& episodes,
-                           unsigned jobs) {
+                           unsigned jobs, const std::vector<episodes::Variant>& variants) {
     diag::Sink sink;
-    auto result = run(spec, episodes, jobs, sink);
+    auto result = run(spec, episodes, jobs, variants, sink);
     for (const diag::Diagnostic& finding : sink.sorted())
         EXPECT_EQ(finding.severity(), diag::Severity::warning) << finding.message;
     return result ? std::move(*result) : evaluate::Judgement{};
 }
 
 evaluate::Evaluation evaluated(const std::string& spec, const std::vector<std::string>& episodes,
-                               unsigned jobs) {
-    return evaluate::summarise(judged(spec, episodes, jobs));
+                               unsigned jobs, const std::vector<episodes::Variant>& variants) {
+    return evaluate::summarise(judged(spec, episodes, jobs, variants));
 }
 
 std::vector<std::string> mistakes(const std::string& spec,
                                   const std::vector<std::string>& episodes) {
     diag::Sink sink;
-    EXPECT_FALSE(run(spec, episodes, 1, sink));
+    EXPECT_FALSE(run(spec, episodes, 1, {}, sink));
     std::vector<std::string> messages;
     for (const diag::Diagnostic& finding : sink.sorted())
         messages.push_back(fs::path(finding.file).filename().string() + ": " + finding.message);

@@ -15,9 +15,10 @@ check::Model model_of(const std::string& spec);
 
 /// Evaluates with this many threads; returns the messages on failure.
 evaluate::Judgement judged(const std::string& spec, const std::vector<std::string>& episodes,
-                           unsigned jobs = 1);
+                           unsigned jobs = 1, const std::vector<episodes::Variant>& variants = {});
 evaluate::Evaluation evaluated(const std::string& spec, const std::vector<std::string>& episodes,
-                               unsigned jobs = 1);
+                               unsigned jobs = 1,
+                               const std::vector<episodes::Variant>& variants = {});
 std::vector<std::string> mistakes(const std::string& spec,
                                   const std::vector<std::string>& episodes);
 

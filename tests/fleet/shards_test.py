@@ -107,7 +107,8 @@ def main():
     for part in parts:
         os.remove(part)
     evaluate = ["evaluate", "fleet.etl", "--thresholds", "thresholds.json", "--data", "three",
-                "--json", "out.json", "--csv", "out.csv", "--by-episode"]
+                "--json", "out.json", "--csv", "out.csv", "--variants", "reversed,cut",
+                "--by-episode"]
     parts = same_as_one_process(evaluate, JUDGED, (1, 2, 64, 7))
 
     assert "is one of 7 shards; missing" in refused("E1104", *parts[1:])

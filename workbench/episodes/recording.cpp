@@ -221,13 +221,14 @@ diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const st
 }
 
 diag::Result<Recording> Recording::open(const Wanted& wanted, const std::string& path,
-                                        const data::NamesInFile& names) {
+                                        const data::NamesInFile& names, const Wrap& wrap) {
     const auto is_unmarked = read_encoders(wanted, path, names);
     if (!is_unmarked) return is_unmarked.failure();
     if (auto failure = data::check_rate(path, wanted.model->step_seconds)) return *failure;
-    auto recording = open(wanted, [&](const std::vector<Channel>& channels) {
+    const Opener file = [&](const std::vector<Channel>& channels) {
         return data::open_trace(path, data::renamed(channels, names));
-    });
+    };
+    auto recording = open(wanted, wrap ? wrap(file) : file);
     if (!recording) return recording;
     recording->path_ = path;
     recording->is_unmarked_ = *is_unmarked;

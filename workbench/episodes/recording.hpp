@@ -127,12 +127,16 @@ diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const st
 using Opener =
     std::function<diag::Result<std::unique_ptr<data::Trace>>(const std::vector<data::Channel>&)>;
 
+/// Returns an opener in place of another.
+using Wrap = std::function<Opener(const Opener&)>;
+
 class Recording final : public Frames {
 public:
     /// Opens an episode. Fails as opening the trace does, or with no_label where a predicate has
-    /// neither a truth nor an array. Failures do not name the episode.
+    /// neither a truth nor an array. Failures do not name the episode. `wrap`: null, or what to
+    /// make of the opener of the file.
     static diag::Result<Recording> open(const Wanted& wanted, const std::string& path,
-                                        const data::NamesInFile& names);
+                                        const data::NamesInFile& names, const Wrap& wrap = nullptr);
     static diag::Result<Recording> open(const Wanted& wanted, const Opener& open);
 
     diag::Result<bool> next() override;

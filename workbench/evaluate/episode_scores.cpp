@@ -49,10 +49,12 @@ std::vector<Index> unmeasured(const plan::Plan& plan, std::vector<Index> predica
 
 EpisodeScorer::EpisodeScorer(const plan::Plan& plan, const plan::Plan& truth,
                              const Subject& subject, const episodes::Leaks& leaks,
-                             const data::NamesInFile& names)
+                             const data::NamesInFile& names,
+                             const std::vector<episodes::Variant>& variants)
     : plan_(plan),
       subject_(subject),
       names_(names),
+      variants_(variants),
       measuring_(plan::measuring(*plan.model, unmeasured(plan, subject.labelled))),
       monitors_(plan),
       truths_(truth, &subject.truth),
@@ -60,7 +62,11 @@ EpisodeScorer::EpisodeScorer(const plan::Plan& plan, const plan::Plan& truth,
       wanted_(episodes::wanted(model(), {&plan, &measuring_}, subject.labelled, leaks)) {}
 
 diag::Result<EpisodeResult> EpisodeScorer::score(const std::string& path) {
-    auto recording = episodes::Recording::open(wanted_, path, names_);
+    episodes::KeptFrames kept;
+    Truths truths(variants_.empty() ? 0 : subject_.labelled.size());
+    const auto keep = [&](const episodes::Opener& open) { return kept.keeping(open); };
+    auto recording = episodes::Recording::open(wanted_, path, names_,
+                                               variants_.empty() ? nullptr : episodes::Wrap(keep));
     if (!recording) return recording.failure();
     EpisodeResult result;
     result.predicates.resize(subject_.labelled.size());
@@ -72,6 +78,8 @@ diag::Result<EpisodeResult> EpisodeScorer::score(const std::string& path) {
     const auto frame = [&] {
         for (std::size_t i = 0; i < result.predicates.size(); ++i)
             note_frame(*recording, i, result.predicates[i]);
+        for (std::size_t i = 0; i < truths.size(); ++i)
+            truths[i].push_back(recording->label(subject_.labelled[i]));
         return rest();
     };
     const auto done = episodes::replay(*recording, {&monitors_, &truths_, &measured_}, frame, rest);
@@ -81,7 +89,35 @@ diag::Result<EpisodeResult> EpisodeScorer::score(const std::string& path) {
     for (std::size_t i = 0; i < result.predicates.size(); ++i)
         result.predicates[i].from_array = recording->from_array(subject_.labelled[i]);
     static_cast<episodes::Recorded&>(result) = recording->recorded();
+    const auto done_too = score_variants(kept, truths, result);
+    if (!done_too) return done_too.failure();
     return result;
+}
+
+/// Runs the monitors and their truths through the variants of an episode that has been read.
+diag::Result<bool> EpisodeScorer::score_variants(const episodes::KeptFrames& kept,
+                                                 const Truths& truths, EpisodeResult& result) {
+    episodes::Wanted wanted = wanted_;
+    wanted.leaks = nullptr;  // the frames are those of the episode
+    for (const episodes::Variant variant : variants_) {
+        const auto orders = episodes::orders(variant, truths, result.frames);
+        result.variants.push_back(orders.size());
+        for (MonitorEpisode& monitor : result.monitors) monitor.variants.emplace_back();
+        for (const episodes::Order& order : orders) {
+            auto recording = episodes::Recording::open(wanted, kept.in_order(order));
+            if (!recording) return recording.failure();
+            tracks_.assign(subject_.monitors.size(), {});
+            const auto step = [&] {
+                note_verdicts();
+                return true;
+            };
+            const auto done = episodes::replay(*recording, {&monitors_, &truths_}, step, step);
+            if (!done) return done;
+            for (std::size_t m = 0; m < subject_.monitors.size(); ++m)
+                result.monitors[m].variants.back().add(verdict(subject_.monitors[m], tracks_[m]));
+        }
+    }
+    return true;
 }
 
 float EpisodeScorer::distance(Index predicate) const {
@@ -139,18 +175,25 @@ MonitorEpisode EpisodeScorer::conclude(const MonitorSubject& subject, const Trac
         const bool errs = tracks.is[i] != Label::unknown && tracks.said[i] != tracks.is[i];
         if (errs && !result.first_error) result.first_error = i;
     }
-    const bool sliding = model().monitors[subject.monitor].sliding;
-    const auto verdict = [&](const Track& track, bool alarm) {
-        if (alarm) return Label::no;
-        return sliding ? *std::min_element(track.begin(), track.end()) : track.back();
-    };
-    result.episode.add(verdict(tracks.said, tracks.said_alarm),
-                       verdict(tracks.is, tracks.is_alarm));
+    result.episode = verdict(subject, tracks);
     result.turn = turn_of(tracks.said, tracks.is);
     const auto visited = [&](Index stage) { return truths_.verdict(stage).satisfied(); };
     if (!subject.stages.empty() &&
         std::all_of(subject.stages.begin(), subject.stages.end(), visited))
         result.ordering = result.episode;
+    return result;
+}
+
+/// Counts the verdict on the whole episode: the last one, or that a sliding monitor always holds.
+Counts EpisodeScorer::verdict(const MonitorSubject& subject, const Tracks& tracks) const {
+    Counts result;
+    if (tracks.said.empty()) return result;
+    const bool sliding = model().monitors[subject.monitor].sliding;
+    const auto of = [&](const Track& track, bool alarm) {
+        if (alarm) return Label::no;
+        return sliding ? *std::min_element(track.begin(), track.end()) : track.back();
+    };
+    result.add(of(tracks.said, tracks.said_alarm), of(tracks.is, tracks.is_alarm));
     return result;
 }
 

@@ -10,6 +10,7 @@
 
 #include "episodes/ranking/auroc.hpp"
 #include "episodes/replay.hpp"
+#include "episodes/variants/variants.hpp"
 #include "evaluate/duration.hpp"
 #include "evaluate/figures.hpp"
 #include "evaluate/subject.hpp"
@@ -31,6 +32,8 @@ struct MonitorEpisode {
     LabelRuns truth;                 ///< true labels of the steps
     /// The first step (sliding monitors: position) that disagrees with a known truth.
     std::optional<std::uint64_t> first_error;
+    /// Per requested kind, the verdicts on variants of the episode, as in `episode`.
+    std::vector<Counts> variants;
 };
 
 struct PredicateEpisode {
@@ -46,6 +49,7 @@ struct EpisodeResult : episodes::Recorded {
     std::vector<PredicateEpisode> predicates;  ///< per labelled predicate
     /// Per monitor; all zero for monitors that cannot be evaluated.
     std::vector<MonitorEpisode> monitors;
+    std::vector<std::uint64_t> variants;  ///< per requested kind, their number
 };
 
 template <class Archive>
@@ -56,7 +60,7 @@ void fields(Archive& archive, Turn& turn) {
 template <class Archive>
 void fields(Archive& archive, MonitorEpisode& monitor) {
     archive(monitor.steps, monitor.episode, monitor.turn, monitor.ordering, monitor.truth,
-            monitor.first_error);
+            monitor.first_error, monitor.variants);
 }
 
 template <class Archive>
@@ -67,14 +71,16 @@ void fields(Archive& archive, PredicateEpisode& predicate) {
 
 template <class Archive>
 void fields(Archive& archive, EpisodeResult& result) {
-    archive(static_cast<episodes::Recorded&>(result), result.predicates, result.monitors);
+    archive(static_cast<episodes::Recorded&>(result), result.predicates, result.monitors,
+            result.variants);
 }
 
 /// Scores one episode after the other, on one thread. Its arguments must outlive it.
 class EpisodeScorer {
 public:
     EpisodeScorer(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
-                  const episodes::Leaks& leaks, const data::NamesInFile& names);
+                  const episodes::Leaks& leaks, const data::NamesInFile& names,
+                  const std::vector<episodes::Variant>& variants);
     EpisodeScorer(const EpisodeScorer&) = delete;
     EpisodeScorer& operator=(const EpisodeScorer&) = delete;
 
@@ -83,6 +89,7 @@ public:
 
 private:
     using Track = std::vector<Label>;
+    using Truths = std::vector<Track>;  ///< per labelled predicate, its label in each frame
 
     struct Tracks {
         Track said;
@@ -93,15 +100,19 @@ private:
 
     void note_frame(const episodes::Recording& recording, std::size_t i,
                     PredicateEpisode& result) const;
+    diag::Result<bool> score_variants(const episodes::KeptFrames& kept, const Truths& truths,
+                                      EpisodeResult& result);
     void note_verdicts();
     void follow(std::size_t m);
     float distance(Index predicate) const;
     MonitorEpisode conclude(const MonitorSubject& subject, const Tracks& tracks) const;
+    Counts verdict(const MonitorSubject& subject, const Tracks& tracks) const;
     const check::Model& model() const { return *plan_.model; }
 
     const plan::Plan& plan_;
     const Subject& subject_;
     const data::NamesInFile& names_;
+    const std::vector<episodes::Variant>& variants_;
     plan::Plan measuring_;  ///< measures labelled predicates that no monitor uses
     episodes::Follower monitors_;
     episodes::Follower truths_;

@@ -99,6 +99,10 @@ void add(EpisodeResult result, std::size_t episode, std::size_t fold, Judgement&
     }
     for (std::size_t m = 0; m < judgement.monitors.size(); ++m)
         judgement.monitors[m].episodes.add(result.monitors[m]);
+    for (std::size_t v = 0; v < judgement.variants.size(); ++v) {
+        judgement.variants[v].made += result.variants[v];
+        judgement.variants[v].left_out += result.variants[v] == 0 ? 1 : 0;
+    }
 }
 
 /// Scores the episodes of a trial and adds their identities to `own`. Returns false after an error.
@@ -114,7 +118,7 @@ bool score(const Trial& trial, std::size_t fold, const Subject& subject, const R
         paths, request, sink,
         [&] {
             return std::make_unique<EpisodeScorer>(trial.spec.plan, truth->plan, subject, leaks,
-                                                   request.names);
+                                                   request.names, request.variants);
         },
         [&](std::size_t i, EpisodeResult result) {
             if (trial.seen || !trial.fitted.episodes.empty()) own.add(result);
@@ -149,6 +153,8 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
     if (!labelled) return std::nullopt;
     Judgement result =
         judgement_of(first, subject(first, *labelled), request.episodes.size(), trials.size());
+    for (const episodes::Variant variant : request.variants)
+        result.variants.push_back({variant, 0, 0});
     if (!refuse_without_truth(first, subject(first, *labelled), sink)) return std::nullopt;
     for (std::size_t t = 0; t < trials.size(); ++t) {
         const Trial& trial = trials[t];

@@ -40,10 +40,18 @@ struct Request {
     std::string allow_overlap;  ///< reason to allow overlaps with calibration; empty: refuse them
     unsigned jobs = 0;          ///< threads; 0: as many as the machine has
     plan::Limits limits;        ///< limits on the ground truth's plan
+    std::vector<episodes::Variant> variants;  ///< failures to make of the episodes
     /// Called occasionally, by any thread, never by two at once.
     std::function<void(std::size_t done, std::size_t total)> progress;
     /// One shard of the episodes, or all shards; null: this process reads all episodes.
     episodes::Sharing* sharing = nullptr;
+};
+
+/// The variants of one kind.
+struct VariantsMade {
+    episodes::Variant variant = episodes::Variant::cut;
+    std::uint64_t made = 0;
+    std::uint64_t left_out = 0;  ///< episodes that are too short for one
 };
 
 /// Claims and truths of all episodes, most of them in temporary files.
@@ -72,6 +80,7 @@ struct Judgement {
     std::vector<Fold> folds;                ///< empty without folds
     double step_seconds = 0;                ///< 0: the spec has no rate
     std::vector<std::string> reservations;  ///< allowances that were used, in words
+    std::vector<VariantsMade> variants;     ///< per requested kind
 
     /// Calls `visit(e, item)` for the item of each episode, in the order of the request.
     template <class T, class Visit>
@@ -93,6 +102,7 @@ struct Score : ByRate<Figure> {
     Counts counts;
     Figure gain;                     ///< F1 less the F1 of always claiming true
     std::optional<Counts> duration;  ///< the duration baseline, evaluate/duration.hpp
+    bool of_variants = false;        ///< whose length follows from their kind: no such baseline
 };
 
 /// Returns the rates of claims that ignore the data: "always_true", "always_false", "duration".
@@ -124,6 +134,7 @@ struct MonitorScore {
     Score episodes;
     Detection detection;
     std::optional<Score> ordering;  ///< sequential formulas: episodes with all stages truly visited
+    std::vector<Score> variants;    ///< per requested kind, then of all; empty without variants
 };
 
 struct EpisodeRow {
@@ -151,6 +162,7 @@ struct Evaluation {
     std::vector<std::string> reservations;  ///< allowances that were used, in words
     double step_seconds = 0;                ///< 0: the spec has no rate
     std::vector<Judgement::Fold> folds;
+    std::vector<VariantsMade> variants;
     std::vector<PredicateScore> predicates;
     std::vector<MonitorScore> monitors;
     std::vector<EpisodeRow> by_episode;  ///< empty unless requested

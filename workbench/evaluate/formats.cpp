@@ -127,6 +127,17 @@ void list(To&& to, const Score& score) {
     for (const auto& [name, rates] : baselines(score)) to(name, rates);
 }
 
+/// Calls `visit(name, score)` for the variants of each kind, then for all, which `all` names.
+template <class Visit>
+void for_each_variant(const Evaluation& evaluation, const MonitorScore& monitor,
+                      const std::string& all, const Visit& visit) {
+    for (std::size_t v = 0; v < monitor.variants.size(); ++v) {
+        const bool is_kind = v < evaluation.variants.size();
+        visit(is_kind ? std::string(episodes::name_of(evaluation.variants[v].variant)) : all,
+              monitor.variants[v]);
+    }
+}
+
 template <class To>
 void list(To&& to, const PredicateScore& score) {
     list(to, score.frames);
@@ -157,7 +168,7 @@ void fill(Object& to, const Detection& d, double step_seconds) {
            d.mean.value ? std::optional(*d.mean.value * step_seconds) : std::nullopt);
 }
 
-void fill(Object& to, const MonitorScore& m, double step_seconds) {
+void fill(Object& to, const MonitorScore& m, const Evaluation& evaluation) {
     to.raw("evaluable", m.lacking.empty() ? "true" : "false");
     if (!m.lacking.empty()) return to("without_truth", m.lacking);
     const auto add_score = [&](const std::string& key, const Score& score) {
@@ -169,7 +180,14 @@ void fill(Object& to, const MonitorScore& m, double step_seconds) {
     add_score("steps", m.steps);
     add_score("episodes", m.episodes);
     if (m.ordering) add_score("ordering", *m.ordering);
-    to.nested("detection", [&](Object& object) { fill(object, m.detection, step_seconds); });
+    if (!m.variants.empty())
+        to.nested("variants", [&](Object& kinds) {
+            for_each_variant(evaluation, m, "all", [&](const std::string& name, const Score& s) {
+                kinds.nested(name, [&](Object& object) { list(object, s); });
+            });
+        });
+    to.nested("detection",
+              [&](Object& object) { fill(object, m.detection, evaluation.step_seconds); });
 }
 
 void fill(Object& to, const Judgement::Fold& fold) {
@@ -210,19 +228,28 @@ void fill(Object& to, const Evaluation& evaluation) {
     to("resamples", kResamples);
     const auto filled = [](Object& object, const auto& item) { fill(object, item); };
     if (!evaluation.folds.empty()) to.nested("folds", evaluation.folds, filled);
+    if (!evaluation.variants.empty())
+        to.nested("variants", [&](Object& all) {
+            for (const VariantsMade& kind : evaluation.variants)
+                all.nested(std::string(episodes::name_of(kind.variant)), [&](Object& object) {
+                    object("made", kind.made);
+                    object("without", kind.left_out);
+                });
+        });
     to.nested("predicates", [&](Object& all) {
         for (const PredicateScore& p : evaluation.predicates)
             all.nested(p.name, [&](Object& object) { list(object, p); });
     });
     to.nested("monitors", [&](Object& all) {
         for (const MonitorScore& m : evaluation.monitors)
-            all.nested(m.name, [&](Object& object) { fill(object, m, evaluation.step_seconds); });
+            all.nested(m.name, [&](Object& object) { fill(object, m, evaluation); });
     });
     if (!evaluation.by_episode.empty()) to.nested("by_episode", evaluation.by_episode, filled);
 }
 
 void add_rows(std::string& text, const std::string& prefix, const Evaluation& evaluation) {
-    const auto rows = [&](const std::string& kind, const std::string& name, const char* level) {
+    const auto rows = [&](const std::string& kind, const std::string& name,
+                          const std::string& level) {
         return Rows(text, prefix, fmt::format("{},{},{}", kind, name, level));
     };
     for (const PredicateScore& p : evaluation.predicates)
@@ -238,6 +265,9 @@ void add_rows(std::string& text, const std::string& prefix, const Evaluation& ev
         episodes("delay_mean_steps", m.detection.mean);
         episodes("delay_median_steps", m.detection.median);
         if (m.ordering) list(rows("monitor", m.name, "ordering"), *m.ordering);
+        for_each_variant(evaluation, m, "variants", [&](const std::string& name, const Score& s) {
+            list(rows("monitor", m.name, name), s);
+        });
     }
     for (std::size_t k = 0; k < evaluation.folds.size(); ++k) {
         const Judgement::Fold& fold = evaluation.folds[k];

@@ -118,6 +118,13 @@ Figure coverage(const Bootstrap& bootstrap, const std::vector<Counts>& each) {
     return share(bootstrap, covered);
 }
 
+/// Computes the rates on variants, resampled with their episodes.
+Score of_variants(const Bootstrap& bootstrap, const std::vector<Counts>& each) {
+    Score result = score(bootstrap, each, [](const auto&) {});
+    result.of_variants = true;
+    return result;
+}
+
 PredicateScore predicate_score(const Bootstrap& bootstrap, const Judgement& judgement,
                                std::size_t i) {
     const Judgement::Predicate& predicate = judgement.predicates[i];
@@ -153,6 +160,16 @@ MonitorScore monitor_score(const Bootstrap& bootstrap, const Judgement& judgemen
     result.episodes = judged(of_each([](const MonitorEpisode& e) { return e.episode; }));
     result.detection =
         detection(bootstrap, of_each([](const MonitorEpisode& e) { return e.turn; }));
+    for (std::size_t v = 0; v < judgement.variants.size(); ++v)
+        result.variants.push_back(of_variants(
+            bootstrap, of_each([v](const MonitorEpisode& e) { return e.variants[v]; })));
+    if (!judgement.variants.empty())
+        result.variants.push_back(of_variants(bootstrap, of_each([](const MonitorEpisode& e) {
+                                                  Counts all;
+                                                  for (const Counts& counts : e.variants)
+                                                      all.add(counts);
+                                                  return all;
+                                              })));
     if (monitor.sequential)
         result.ordering =
             judged(of_each([](const MonitorEpisode& e) { return e.ordering.value_or(Counts{}); }));
@@ -204,9 +221,11 @@ EpisodeRow row_of(const Judgement& judgement, std::size_t e) {
 
 std::vector<std::pair<std::string, Rates>> baselines(const Score& score) {
     const Counts& c = score.counts;
-    return {{"always_true", rates_of_constant(true, c.positives(), c.total())},
-            {"always_false", rates_of_constant(false, c.positives(), c.total())},
-            {"duration", rates(score.duration.value_or(Counts{}))}};
+    std::vector<std::pair<std::string, Rates>> all = {
+        {"always_true", rates_of_constant(true, c.positives(), c.total())},
+        {"always_false", rates_of_constant(false, c.positives(), c.total())}};
+    if (!score.of_variants) all.emplace_back("duration", rates(score.duration.value_or(Counts{})));
+    return all;
 }
 
 Evaluation summarise(const Judgement& judgement) {
@@ -215,6 +234,7 @@ Evaluation summarise(const Judgement& judgement) {
     result.step_seconds = judgement.step_seconds;
     result.reservations = judgement.reservations;
     result.folds = judgement.folds;
+    result.variants = judgement.variants;
     episodes::Identities in_order;  // in the order of the request, unlike the folds
     if (!judgement.folds.empty())
         judgement.for_each(judgement.episodes, [&](std::size_t, const episodes::Recorded& episode) {

@@ -1,5 +1,6 @@
 // Evaluations for people: aligned columns, with the baselines below each score.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -66,18 +67,26 @@ Row heading(const std::string& what, const std::string& positive) {
     return {what, "F1", "precision", "recall", "agreement", positive};
 }
 
-void add(std::vector<Row>& rows, const std::string& name, const Score& score) {
+void add_figures(std::vector<Row>& rows, const std::string& name, const Score& score) {
     const Counts& c = score.counts;
     Row row{name};
     score.for_each([&](const char*, const Figure& rate) { row.push_back(figure(rate)); });
     row.push_back(
         fmt::format("{} of {} ({})", c.positives(), c.total(), percent(c.positives(), c.total())));
     rows.push_back(std::move(row));
+}
+
+void add_baselines(std::vector<Row>& rows, const Score& score) {
     for (auto [what, blind] : baselines(score)) {
         std::replace(what.begin(), what.end(), '_', ' ');
         Row& baseline = rows.emplace_back(Row{"  " + what});
         blind.for_each([&](const char*, const auto& rate) { baseline.push_back(number(rate)); });
     }
+}
+
+void add(std::vector<Row>& rows, const std::string& name, const Score& score) {
+    add_figures(rows, name, score);
+    add_baselines(rows, score);
 }
 
 /// Adds a line each for cases without a known truth and for claims that a missing sample leaves
@@ -124,6 +133,38 @@ std::string monitors_part(const Evaluation& evaluation, const std::string& what,
         add_remarks(remarks, m.name, (m.*level).counts, unit);
     }
     return rows.size() == 1 ? "" : "\n" + aligned(rows) + remarks;
+}
+
+/// Lists how many variants there are, and the rates of each kind under those of all.
+std::string variants_part(const Evaluation& evaluation) {
+    std::vector<std::string> made;
+    std::vector<std::string> left_out;
+    for (const VariantsMade& kind : evaluation.variants) {
+        made.push_back(fmt::format("{} {}", kind.made, episodes::name_of(kind.variant)));
+        if (kind.left_out > 0)
+            left_out.push_back(
+                fmt::format("{} {}", kind.left_out, episodes::name_of(kind.variant)));
+    }
+    std::vector<Row> rows = {heading("monitor, by broken variants", "satisfied")};
+    std::string remarks;
+    for (const MonitorScore& m : evaluation.monitors) {
+        if (m.variants.empty()) continue;
+        const Score& all = m.variants.back();
+        add_figures(rows, m.name, all);
+        for (std::size_t v = 0; v < evaluation.variants.size(); ++v)
+            add_figures(rows,
+                        fmt::format("  {}", episodes::name_of(evaluation.variants[v].variant)),
+                        m.variants[v]);
+        add_baselines(rows, all);
+        add_remarks(remarks, m.name, all.counts, "variant");
+    }
+    if (rows.size() == 1) return "";
+    std::string text =
+        fmt::format("\nbroken variants of the episodes: {}\n", fmt::join(made, ", "));
+    if (!left_out.empty())
+        text += fmt::format("episodes too short, or without a change of a truth: {}\n",
+                            fmt::join(left_out, ", "));
+    return text + aligned(rows) + remarks;
 }
 
 std::string ordering_part(const Evaluation& evaluation) {
@@ -235,6 +276,7 @@ std::string tables(const Evaluation& evaluation) {
         monitors_part(evaluation, "monitor, by steps", "satisfied", &MonitorScore::steps, "step");
     text += monitors_part(evaluation, "monitor, by episodes", "satisfied", &MonitorScore::episodes,
                           "episode");
+    text += variants_part(evaluation);
     text += ordering_part(evaluation) + detection_part(evaluation) + left_out(evaluation);
     return evaluation.by_episode.empty() ? text : text + by_episode_part(evaluation);
 }

@@ -184,6 +184,7 @@ bool evaluate(const std::vector<SpecToJudge>& specs, const Request& request) {
     asked.sharing = shard ? &*shard : request.merged;
     asked.allow_overlap = request.allow_overlap;
     asked.limits = request.limits;
+    asked.variants = request.evaluate.variants;
     if (!check_names(models, asked.names, sink)) return false;
     asked.episodes = find_shared_episodes(asked.sharing, request.data, request.groups, sink);
     if (sink.has_errors()) return false;

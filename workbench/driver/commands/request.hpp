@@ -12,6 +12,7 @@
 #include "data/recordings/open.hpp"
 #include "embed/encoder.hpp"
 #include "episodes/shared/sharing.hpp"
+#include "episodes/variants/variants.hpp"
 #include "pipeline/compile.hpp"
 #include "report/report.hpp"
 
@@ -82,6 +83,7 @@ struct Request : pipeline::Options {
         std::string json;  ///< file; empty: none
         std::string csv;
         bool by_episode = false;  ///< also a row for each episode, the only rows of the CSV
+        std::vector<episodes::Variant> variants;  ///< failures to make of the episodes
     } evaluate;
 
     struct Explain {

@@ -84,6 +84,27 @@ std::string read_recorder(Call& call, const std::vector<std::string>& words) {
     return "";
 }
 
+std::string read_variants(Call& call, const std::vector<std::string>& words) {
+    std::vector<std::string> names;
+    for (const auto& [variant, name] : episodes::kVariants) names.emplace_back(name);
+    std::string_view rest = words.front();
+    for (bool more = true; more;) {
+        const std::size_t comma = rest.find(',');
+        const std::string word(rest.substr(0, comma));
+        more = comma != std::string_view::npos;
+        rest = more ? rest.substr(comma + 1) : "";
+        std::string mistake = mistake_in_word(word, names);
+        if (!mistake.empty()) return "--variants: " + mistake;
+        const auto at = std::find(names.begin(), names.end(), word) - names.begin();
+        auto& variants = call.evaluate.variants;
+        const episodes::Variant variant = episodes::kVariants[at].first;
+        if (std::find(variants.begin(), variants.end(), variant) != variants.end())
+            return fmt::format("--variants names '{}' twice", word);
+        variants.push_back(variant);
+    }
+    return "";
+}
+
 std::string read_seconds(Call& call, const std::vector<std::string>& words) {
     double seconds = 0;
     std::from_chars(words.front().data(), words.front().data() + words.front().size(), seconds);

@@ -20,6 +20,8 @@ std::string read_cameras(Call& call, const std::vector<std::string>& words);
 std::string read_shard(Call& call, const std::vector<std::string>& words);
 /// --recorder BEFORE,AFTER,INCIDENTS, after mistake_in_recorder()
 std::string read_recorder(Call& call, const std::vector<std::string>& words);
+/// --variants cut,reversed
+std::string read_variants(Call& call, const std::vector<std::string>& words);
 /// --at SECONDS, after mistake_in_seconds()
 std::string read_seconds(Call& call, const std::vector<std::string>& words);
 /// --suggest [PREDICATE...]

@@ -326,6 +326,9 @@ std::vector<Option> make_options() {
          fmt::format("number of folds (default: {})", kUsualFolds)},
         {kEvaluate, "--by-episode", flag(in(&Call::evaluate, &Call::Evaluate::by_episode)),
          "also print a row for each episode, the worst first; the CSV then has these rows"},
+        {kEvaluate, "--variants", form("KIND,...", read_variants),
+         "also judge the monitors on failures made of the episodes: cut, swapped, reversed or "
+         "frozen, separated by commas"},
         {kEvaluate, "--json", file(in(&Call::evaluate, &Call::Evaluate::json)),
          "also write the result as JSON; - is standard output"},
         {kEvaluate, "--csv", file(in(&Call::evaluate, &Call::Evaluate::csv)),
