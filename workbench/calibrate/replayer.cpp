@@ -24,8 +24,8 @@ void set(plan::Sample& sample, bool present, float value) {
 }
 
 /// Returns the model with only these monitors, in which an input per watched predicate, appended in
-/// their order, says whether the predicate was measured. Nothing about values is known in advance,
-/// because thresholds change.
+/// their order, says whether the predicate was measured. Nothing is known in advance about the
+/// values of calibrated predicates, because their thresholds change.
 check::Model replayed(const check::Model& model, const std::vector<Guaranteed>& all,
                       const Watched& watched) {
     check::Model result = model;
@@ -52,8 +52,10 @@ check::Model replayed(const check::Model& model, const std::vector<Guaranteed>& 
         predicate.expression.kind = check::Expr::Kind::scalar;
         predicate.expression.index = static_cast<Index>(result.inputs.size());
         predicate.inputs = {predicate.expression.index};
-        predicate.threshold = {};
-        predicate.delta = predicate.robustness = check::kEverything;
+        if (predicate.threshold.origin != check::ThresholdOrigin::literal) {
+            predicate.threshold = {};
+            predicate.delta = predicate.robustness = check::kEverything;
+        }
         result.inputs.push_back(std::move(measured));
     }
     return result;
