@@ -12,7 +12,7 @@
 #include "calibrate/left_out.hpp"
 #include "calibrate/replayer.hpp"
 #include "data/spill/spool.hpp"
-#include "episodes/ranking/bootstrap.hpp"
+#include "episodes/bootstrap.hpp"
 
 namespace etlc::calibrate {
 

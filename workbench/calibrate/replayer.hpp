@@ -24,7 +24,7 @@ struct Guaranteed {
     check::Claim claim;  ///< missed_success or missed_alarm
 };
 
-/// What a track holds of each step.
+/// The parts of a step that a track holds.
 struct Watched {
     std::vector<Index> predicates;  ///< what they measure
     std::vector<Index> labelled;    ///< their labels; the other predicates are their own truth

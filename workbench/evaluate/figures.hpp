@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "episodes/ranking/bootstrap.hpp"
+#include "episodes/bootstrap.hpp"
 #include "episodes/truth.hpp"
 
 namespace etlc::evaluate {

@@ -1,4 +1,4 @@
-#include "episodes/ranking/bootstrap.hpp"
+#include "episodes/bootstrap.hpp"
 
 #include <algorithm>
 
