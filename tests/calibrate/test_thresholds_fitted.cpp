@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "calibrate/calibrate.hpp"
+#include "calibrate/left_out.hpp"
 #include "check/check.hpp"
 #include "check/guarantees/adaptation.hpp"
 #include "check/guarantees/conformal.hpp"
@@ -76,6 +77,49 @@ std::vector<Episode> random_episodes(Random& random, int n) {
         for (int t = random.between(1, 6); t-- > 0;)
             episode.push_back({static_cast<float>(random.grid(-2, 2, grain)), random.chance(0.5)});
     return episodes;
+}
+
+/// Returns nothing if there is none.
+std::optional<float> threshold(const check::Predicate& predicate,
+                               const std::vector<Episode>& episodes) {
+    const auto fit = calibrate::fit(predicate, evidence(episodes, predicate.upper_bound()));
+    const auto* const fitted = std::get_if<Fitted>(&fit);
+    return fitted == nullptr ? std::nullopt : std::optional(fitted->epsilon);
+}
+
+TEST(Fitted, EachIsLeftOutAsByACallOnTheOthers) {
+    Random random(43);
+    int found = 0;
+    for (const std::string comparison : {"<=", "<", ">=", ">"}) {
+        for (const std::string method :
+             {"conformal, alpha = 0.3", "class_conditional, alpha = 0.2", "f1"}) {
+            for (int n = 1; n <= 64; ++n) {
+                const auto model = model_of(comparison, fmt::format("calibrated({})", method));
+                const check::Predicate& predicate = model.predicates[0];
+                const auto episodes = random_episodes(random, n);
+                episodes::Identities identities;
+                for (int e = 0; e < n; ++e)
+                    identities.add({.path = {}, .hash = fmt::format("{:016x}", e * 77 % 64)});
+                const auto out = calibrate::left_out(
+                    predicate, evidence(episodes, predicate.upper_bound()), identities);
+                ASSERT_EQ(out.groups, 0U);
+                bool all = true;
+                for (std::size_t e = 0; e < episodes.size(); ++e) {
+                    std::vector<Episode> others = episodes;
+                    others.erase(others.begin() + static_cast<std::ptrdiff_t>(e));
+                    const auto expected = threshold(predicate, others);
+                    all = all && expected;
+                    if (out.why.empty()) {
+                        ASSERT_EQ(out.thresholds[e], expected);
+                    }
+                }
+                ASSERT_EQ(out.thresholds.size(), all ? episodes.size() : 0U) << method << n;
+                ASSERT_EQ(out.why.empty(), all);
+                found += all ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GT(found, 600);
 }
 
 /// Returns the least covering number of `sorted` (worst first): every threshold on the right side

@@ -88,15 +88,21 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     if (!episodes::can_be_dealt(request.episodes.size(), request.folds, model, sink))
         return std::nullopt;
     const episodes::Leaks leaks(model, predicates);
+    const std::vector<Guaranteed> guarantees = guaranteed(model);
+    const Watched watched = watched_by(model, guarantees, predicates);
+    Tracks tracks;
+    bool is_complete = true;
     episodes::Identities demonstrations;
     std::vector<Evidence> evidence(predicates.size());
     std::uint64_t frames = 0;
     const bool all_scored = episodes::over_shared_episodes<Demonstration>(
         request.episodes, request, sink,
-        [&] { return std::make_unique<Scorer>(model, leaks, predicates, request.names); },
+        [&] { return std::make_unique<Scorer>(model, leaks, predicates, watched, request.names); },
         [&](std::size_t, const Demonstration& demonstration) {
             demonstrations.add(demonstration);
             frames += demonstration.frames;
+            tracks.add(demonstration.track);
+            is_complete &= demonstration.is_complete;
             for (std::size_t i = 0; i < predicates.size(); ++i)
                 evidence[i].add(demonstration.scores[i]);
         });
@@ -143,7 +149,15 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     demonstrations.for_each([&](std::size_t, const episodes::Recorded& demonstration) {
         result.file.episodes.push_back(episodes::hash_of(demonstration));
     });
-    result.report = report(calibrated, predicates, evidence, frames, all) +
+    std::vector<LeftOut> out;
+    for (std::size_t i = 0; i < predicates.size(); ++i)
+        out.push_back(left_out(model.predicates[predicates[i]], evidence[i], demonstrations));
+    const Others others{
+        guarantees, other_errors(calibrated, predicates, evidence, out),
+        other_errors(calibrated, guarantees, predicates, out, {tracks, watched, is_complete})};
+    for (std::size_t i = 0; i < guarantees.size(); ++i)
+        warn_of_empty(model, guarantees[i], others.by_guarantee[i], sink);
+    result.report = report(calibrated, predicates, evidence, frames, all, others) +
                     report_of_folds(model, predicates, evidence, demonstrations, request.folds) +
                     episodes::remark_on(allowance);
     return result;

@@ -13,6 +13,7 @@
 #include "artifacts/fitted.hpp"
 #include "artifacts/thresholds.hpp"
 #include "calibrate/fit.hpp"
+#include "calibrate/other_error.hpp"
 #include "calibrate/scores.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
@@ -43,10 +44,18 @@ struct Calibration {
 std::optional<Calibration> calibrate(const check::Model& model, const Request& request,
                                      diag::Sink& sink);
 
-/// Describes the thresholds, their scores and their guarantees. `model` already has the thresholds.
+/// The errors that the guarantees do not bound.
+struct Others {
+    std::vector<Guaranteed> guarantees;
+    std::vector<OtherError> by_predicate;
+    std::vector<OtherError> by_guarantee;
+};
+
+/// Describes the thresholds, their scores, their guarantees and the other errors. `model` already
+/// has the thresholds.
 std::string report(const check::Model& model, const std::vector<Index>& predicates,
                    const std::vector<Evidence>& evidence, std::uint64_t frames,
-                   const std::vector<Fitted>& fitted);
+                   const std::vector<Fitted>& fitted, const Others& others);
 
 /// Reports the thresholds without each fold, and their results on it; empty for 0 folds. They show
 /// how much the thresholds depend on single recordings, and guarantee nothing.

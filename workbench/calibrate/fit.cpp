@@ -75,6 +75,48 @@ private:
     std::optional<float> other_;
 };
 
+/// Fits a threshold to labelled frames, which are added in the order of their scores.
+class F1Fit {
+public:
+    F1Fit(std::uint64_t positives, bool strict)
+        : has_positives_(positives > 0), best_(positives, strict) {}
+
+    void add(const episodes::Scored& frame) {
+        if (frame.score != score_) end_tie();
+        score_ = frame.score;
+        ++(frame.positive ? positives_ : negatives_);
+    }
+    /// Returns the fit to all frames.
+    Fit result() {
+        end_tie();
+        if (!has_positives_) return Refusal::no_positives;
+        if (best_.best().true_positives == 0) return Refusal::no_f1;
+        Fitted result;
+        result.n = best_.frames();
+        result.f1 = best_.best().value();
+        result.epsilon = best_.taken();
+        const std::vector<float> ends = best_.gap();
+        result.scores = {static_cast<double>(result.epsilon)};
+        const auto between = ends.size() == 2 ? check::halfway(ends[0], ends[1]) : std::nullopt;
+        if (!between) return result;
+        result.epsilon = *between;
+        result.scores.assign(ends.begin(), ends.end());
+        return result;
+    }
+
+private:
+    void end_tie() {
+        if (positives_ + negatives_ > 0) best_.add(score_, positives_, negatives_);
+        positives_ = negatives_ = 0;
+    }
+
+    bool has_positives_;
+    BestF1 best_;
+    float score_ = 0;  ///< of the frames that are not yet counted
+    std::uint64_t positives_ = 0;
+    std::uint64_t negatives_ = 0;
+};
+
 /// Fits a threshold beyond the score at the rank of alpha; `kth(k)` returns the k-th smallest of n.
 template <class Kth>
 Fit ranked(std::uint64_t n, const std::string& alpha, const Kth& kth) {
@@ -153,38 +195,32 @@ Fit fit_rank(std::vector<double> reaches, const std::string& alpha) {
 }
 
 Fit fit_f1(const episodes::FramesByScore& labelled, bool strict, const Counts& counts) {
-    std::uint64_t all_positives = 0;
-    labelled.for_each([&](const episodes::Scored& frame) {
-        all_positives += frame.positive && counts(frame.episode) ? 1 : 0;
-    });
-    if (all_positives == 0) return Refusal::no_positives;
-    BestF1 best(all_positives, strict);
-    float score = 0;
     std::uint64_t positives = 0;
-    std::uint64_t negatives = 0;
-    const auto end_tie = [&] {
-        if (positives + negatives > 0) best.add(score, positives, negatives);
-        positives = negatives = 0;
-    };
     labelled.for_each([&](const episodes::Scored& frame) {
-        if (!counts(frame.episode)) return;
-        if (frame.score != score) end_tie();
-        score = frame.score;
-        ++(frame.positive ? positives : negatives);
+        positives += frame.positive && counts(frame.episode) ? 1 : 0;
     });
-    end_tie();
-    if (best.best().true_positives == 0) return Refusal::no_f1;
-    Fitted result;
-    result.n = best.frames();
-    result.f1 = best.best().value();
-    result.epsilon = best.taken();
-    const std::vector<float> ends = best.gap();
-    result.scores = {static_cast<double>(result.epsilon)};
-    const auto between = ends.size() == 2 ? check::halfway(ends[0], ends[1]) : std::nullopt;
-    if (!between) return result;
-    result.epsilon = *between;
-    result.scores.assign(ends.begin(), ends.end());
-    return result;
+    F1Fit fit(positives, strict);
+    labelled.for_each([&](const episodes::Scored& frame) {
+        if (counts(frame.episode)) fit.add(frame);
+    });
+    return fit.result();
+}
+
+std::vector<Fit> fit_f1_without(const episodes::FramesByScore& labelled, bool strict,
+                                const std::vector<std::uint32_t>& group_of, std::uint32_t groups) {
+    std::vector<std::uint64_t> positives(groups, labelled.positives());
+    labelled.for_each([&](const episodes::Scored& frame) {
+        positives[group_of[frame.episode]] -= frame.positive ? 1 : 0;
+    });
+    std::vector<F1Fit> fits;
+    for (std::uint32_t g = 0; g < groups; ++g) fits.emplace_back(positives[g], strict);
+    labelled.for_each([&](const episodes::Scored& frame) {
+        for (std::uint32_t g = 0; g < groups; ++g)
+            if (g != group_of[frame.episode]) fits[g].add(frame);
+    });
+    std::vector<Fit> results;
+    for (F1Fit& fit : fits) results.push_back(fit.result());
+    return results;
 }
 
 Fit fit(const check::Predicate& predicate, const Evidence& evidence, const Counts& counts) {

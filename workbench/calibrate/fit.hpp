@@ -69,6 +69,11 @@ Fit fit_rank(std::vector<double> reaches, const std::string& alpha);
 /// halfway to the next score, which changes the claim for none of these frames.
 Fit fit_f1(const episodes::FramesByScore& labelled, bool strict, const Counts& counts = kAll);
 
+/// Does so without each group of demonstrations, in two passes over the frames; `group_of`: per
+/// demonstration.
+std::vector<Fit> fit_f1_without(const episodes::FramesByScore& labelled, bool strict,
+                                const std::vector<std::uint32_t>& group_of, std::uint32_t groups);
+
 /// A number of scores that is too small for alpha.
 struct TooFew {
     std::uint64_t scores = 0;

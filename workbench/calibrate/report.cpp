@@ -53,7 +53,7 @@ std::string how(const check::Predicate& predicate, const Fitted& fitted) {
 }
 
 std::string predicate_report(const check::Model& model, Index index, const Evidence& evidence,
-                             const Fitted& fitted) {
+                             const Fitted& fitted, const OtherError& other) {
     const check::Predicate& predicate = model.predicates[index];
     const std::uint64_t without_score = evidence.demonstrations - evidence.worst.size();
     std::string text =
@@ -75,15 +75,16 @@ std::string predicate_report(const check::Model& model, Index index, const Evide
     if (evidence.unmeasured > 0)
         text += fmt::format("    {} of unknown distance skipped\n",
                             counted(evidence.unmeasured, "labelled frame"));
-    return text;
+    return text + "    " + describe(other);
 }
 
-std::string monitor_report(const check::Model& model) {
+std::string monitor_report(const check::Model& model, const Others& others) {
     std::size_t widest = 0;
     for (const check::Monitor& monitor : model.monitors)
         widest = std::max(widest, monitor.name.size());
     std::string text = "\nguarantees\n";
     bool zero_aside = false;
+    std::size_t next = 0;  // guarantees are in this order
     for (const check::Monitor& monitor : model.monitors) {
         if (monitor.calibration) continue;  // its own calibration comes later
         for (const Claim& claim : check::claims(model, monitor)) {
@@ -93,6 +94,13 @@ std::string monitor_report(const check::Model& model) {
             else
                 text += fmt::format("    {:<{}}  of its part {}: {}\n", "", widest, claim.part,
                                     check::text(claim));
+            const bool is_next = next < others.guarantees.size() &&
+                                 &model.monitors[others.guarantees[next].monitor] == &monitor &&
+                                 others.guarantees[next].claim.part == claim.part;
+            if (!is_next) continue;
+            text += describe(others.by_guarantee[next], others.guarantees[next],
+                             std::string(widest + 6, ' '));
+            ++next;
         }
     }
     if (zero_aside) text += fmt::format("    {}\n", check::kZeroAside);
@@ -101,19 +109,21 @@ std::string monitor_report(const check::Model& model) {
     return text +
            "    Probabilities are over the demonstrations and the new episode together, which must "
            "be exchangeable, per episode as recorded.\n"
-           "    Bounds on successes exclude steps with missing samples.\n";
+           "    Bounds on successes exclude steps with missing samples.\n" +
+           kOtherErrors;
 }
 
 }  // namespace
 
 std::string report(const check::Model& model, const std::vector<Index>& predicates,
                    const std::vector<Evidence>& evidence, std::uint64_t frames,
-                   const std::vector<Fitted>& fitted) {
+                   const std::vector<Fitted>& fitted, const Others& others) {
     std::string text = fmt::format("{}, {}\n", counted(evidence[0].demonstrations, "demonstration"),
                                    counted(frames, "frame"));
     for (std::size_t i = 0; i < predicates.size(); ++i)
-        text += predicate_report(model, predicates[i], evidence[i], fitted[i]);
-    return text + monitor_report(model);
+        text +=
+            predicate_report(model, predicates[i], evidence[i], fitted[i], others.by_predicate[i]);
+    return text + monitor_report(model, others);
 }
 
 }  // namespace etlc::calibrate

@@ -25,6 +25,18 @@ void Evidence::add(const Scores& scores) {
         labelled.add({frame.score, demonstration, frame.positive});
 }
 
+namespace {
+
+/// Returns the elements of both, ascending.
+std::vector<Index> all_of(std::vector<Index> some, const std::vector<Index>& others) {
+    some.insert(some.end(), others.begin(), others.end());
+    std::sort(some.begin(), some.end());
+    some.erase(std::unique(some.begin(), some.end()), some.end());
+    return some;
+}
+
+}  // namespace
+
 std::vector<Index> calibrated_predicates(const check::Model& model) {
     std::vector<Index> found;
     for (Index i = 0; i < model.predicates.size(); ++i)
@@ -33,21 +45,31 @@ std::vector<Index> calibrated_predicates(const check::Model& model) {
 }
 
 Scorer::Scorer(const check::Model& model, const episodes::Leaks& leaks,
-               std::vector<Index> predicates, data::NamesInFile names)
+               std::vector<Index> predicates, Watched watched, data::NamesInFile names)
     : model_(model),
       predicates_(std::move(predicates)),
-      plan_(plan::measuring(model, predicates_)),
+      watched_(std::move(watched)),
+      plan_(plan::measuring(model, all_of(predicates_, watched_.predicates))),
       measured_(plan_),
-      wanted_(episodes::wanted(model, {&plan_}, predicates_, leaks)),
-      names_(std::move(names)) {}
+      names_(std::move(names)) {
+    const plan::Plan calibrated = plan::measuring(model, predicates_);
+    wanted_ = episodes::wanted(model, {&calibrated}, predicates_, leaks);
+    wanted_.optional = all_of(plan_.inputs, watched_.flags);
+    std::erase_if(wanted_.optional, [&](Index input) {
+        return std::find(wanted_.inputs.begin(), wanted_.inputs.end(), input) !=
+               wanted_.inputs.end();
+    });
+}
 
 diag::Result<Demonstration> Scorer::score(const std::string& path) {
     auto recording = episodes::Recording::open(wanted_, path, names_);
     if (!recording) return recording.failure();
     std::vector<Scores> scores(predicates_.size());
+    std::string track;
     const auto done = episodes::replay(*recording, {&measured_}, [&] {
         for (std::size_t i = 0; i < predicates_.size(); ++i)
             add(predicates_[i], recording->label(predicates_[i]), scores[i]);
+        add_step(watched_, measured_.evaluator(), *recording, track);
         return true;
     });
     if (!done) return done.failure();
@@ -55,7 +77,8 @@ diag::Result<Demonstration> Scorer::score(const std::string& path) {
         scores[i].from_array = recording->from_array(predicates_[i]);
         scores[i].labelled.shrink_to_fit();  // they are kept for all episodes
     }
-    return Demonstration{recording->recorded(), std::move(scores)};
+    return Demonstration{recording->recorded(), std::move(scores), std::move(track),
+                         recording->is_complete()};
 }
 
 void Scorer::add(Index predicate, Label label, Scores& scores) const {

@@ -6,13 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "calibrate/replayer.hpp"
 #include "data/spill/sorted.hpp"
 #include "episodes/ranking/auroc.hpp"
 #include "episodes/replay.hpp"
 
 namespace etlc::calibrate {
-
-using check::Index;
 
 /// Scores of a predicate in one demonstration, negated for >= and > so that smaller ones are
 /// better.
@@ -35,6 +34,8 @@ struct Scores {
 
 struct Demonstration : episodes::Recorded {
     std::vector<Scores> scores;  ///< per calibrated predicate
+    std::string track;           ///< of what the guarantees watch
+    bool is_complete = true;     ///< it has all inputs that are watched
 };
 
 template <class Archive>
@@ -51,7 +52,8 @@ void fields(Archive& archive, Scores& scores) {
 
 template <class Archive>
 void fields(Archive& archive, Demonstration& demonstration) {
-    archive(static_cast<episodes::Recorded&>(demonstration), demonstration.scores);
+    archive(static_cast<episodes::Recorded&>(demonstration), demonstration.scores,
+            demonstration.track, demonstration.is_complete);
 }
 
 /// Scores of a predicate in all demonstrations. Memory is 16 bytes per demonstration and that of
@@ -87,8 +89,9 @@ std::vector<Index> calibrated_predicates(const check::Model& model);
 /// Scores one demonstration after the other, on one thread.
 class Scorer {
 public:
+    /// Inputs that only the watched predicates and flags read may be absent.
     Scorer(const check::Model& model, const episodes::Leaks& leaks, std::vector<Index> predicates,
-           data::NamesInFile names);
+           Watched watched, data::NamesInFile names);
     Scorer(const Scorer&) = delete;
     Scorer& operator=(const Scorer&) = delete;
 
@@ -100,6 +103,7 @@ private:
 
     const check::Model& model_;
     std::vector<Index> predicates_;
+    Watched watched_;
     plan::Plan plan_;
     episodes::Follower measured_;
     episodes::Wanted wanted_;

@@ -58,7 +58,7 @@ class MonitorScorer {
 public:
     MonitorScorer(const check::Model& model, const MonitorPlans& plans,
                   const episodes::Leaks& leaks, const std::vector<Index>& monitors,
-                  const data::NamesInFile& names);
+                  const Watched& watched, const data::NamesInFile& names);
     MonitorScorer(const MonitorScorer&) = delete;
     MonitorScorer& operator=(const MonitorScorer&) = delete;
 
@@ -70,6 +70,7 @@ private:
 
     const check::Model& model_;
     const std::vector<Index>& monitors_;
+    const Watched& watched_;
     const data::NamesInFile& names_;
     episodes::Follower highest_;  ///< the highest rho in any build
     episodes::Follower lowest_;
@@ -79,9 +80,10 @@ private:
 
 MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plans,
                              const episodes::Leaks& leaks, const std::vector<Index>& monitors,
-                             const data::NamesInFile& names)
+                             const Watched& watched, const data::NamesInFile& names)
     : model_(model),
       monitors_(monitors),
+      watched_(watched),
       names_(names),
       highest_(plans.monitors),
       lowest_(plans.monitors),
@@ -104,14 +106,18 @@ diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path) {
     auto recording = episodes::Recording::open(wanted_, path, names_);
     if (!recording) return recording.failure();
     std::vector<MonitorScore> scores(monitors_.size());
-    const auto note_step = [&] {
+    std::string track;
+    const auto rest = [&] {
         note(scores);
         return true;
     };
-    const auto done =
-        episodes::replay(*recording, {&truths_, &highest_, &lowest_}, note_step, note_step);
+    const auto frame = [&] {
+        add_step(watched_, highest_.evaluator(), *recording, track);
+        return rest();
+    };
+    const auto done = episodes::replay(*recording, {&truths_, &highest_, &lowest_}, frame, rest);
     if (!done) return done.failure();
-    MonitorEpisode result{recording->recorded(), std::move(scores), {}};
+    MonitorEpisode result{recording->recorded(), std::move(scores), {}, std::move(track)};
     for (const Index predicate : wanted_.predicates)
         if (recording->from_array(predicate)) result.from_arrays.push_back(predicate);
     return result;
@@ -205,6 +211,22 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
     return text;
 }
 
+/// Returns the guarantees of the monitors that are calibrated as a whole.
+std::vector<Guaranteed> guaranteed_as_a_whole(const check::Model& model) {
+    std::vector<Guaranteed> found;
+    for (const Index m : calibrated_monitors(model))
+        found.push_back({m, check::claims(model, model.monitors[m])[0]});
+    return found;
+}
+
+LeftOut shifts_without_each(const check::Monitor& monitor, const std::vector<MonitorScores>& scores,
+                            std::size_t of) {
+    std::vector<Evidence::Reach> worst;
+    for (std::uint32_t e = 0; e < scores.size(); ++e)
+        if (scores[e][of].steps > 0) worst.push_back({scores[e][of].worst, e});
+    return left_out(*monitor.calibration, worst, scores.size());
+}
+
 /// Returns the predicates that are not their own truth or have labels in the first episode.
 std::optional<std::vector<Index>> find_labelled(const check::Model& model,
                                                 const std::vector<Index>& monitors,
@@ -252,12 +274,16 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     const episodes::Leaks leaks(model, *labelled);
     episodes::Identities recorded;
     std::vector<MonitorScores> scored;
+    const std::vector<Guaranteed> guarantees = guaranteed_as_a_whole(model);
+    const Watched watched = watched_by(model, guarantees, *labelled);
+    Tracks tracks;
     std::uint64_t frames = 0;
     check::Labelling labelling;
     const bool all_scored = episodes::over_shared_episodes<MonitorEpisode>(
         request.episodes, request, sink,
         [&] {
-            return std::make_unique<MonitorScorer>(model, plans, leaks, monitors, request.names);
+            return std::make_unique<MonitorScorer>(model, plans, leaks, monitors, watched,
+                                                   request.names);
         },
         [&](std::size_t, MonitorEpisode episode) {
             recorded.add(episode);
@@ -265,6 +291,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
             ++labelling.episodes;
             for (const Index predicate : episode.from_arrays) ++labelling.from_arrays[predicate];
             scored.push_back(std::move(episode.scores));
+            tracks.add(episode.track);
         });
     if (!all_scored) return std::nullopt;
     episodes::warn_of_unmarked(recorded, sink);
@@ -277,8 +304,9 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     result.file.spec = model.name;
     result.file.etlc = request.version;
     episodes::record(recorded, allowance, result.file);
-    result.report =
-        fmt::format("{}, {}\n", counted(scored.size(), "episode"), counted(frames, "frame"));
+    check::Model shifted = model;
+    std::vector<std::string> reports;
+    std::vector<LeftOut> out;
     for (std::size_t i = 0; i < monitors.size(); ++i) {
         const check::Monitor& monitor = model.monitors[monitors[i]];
         const Totals totals(scored, i);
@@ -293,9 +321,19 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         warn_of_large_alpha(monitor.name, monitor.calibration->threshold, sink);
         result.file.monitors[monitor.name] =
             entry_of_monitor(model, monitor, fitted, recorded, labelling);
-        result.report += monitor_report(model, monitor, totals, fitted, scored.size());
+        reports.push_back(monitor_report(model, monitor, totals, fitted, scored.size()));
+        shifted.monitors[monitors[i]].calibration->threshold.value = fitted.epsilon;
+        out.push_back(shifts_without_each(monitor, scored, i));
     }
     if (sink.has_errors()) return std::nullopt;
+    const auto others = other_errors_of_shifts(shifted, guarantees, out, {tracks, watched});
+    result.report =
+        fmt::format("{}, {}\n", counted(scored.size(), "episode"), counted(frames, "frame"));
+    for (std::size_t i = 0; i < monitors.size(); ++i) {
+        result.report += reports[i] + describe(others[i], guarantees[i], "    ");
+        warn_of_empty(model, guarantees[i], others[i], sink);
+    }
+    result.report += std::string("\n") + kOtherErrors;
     result.report += report_of_folds(model, monitors, scored, recorded, request.folds);
     thresholds::drop_unused_recordings(result.file);
     for (const thresholds::Allowance& used : result.file.allowances)

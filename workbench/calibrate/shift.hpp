@@ -42,6 +42,7 @@ using MonitorScores = std::vector<MonitorScore>;  ///< per calibrated monitor
 struct MonitorEpisode : episodes::Recorded {
     MonitorScores scores;
     std::vector<Index> from_arrays;  ///< predicates with an array of labels
+    std::string track;               ///< of what the monitors see
 };
 
 template <class Archive>
@@ -51,7 +52,8 @@ void fields(Archive& archive, MonitorScore& score) {
 
 template <class Archive>
 void fields(Archive& archive, MonitorEpisode& episode) {
-    archive(static_cast<episodes::Recorded&>(episode), episode.scores, episode.from_arrays);
+    archive(static_cast<episodes::Recorded&>(episode), episode.scores, episode.from_arrays,
+            episode.track);
 }
 
 /// Adds the shifts of the calibrated monitors to `before`, the file with the thresholds of the

@@ -140,9 +140,16 @@ std::vector<Channel> channels_of(const Wanted& wanted, const std::vector<Index>&
     return channels;
 }
 
-/// Returns the wanted inputs and those that truths read.
-std::vector<Index> inputs_of(const Wanted& wanted, const TruthEvaluator& truths) {
+/// Returns the inputs whose samples a monitor would see.
+std::set<Index> seen_inputs(const Wanted& wanted) {
     std::set<Index> inputs(wanted.inputs.begin(), wanted.inputs.end());
+    inputs.insert(wanted.optional.begin(), wanted.optional.end());
+    return inputs;
+}
+
+/// Returns these and the inputs that truths read.
+std::vector<Index> inputs_of(const Wanted& wanted, const TruthEvaluator& truths) {
+    std::set<Index> inputs = seen_inputs(wanted);
     inputs.insert(truths.inputs().begin(), truths.inputs().end());
     return {inputs.begin(), inputs.end()};
 }
@@ -277,9 +284,11 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
         if (!trace) return trace.failure();
     }
     result.channel_inputs_ = inputs;
-    for (const Index input : inputs)
-        result.narrowed_.push_back(std::find(wanted.inputs.begin(), wanted.inputs.end(), input) !=
-                                   wanted.inputs.end());
+    const std::set<Index> seen = seen_inputs(wanted);
+    for (std::size_t c = 0; c < inputs.size(); ++c) {
+        result.narrowed_.push_back(seen.contains(inputs[c]));
+        result.is_complete_ &= !seen.contains(inputs[c]) || result.trace_->has(c);
+    }
     result.freshness_.resize(inputs.size());
     result.samples_.resize(model.inputs.size());
     result.frame_.resize(model.inputs.size());

@@ -79,6 +79,7 @@ struct Wanted {
     std::vector<Index> predicates;  ///< named predicates whose labels are wanted
     std::vector<Index> identity;    ///< inputs in the hash; all are in `inputs` too
     const Leaks* leaks = nullptr;   ///< targets that no frame may equal; null: no check
+    std::vector<Index> optional{};  ///< inputs to read from episodes that have them
 };
 
 /// The identity of an episode that has been read.
@@ -145,6 +146,9 @@ public:
     /// Returns whether its labels come from an array of the episode.
     bool from_array(Index predicate) const { return sources_[predicate].from_array; }
 
+    /// Returns whether the episode has all optional inputs.
+    bool is_complete() const { return is_complete_; }
+
     std::uint64_t frames() const override { return frames_; }
     /// Returns the number of frames if the file gives it, else 0.
     std::uint64_t length() const { return trace_->length(); }
@@ -170,6 +174,7 @@ private:
     const Leaks* leaks_;
     std::string path_;
     bool is_unmarked_ = false;
+    bool is_complete_ = true;
     Seen seen_;
     std::unique_ptr<data::Trace> trace_;
     std::vector<Index> channel_inputs_;       ///< per channel of an input, the input

@@ -1,21 +1,27 @@
-// Counts of claims that agree or disagree with the truth, their rates (precision, recall, F1 and
-// agreement), and confidence intervals. A claim that a missing sample leaves open is a miss and
-// never agrees; a rate without a case is undefined.
+// Counts of claims that agree or disagree with the truth, and their rates (precision, recall, F1
+// and agreement). A claim that a missing sample leaves open is a miss and never agrees; a rate
+// without a case is undefined.
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "episodes/ranking/auroc.hpp"
+#include "episodes/bootstrap.hpp"
 #include "episodes/truth.hpp"
 
 namespace etlc::evaluate {
 
+using episodes::Bootstrap;
+using episodes::Figure;
+using episodes::Fraction;
+using episodes::Interval;
+using episodes::kResamples;
 using episodes::Label;
+using episodes::percentile_interval;
+using episodes::share;
 using episodes::Weights;
 
 struct Counts {
@@ -89,41 +95,5 @@ std::vector<Rates> rates(const std::vector<Counts>& episodes, const Weights& wei
 
 /// Returns the rates of a constant claim on `total` cases, `positives` of which are true.
 Rates rates_of_constant(bool claim, std::uint64_t positives, std::uint64_t total);
-
-inline constexpr std::uint32_t kResamples = 1000;
-
-struct Interval {
-    double low = 0;
-    double high = 0;
-};
-
-/// A figure, if it is defined, and its interval, if most resamples define it too.
-struct Figure {
-    std::optional<double> value;
-    std::optional<Interval> interval;
-};
-
-/// Efron's percentile intervals: the 2.5 % and 97.5 % quantiles over kResamples draws of episodes
-/// with replacement, since frames of one episode are not independent. The seed is fixed, so the
-/// same data give the same interval on every machine and with any number of threads.
-class Bootstrap {
-public:
-    explicit Bootstrap(std::size_t episodes);
-
-    /// Calls `visit` with all resamples in batches: always the same ones, in the same order.
-    void for_each_batch(const std::function<void(const Weights&)>& visit) const;
-    /// Returns weights that count every episode once.
-    const Weights& whole() const { return whole_; }
-
-    /// Computes a figure. `statistic(weights)` returns its value for each resample, in order.
-    Figure figure(
-        const std::function<std::vector<std::optional<double>>(const Weights&)>& statistic) const;
-
-private:
-    Weights whole_;
-};
-
-/// Returns the interval of the defined values, which need not be sorted.
-std::optional<Interval> percentile_interval(const std::vector<std::optional<double>>& values);
 
 }  // namespace etlc::evaluate

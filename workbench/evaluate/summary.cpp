@@ -55,40 +55,10 @@ EachEpisode truths(const Judgement& judgement, const data::Spool<T>& of) {
     };
 }
 
-/// An episode's contribution to the numerator and the denominator of a share.
-struct Part {
-    std::int64_t part = 0;
-    std::uint64_t whole = 0;
-};
-
-/// Returns the share in each resample, or nothing where the denominator is zero.
-std::vector<std::optional<double>> shares(const std::vector<Part>& episodes,
-                                          const Weights& weights) {
-    std::vector<std::int64_t> parts(weights.resamples());
-    std::vector<std::uint64_t> wholes(weights.resamples());
-    for (std::size_t e = 0; e < episodes.size(); ++e) {
-        const auto [part, whole] = episodes[e];
-        if (whole == 0) continue;
-        for (std::size_t r = 0; r < parts.size(); ++r) {
-            parts[r] += part * weights[e][r];
-            wholes[r] += whole * weights[e][r];
-        }
-    }
-    std::vector<std::optional<double>> result(parts.size());
-    for (std::size_t r = 0; r < parts.size(); ++r)
-        if (wholes[r] > 0)
-            result[r] = static_cast<double>(parts[r]) / static_cast<double>(wholes[r]);
-    return result;
-}
-
-Figure share(const Bootstrap& bootstrap, const std::vector<Part>& episodes) {
-    return bootstrap.figure([&](const Weights& weights) { return shares(episodes, weights); });
-}
-
 Detection detection(const Bootstrap& bootstrap, const std::vector<std::optional<Turn>>& turns) {
     Detection result;
     std::vector<std::int64_t> delays;
-    std::vector<Part> detected(turns.size());
+    std::vector<Fraction> detected(turns.size());
     for (std::size_t e = 0; e < turns.size(); ++e) {
         const auto& turn = turns[e];
         if (!turn) continue;
@@ -110,7 +80,7 @@ Detection detection(const Bootstrap& bootstrap, const std::vector<std::optional<
 /// Returns the share of the episodes with a positive frame that miss none, for which conformal
 /// calibration guarantees P >= 1 - alpha.
 Figure coverage(const Bootstrap& bootstrap, const std::vector<Counts>& each) {
-    std::vector<Part> covered;
+    std::vector<Fraction> covered;
     covered.reserve(each.size());
     for (const Counts& counts : each)
         covered.push_back({counts.true_positives == counts.positives() ? 1 : 0,

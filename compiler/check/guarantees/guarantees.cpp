@@ -126,6 +126,8 @@ bool fails_at_zero(const Predicate& predicate, const Polarity& polarity) {
 
 Claim claim(const Model& model, Literal part, Values values) {
     Claim result;
+    result.formula = part.formula;
+    result.negated = part.negated;
     bool no_at_zero = false;
     Polarity all;
     std::vector<std::string> alphas;
@@ -202,6 +204,7 @@ std::vector<Claim> claims(const Model& model, const Monitor& monitor, Values val
         const bool alarms = monitor.calibration->against == Against::missed_alarm;
         Claim whole;
         whole.kind = alarms ? Claim::Kind::missed_alarm : Claim::Kind::missed_success;
+        whole.formula = monitor.formula;
         whole.bound = Decimal::parse(monitor.calibration->threshold.alpha).text();
         return {whole};
     }

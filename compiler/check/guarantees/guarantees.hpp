@@ -24,9 +24,11 @@ struct Claim {
         missed_alarm,    ///< P(some verdict of a new episode misses an alarm) <= bound
     };
     Kind kind = Kind::nothing;
-    std::string part;   ///< the conjunct as canonical text; empty for the whole formula
-    std::string bound;  ///< exact decimal sum of the alphas
-    std::string why;    ///< the reason for `nothing`
+    std::string part;      ///< the conjunct as canonical text; empty for the whole formula
+    Index formula = 0;     ///< the conjunct or the whole formula
+    bool negated = false;  ///< the conjunct is the negation of `formula`
+    std::string bound;     ///< exact decimal sum of the alphas
+    std::string why;       ///< the reason for `nothing`
     /// For exact and missed_alarm: a comparison that is its own truth is false at its threshold,
     /// where robustness is 0.
     bool zero_aside = false;

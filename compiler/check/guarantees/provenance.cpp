@@ -150,6 +150,11 @@ std::vector<Index> predicates_of(const Model& model, Index formula) {
     return {found.begin(), found.end()};
 }
 
+std::vector<Index> flags_of(const Model& model, Index formula) {
+    const std::set<Index> found = atoms_in(model, formula, Formula::Kind::boolean_input);
+    return {found.begin(), found.end()};
+}
+
 Provenance provenance(const Model& model, const Monitor& monitor, const Labelling& labelling) {
     Provenance result;
     result.reads = reads(model, monitor);

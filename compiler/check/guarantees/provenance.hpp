@@ -72,5 +72,7 @@ FittedProvenance provenance(const Model& model, const Fitted& fitted,
 
 /// Returns the predicates in a formula, ascending.
 std::vector<Index> predicates_of(const Model& model, Index formula);
+/// Returns the boolean inputs in a formula, ascending.
+std::vector<Index> flags_of(const Model& model, Index formula);
 
 }  // namespace etlc::check

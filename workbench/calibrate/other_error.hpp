@@ -1,0 +1,83 @@
+// The error that a guarantee does not bound: a predicate that is true where its truth is not, and
+// the opposite wrong verdict of a monitor. It is counted in each demonstration with the thresholds
+// that the others give, since thresholds fit the demonstrations that they come from too well. A
+// guarantee holds and is empty where its monitor says the same whatever is true.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibrate/left_out.hpp"
+#include "calibrate/replayer.hpp"
+#include "data/spill/spool.hpp"
+#include "episodes/bootstrap.hpp"
+
+namespace etlc::calibrate {
+
+struct OtherError {
+    std::string why;             ///< why it was not counted; empty if it was
+    std::uint64_t cases = 0;     ///< frames or steps at which it can happen
+    std::uint64_t errors = 0;    ///< those at which it happens
+    std::uint64_t episodes = 0;  ///< episodes with a case
+    std::uint64_t wrong = 0;     ///< episodes with an error
+    std::uint64_t steps = 0;     ///< monitors: all steps of known truth
+    std::uint64_t said = 0;      ///< those with the wrong verdict, as its cases have if wrong
+    std::uint64_t truly = 0;     ///< those at which the truth is that verdict
+    std::uint32_t groups = 0;    ///< episodes were left out in this many groups; 0: one by one
+    /// The 95 % interval of errors / cases over the episodes, from resamples of them; if all or no
+    /// cases are errors, that of Clopper and Pearson ("The use of confidence or fiducial limits",
+    /// 1934) for as many episodes. Otherwise it takes kLeastEpisodes.
+    std::optional<episodes::Interval> interval{};
+
+    static constexpr std::uint64_t kLeastEpisodes = 5;
+
+    double share() const { return static_cast<double>(errors) / static_cast<double>(cases); }
+};
+
+/// The tracks of all episodes, in order.
+using Tracks = data::Spool<std::string>;
+
+/// Returns the guarantees of the monitors that are not calibrated as a whole.
+std::vector<Guaranteed> guaranteed(const check::Model& model);
+
+struct Tracked {
+    const Tracks& tracks;
+    const Watched& watched;
+    bool is_complete = true;  ///< every episode has the inputs of all watched predicates and flags
+};
+
+/// Returns the error of each predicate. `out`: per predicate.
+std::vector<OtherError> other_errors(const check::Model& model,
+                                     const std::vector<Index>& predicates,
+                                     const std::vector<Evidence>& evidence,
+                                     const std::vector<LeftOut>& out);
+
+/// Returns the error of each guarantee. `model` has all thresholds; those of `predicates` are
+/// replaced by `out`.
+std::vector<OtherError> other_errors(const check::Model& model, const std::vector<Guaranteed>& all,
+                                     const std::vector<Index>& predicates,
+                                     const std::vector<LeftOut>& out, const Tracked& recorded);
+
+/// Returns the error of each monitor that is calibrated as a whole. `out`: per monitor.
+std::vector<OtherError> other_errors_of_shifts(const check::Model& model,
+                                               const std::vector<Guaranteed>& all,
+                                               const std::vector<LeftOut>& out,
+                                               const Tracked& recorded);
+
+/// Describes it in a line: "the other error: true at 12 of 40 negative frames, ...".
+std::string describe(const OtherError& error);
+/// Describes it in lines, each after `indent`.
+std::string describe(const OtherError& error, const Guaranteed& of, const std::string& indent);
+
+/// Explains these lines at the end of a report.
+inline constexpr const char* kOtherErrors =
+    "    The other error is counted in each episode with the thresholds that the other episodes "
+    "give; in brackets its 95 % interval over episodes.\n";
+
+/// Warns of a guarantee that holds and is empty.
+void warn_of_empty(const check::Model& model, const Guaranteed& of, const OtherError& error,
+                   diag::Sink& sink);
+
+}  // namespace etlc::calibrate

@@ -1,0 +1,205 @@
+#include "calibrate/replayer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <utility>
+
+#include "check/guarantees/provenance.hpp"
+#include "plan/program/predicate_values.hpp"
+
+namespace etlc::calibrate {
+
+namespace {
+
+using episodes::Label;
+
+/// A byte of a track for a boolean input.
+enum class Flag : char { missing, no, yes };
+
+void set(plan::Sample& sample, bool present, float value) {
+    sample.present = present;
+    sample.values.assign(present ? 1 : 0, value);
+}
+
+/// Returns the model with only these monitors, in which an input per watched predicate, appended in
+/// their order, says whether the predicate was measured. Nothing is known in advance about the
+/// values of calibrated predicates, because their thresholds change.
+check::Model replayed(const check::Model& model, const std::vector<Guaranteed>& all,
+                      const Watched& watched) {
+    check::Model result = model;
+    result.truths.clear();
+    result.lets.clear();
+    result.monitors.clear();
+    for (const Guaranteed& one : all) {
+        check::Monitor monitor = model.monitors[one.monitor];
+        monitor.formula = one.claim.formula;
+        if (one.claim.negated) {
+            check::Formula negation;
+            negation.kind = check::Formula::Kind::negation;
+            negation.operands = {monitor.formula};
+            monitor.formula = static_cast<Index>(result.formulas.size());
+            result.formulas.push_back(std::move(negation));
+        }
+        result.monitors.push_back(std::move(monitor));
+    }
+    for (const Index p : watched.predicates) {
+        check::Input measured;
+        measured.name = "measured." + std::to_string(p);  // no name of a spec has a dot
+        check::Predicate& predicate = result.predicates[p];
+        predicate.expression = {};
+        predicate.expression.kind = check::Expr::Kind::scalar;
+        predicate.expression.index = static_cast<Index>(result.inputs.size());
+        predicate.inputs = {predicate.expression.index};
+        if (predicate.threshold.origin != check::ThresholdOrigin::literal) {
+            predicate.threshold = {};
+            predicate.delta = predicate.robustness = check::kEverything;
+        }
+        result.inputs.push_back(std::move(measured));
+    }
+    return result;
+}
+
+}  // namespace
+
+Watched watched_by(const check::Model& model, const std::vector<Guaranteed>& all,
+                   const std::vector<Index>& labelled) {
+    std::set<Index> predicates;
+    std::set<Index> flags;
+    for (const Guaranteed& one : all) {
+        const auto of = check::predicates_of(model, one.claim.formula);
+        predicates.insert(of.begin(), of.end());
+        const auto bools = check::flags_of(model, one.claim.formula);
+        flags.insert(bools.begin(), bools.end());
+    }
+    Watched result{{predicates.begin(), predicates.end()}, {}, {flags.begin(), flags.end()}};
+    for (const Index p : labelled)
+        if (predicates.contains(p)) result.labelled.push_back(p);
+    return result;
+}
+
+void add_step(const Watched& watched, const plan::Evaluator& measured,
+              const episodes::Frames& recording, std::string& track) {
+    for (const Index p : watched.predicates) {
+        const float delta = measured.distance(p);
+        char bytes[sizeof delta];
+        std::memcpy(bytes, &delta, sizeof delta);
+        track.append(bytes, sizeof bytes);
+    }
+    for (const Index p : watched.labelled) track += static_cast<char>(recording.label(p));
+    for (const Index f : watched.flags) {
+        const plan::Sample& sample = recording.samples()[f];
+        const bool is_there = sample.present && !sample.values.empty();
+        const bool holds = is_there && sample.values[0] != 0;
+        track += static_cast<char>(!is_there ? Flag::missing : holds ? Flag::yes : Flag::no);
+    }
+}
+
+/// The steps of a track.
+class Replayer::Steps final : public episodes::Frames {
+public:
+    Steps(Replayer& of, const std::string& track)
+        : of_(of),
+          track_(track),
+          samples_(of.truth_.model.inputs.size()),
+          labels_(of.model_.predicates.size(), Label::unknown) {}
+
+    diag::Result<bool> next() override {
+        if (at_ == track_.size()) return false;
+        std::size_t input = of_.model_.inputs.size();
+        for (const Index p : of_.watched_.predicates) {
+            std::memcpy(&of_.measured_[p], track_.data() + at_, sizeof(float));
+            at_ += sizeof(float);
+            set(samples_[input++], !std::isnan(of_.measured_[p]), 0);
+        }
+        for (const Index p : of_.watched_.labelled) labels_[p] = static_cast<Label>(track_[at_++]);
+        for (const Index f : of_.watched_.flags) {
+            const auto flag = static_cast<Flag>(track_[at_++]);
+            set(samples_[f], flag != Flag::missing, flag == Flag::yes ? 1.0F : 0.0F);
+        }
+        ++frames_;
+        return true;
+    }
+    const std::vector<plan::Sample>& samples() const override { return samples_; }
+    Label label(Index predicate) const override { return labels_[predicate]; }
+    std::uint64_t frames() const override { return frames_; }
+
+private:
+    Replayer& of_;
+    const std::string& track_;
+    std::size_t at_ = 0;
+    std::vector<plan::Sample> samples_;
+    std::vector<Label> labels_;
+    std::uint64_t frames_ = 0;
+};
+
+std::unique_ptr<Replayer> Replayer::make(const check::Model& model, std::vector<Guaranteed> all,
+                                         Watched watched) {
+    diag::Sink sink;  // a spec that exceeds the limits is reported when it is compiled
+    check::Model judged = replayed(model, all, watched);
+    episodes::GroundTruth truth = episodes::ground_truth(judged, watched.labelled);
+    auto monitors = pipeline::compile(std::move(judged), {}, sink);
+    auto truths = pipeline::compile(truth.model, {{}, check::Values::boolean}, sink);
+    if (!monitors || !truths) return nullptr;
+    return std::unique_ptr<Replayer>(new Replayer(model, std::move(all), std::move(watched),
+                                                  std::move(*monitors), std::move(truth),
+                                                  std::move(*truths)));
+}
+
+Replayer::Replayer(const check::Model& model, std::vector<Guaranteed> all, Watched watched,
+                   pipeline::Compiled monitors, episodes::GroundTruth truth,
+                   pipeline::Compiled truths)
+    : model_(model),
+      all_(std::move(all)),
+      watched_(std::move(watched)),
+      monitor_plan_(std::move(monitors)),
+      truth_(std::move(truth)),
+      truth_plan_(std::move(truths)),
+      monitors_(monitor_plan_.plan),
+      truths_(truth_plan_.plan, &truth_),
+      measured_(model.predicates.size()) {
+    monitors_.evaluator().replace_predicate_values([this](Index p) {
+        return plan::value_of(model_.predicates[p], measured_[p], thresholds_->predicates[p],
+                              check::Values::robustness);
+    });
+    truths_.evaluator().replace_predicate_values([this](Index p) {
+        return plan::value_of(model_.predicates[p], measured_[p],
+                              model_.predicates[p].threshold.value, check::Values::boolean);
+    });
+}
+
+std::vector<Said> Replayer::replay(const std::string& track, const Thresholds& thresholds) {
+    thresholds_ = &thresholds;
+    for (plan::Monitor& monitor : monitor_plan_.plan.monitors)
+        if (monitor.shifted) monitor.shift = thresholds.shifts[monitor.index];
+    std::vector<Said> said(all_.size());
+    Steps steps(*this, track);
+    const auto note_step = [&] {
+        note(said);
+        return true;
+    };
+    episodes::replay(steps, {&monitors_, &truths_}, note_step, note_step);
+    return said;
+}
+
+void Replayer::note(std::vector<Said>& said) {
+    for (Index m = 0; m < all_.size(); ++m) {
+        if (!monitors_.reports(m)) continue;
+        const etlmon::Verdict& says = monitors_.verdict(m);
+        const etlmon::Verdict& is = truths_.verdict(m);
+        // The truth of a repeating monitor restarts with it, so both judge the same positions.
+        if (model_.monitors[all_[m].monitor].restarts == check::Restarts::when_final &&
+            says.final())
+            truths_.restart(m);
+        if (is.unknown()) continue;
+        ++said[m].steps;
+        said[m].satisfied += says.satisfied() ? 1 : 0;
+        said[m].violated += says.violated() ? 1 : 0;
+        said[m].truly_satisfied += is.satisfied() ? 1 : 0;
+        said[m].falsely_satisfied += says.satisfied() && is.violated() ? 1 : 0;
+        said[m].falsely_violated += says.violated() && is.satisfied() ? 1 : 0;
+    }
+}
+
+}  // namespace etlc::calibrate

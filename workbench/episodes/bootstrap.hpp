@@ -1,0 +1,63 @@
+// Figures over episodes with confidence intervals from resampled episodes, for evaluation and
+// calibration.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "episodes/ranking/auroc.hpp"
+
+namespace etlc::episodes {
+
+inline constexpr std::uint32_t kResamples = 1000;
+
+struct Interval {
+    double low = 0;
+    double high = 0;
+};
+
+/// A figure, if it is defined, and its interval, if most resamples define it too.
+struct Figure {
+    std::optional<double> value;
+    std::optional<Interval> interval;
+};
+
+/// Efron's percentile intervals: the 2.5 % and 97.5 % quantiles over kResamples draws of episodes
+/// with replacement, since frames of one episode are not independent. The seed is fixed, so the
+/// same data give the same interval on every machine and with any number of threads.
+class Bootstrap {
+public:
+    explicit Bootstrap(std::size_t episodes);
+
+    /// Calls `visit` with all resamples in batches: always the same ones, in the same order.
+    void for_each_batch(const std::function<void(const Weights&)>& visit) const;
+    /// Returns weights that count every episode once.
+    const Weights& whole() const { return whole_; }
+
+    /// Computes a figure. `statistic(weights)` returns its value for each resample, in order.
+    Figure figure(
+        const std::function<std::vector<std::optional<double>>(const Weights&)>& statistic) const;
+
+private:
+    Weights whole_;
+};
+
+/// Returns the interval of the defined values, which need not be sorted.
+std::optional<Interval> percentile_interval(const std::vector<std::optional<double>>& values);
+
+/// An episode's contribution to the numerator and the denominator of a share.
+struct Fraction {
+    std::int64_t part = 0;
+    std::uint64_t whole = 0;
+};
+
+/// Returns the share in each resample, or nothing where the denominator is zero.
+std::vector<std::optional<double>> shares(const std::vector<Fraction>& episodes,
+                                          const Weights& weights);
+
+Figure share(const Bootstrap& bootstrap, const std::vector<Fraction>& episodes);
+
+}  // namespace etlc::episodes
