@@ -85,7 +85,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
                 "alpha = 0.1);");
         return std::nullopt;
     }
-    if (!episodes::can_be_dealt(request.episodes.size(), request.folds, model, sink))
+    if (!episodes::can_be_dealt(request.episodes, request.reading, request.folds, model, sink))
         return std::nullopt;
     const episodes::Leaks leaks(model, predicates);
     episodes::Identities demonstrations;
@@ -93,7 +93,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     std::uint64_t frames = 0;
     const bool all_scored = episodes::over_shared_episodes<Demonstration>(
         request.episodes, request, sink,
-        [&] { return std::make_unique<Scorer>(model, leaks, predicates, request.names); },
+        [&] { return std::make_unique<Scorer>(model, leaks, predicates, request.reading); },
         [&](std::size_t, const Demonstration& demonstration) {
             demonstrations.add(demonstration);
             frames += demonstration.frames;
@@ -144,7 +144,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
         result.file.episodes.push_back(episodes::hash_of(demonstration));
     });
     result.report = report(calibrated, predicates, evidence, frames, all) +
-                    report_of_folds(model, predicates, evidence, demonstrations, request.folds) +
+                    report_of_folds(model, predicates, evidence, demonstrations, request) +
                     episodes::remark_on(allowance);
     return result;
 }

@@ -33,16 +33,16 @@ std::vector<Index> calibrated_predicates(const check::Model& model) {
 }
 
 Scorer::Scorer(const check::Model& model, const episodes::Leaks& leaks,
-               std::vector<Index> predicates, data::NamesInFile names)
+               std::vector<Index> predicates, episodes::ReadOptions reading)
     : model_(model),
       predicates_(std::move(predicates)),
       plan_(plan::measuring(model, predicates_)),
       measured_(plan_),
       wanted_(episodes::wanted(model, {&plan_}, predicates_, leaks)),
-      names_(std::move(names)) {}
+      reading_(std::move(reading)) {}
 
 diag::Result<Demonstration> Scorer::score(const std::string& path) {
-    auto recording = episodes::Recording::open(wanted_, path, names_);
+    auto recording = episodes::Recording::open(wanted_, path, reading_);
     if (!recording) return recording.failure();
     std::vector<Scores> scores(predicates_.size());
     const auto done = episodes::replay(*recording, {&measured_}, [&] {

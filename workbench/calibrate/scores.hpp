@@ -88,7 +88,7 @@ std::vector<Index> calibrated_predicates(const check::Model& model);
 class Scorer {
 public:
     Scorer(const check::Model& model, const episodes::Leaks& leaks, std::vector<Index> predicates,
-           data::NamesInFile names);
+           episodes::ReadOptions reading);
     Scorer(const Scorer&) = delete;
     Scorer& operator=(const Scorer&) = delete;
 
@@ -103,7 +103,7 @@ private:
     plan::Plan plan_;
     episodes::Follower measured_;
     episodes::Wanted wanted_;
-    data::NamesInFile names_;
+    episodes::ReadOptions reading_;
 };
 
 }  // namespace etlc::calibrate

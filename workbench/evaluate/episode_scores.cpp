@@ -49,10 +49,10 @@ std::vector<Index> unmeasured(const plan::Plan& plan, std::vector<Index> predica
 
 EpisodeScorer::EpisodeScorer(const plan::Plan& plan, const plan::Plan& truth,
                              const Subject& subject, const episodes::Leaks& leaks,
-                             const data::NamesInFile& names)
+                             const episodes::ReadOptions& reading)
     : plan_(plan),
       subject_(subject),
-      names_(names),
+      reading_(reading),
       measuring_(plan::measuring(*plan.model, unmeasured(plan, subject.labelled))),
       monitors_(plan),
       truths_(truth, &subject.truth),
@@ -60,7 +60,7 @@ EpisodeScorer::EpisodeScorer(const plan::Plan& plan, const plan::Plan& truth,
       wanted_(episodes::wanted(model(), {&plan, &measuring_}, subject.labelled, leaks)) {}
 
 diag::Result<EpisodeResult> EpisodeScorer::score(const std::string& path) {
-    auto recording = episodes::Recording::open(wanted_, path, names_);
+    auto recording = episodes::Recording::open(wanted_, path, reading_);
     if (!recording) return recording.failure();
     EpisodeResult result;
     result.predicates.resize(subject_.labelled.size());

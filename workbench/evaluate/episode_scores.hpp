@@ -74,7 +74,7 @@ void fields(Archive& archive, EpisodeResult& result) {
 class EpisodeScorer {
 public:
     EpisodeScorer(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
-                  const episodes::Leaks& leaks, const data::NamesInFile& names);
+                  const episodes::Leaks& leaks, const episodes::ReadOptions& reading);
     EpisodeScorer(const EpisodeScorer&) = delete;
     EpisodeScorer& operator=(const EpisodeScorer&) = delete;
 
@@ -101,7 +101,7 @@ private:
 
     const plan::Plan& plan_;
     const Subject& subject_;
-    const data::NamesInFile& names_;
+    const episodes::ReadOptions& reading_;
     plan::Plan measuring_;  ///< measures labelled predicates that no monitor uses
     episodes::Follower monitors_;
     episodes::Follower truths_;

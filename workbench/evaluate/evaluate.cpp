@@ -114,7 +114,7 @@ bool score(const Trial& trial, std::size_t fold, const Subject& subject, const R
         paths, request, sink,
         [&] {
             return std::make_unique<EpisodeScorer>(trial.spec.plan, truth->plan, subject, leaks,
-                                                   request.names);
+                                                   request.reading);
         },
         [&](std::size_t i, EpisodeResult result) {
             if (trial.seen || !trial.fitted.episodes.empty()) own.add(result);
