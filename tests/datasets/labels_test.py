@@ -77,7 +77,7 @@ def write_table(path, lines, columns="episode,predicate,start,end"):
 
 
 def truths(z, random):
-    """Returns labels of both predicates, with unknown ones; some episodes have no positive frame."""
+    """Returns labels of both predicates, with unknown ones; some episodes have no positive."""
     near = np.sqrt((z.astype(float) ** 2).sum(1)) + random.normal(0, 0.05, len(z))
     found = {"at_bay": (near < 0.6).astype(float), "close": (near < 0.3).astype(float)}
     found["close"][random.random(len(z)) < 0.1] = np.nan
@@ -109,14 +109,16 @@ def npz(path, arrays):
     np.savez(f"{path}.npz", **arrays)
 
 
-def h5(path, arrays):
-    """Writes the arrays with the C library."""
+def h5(path, arrays, groups=()):
+    """Writes the arrays with the C library, some into groups."""
     lib = ctypes.CDLL(ctypes.util.find_library("hdf5_serial") or ctypes.util.find_library("hdf5"))
-    for name in ("H5Fcreate", "H5Screate_simple", "H5Dcreate2"):
+    for name in ("H5Fcreate", "H5Screate_simple", "H5Dcreate2", "H5Gcreate2"):
         getattr(lib, name).restype = ctypes.c_int64
     lib.H5open()
     handle = ctypes.c_int64
     file = handle(lib.H5Fcreate(f"{path}.h5".encode(), 2, handle(0), handle(0)))
+    for group in groups:
+        lib.H5Gclose(handle(lib.H5Gcreate2(file, group.encode(), handle(0), handle(0), handle(0))))
     double = handle.in_dll(lib, "H5T_NATIVE_DOUBLE_g")
     for name, array in arrays.items():
         array = np.ascontiguousarray(array.astype(np.float64))
@@ -220,11 +222,31 @@ def folders_agree(made):
         for number in numbers:
             folder = "at_bay" if number % 3 else "elsewhere"
             z = made[number][0]
-            npz(f"{half}/{folder}/{number}", {"z": z, "truth.at_bay": np.full(len(z), number % 3 > 0)})
+            label = np.full(len(z), number % 3 > 0)
+            npz(f"{half}/{folder}/{number}", {"z": z, "truth.at_bay": label})
     expected = results("one.etl", *halves)
     for path in pathlib.Path().glob("[ab]/*/*.npz"):
         npz(path.with_suffix(""), {"z": np.load(path)["z"]})
     expect_same(results("one.etl", *halves, "--label-by", "folder"), expected, "folders")
+
+
+def groups_of_files_agree(made):
+    names = [f"data/demo_{number}" for number in range(EPISODES)]
+    halves = [[f"runs.h5:{name}" for name in half] for half in (names[:6], names[6:])]
+    arrays = {f"{name}/z": z for name, (z, _) in zip(names, made)}
+    truth = {f"{name}/truth.{predicate}": values for name, (_, labels) in zip(names, made)
+             for predicate, values in labels.items()}
+    h5("runs", {**arrays, **truth}, ["data", *names])
+    expected = results("dock.etl", *halves)
+    h5("runs", arrays, ["data", *names])
+    lines = []
+    for number, (_, labels) in enumerate(made):
+        name = (names[number][5:], names[number], f"runs.h5:{names[number]}")[number % 3]
+        for predicate, values in labels.items():
+            lines += rows(name, predicate, values)
+    write_table("labels.csv", lines)  # beside the file
+    expect_same(results("dock.etl", *halves), expected, "groups of a file")
+    os.remove("labels.csv")
 
 
 def videos_agree():
@@ -372,6 +394,7 @@ def main():
     seconds_are_steps(made)
     fits_agree(made)
     folders_agree(made)
+    groups_of_files_agree(made)
     videos_agree()
     data_sets_agree()
     unlabelled_is_not_false(made)

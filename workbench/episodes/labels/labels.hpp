@@ -15,7 +15,7 @@
 #include "check/model/model.hpp"
 #include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
-#include "episodes/truth.hpp"
+#include "episodes/labels/label.hpp"
 
 namespace etlc::episodes {
 

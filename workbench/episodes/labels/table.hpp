@@ -11,7 +11,7 @@
 
 #include "data/files/bytes.hpp"
 #include "diag/diag.hpp"
-#include "episodes/truth.hpp"
+#include "episodes/labels/label.hpp"
 
 namespace etlc::episodes {
 
