@@ -73,6 +73,8 @@ def calibrate(
     settings: Mapping[str, object] | None = None,
     names: Mapping[str, str] | None = None,
     groups: str | None = None,
+    labels: Paths | None = None,
+    label_by: str | None = None,
     allow_overlap: str | None = None,
     folds: int | None = None,
     jobs: int | None = None,
@@ -88,6 +90,8 @@ def calibrate(
         settings: other values for constants.
         names: names of inputs in the files: {"z": "obs/z"}.
         groups: a pattern for the groups of .h5 files that are episodes: "data/*".
+        labels: tables of labels (.csv); by default labels.csv beside the episodes, if it exists.
+        label_by: "folder" labels each episode with the name of its folder.
         allow_overlap: the reason why episodes may share most of their content.
         folds: also report the thresholds without each of this many folds.
         jobs: the number of threads; by default that of the machine.
@@ -99,7 +103,8 @@ def calibrate(
     ran = _run(
         "calibrate", [spec], data, settings, names,
         {"-o": path, "--thresholds": thresholds, "--fitted": fitted, "--episodes": groups,
-         "--allow-overlap": allow_overlap, "--folds": folds, "--jobs": jobs},
+         "--labels": labels, "--label-by": label_by, "--allow-overlap": allow_overlap,
+         "--folds": folds, "--jobs": jobs},
     )  # fmt: skip
     return Written(path, ran.report, ran.diagnostics)
 
@@ -112,6 +117,8 @@ def fit(
     settings: Mapping[str, object] | None = None,
     names: Mapping[str, str] | None = None,
     groups: str | None = None,
+    labels: Paths | None = None,
+    label_by: str | None = None,
     allow_overlap: str | None = None,
     jobs: int | None = None,
 ) -> Written:
@@ -121,7 +128,7 @@ def fit(
         spec: the path of the spec.
         data: episodes: files (.csv, .npz, .h5), folders or patterns.
         output: the file of the fit; by default SPEC.fitted.npz beside the spec.
-        settings, names, groups, allow_overlap, jobs: as in `calibrate`.
+        settings, names, groups, labels, label_by, allow_overlap, jobs: as in `calibrate`.
 
     Raises:
         SpecError: the command failed; the message gives the reason.
@@ -129,7 +136,8 @@ def fit(
     path = _output(spec, output, ".fitted.npz")
     ran = _run(
         "fit", [spec], data, settings, names,
-        {"-o": path, "--episodes": groups, "--allow-overlap": allow_overlap, "--jobs": jobs},
+        {"-o": path, "--episodes": groups, "--labels": labels, "--label-by": label_by,
+         "--allow-overlap": allow_overlap, "--jobs": jobs},
     )  # fmt: skip
     return Written(path, ran.report, ran.diagnostics)
 
@@ -143,6 +151,8 @@ def evaluate(
     settings: Mapping[str, object] | None = None,
     names: Mapping[str, str] | None = None,
     groups: str | None = None,
+    labels: Paths | None = None,
+    label_by: str | None = None,
     allow_overlap: str | None = None,
     folds: int | None = None,
     by_episode: bool = False,
@@ -156,7 +166,7 @@ def evaluate(
         thresholds, fitted: files for the spec; by default those beside it.
         folds: calibrate on all folds but one and evaluate on that one, in turn.
         by_episode: also report each episode, the worst first.
-        settings, names, groups, allow_overlap, jobs: as in `calibrate`.
+        settings, names, groups, labels, label_by, allow_overlap, jobs: as in `calibrate`.
 
     Raises:
         SpecError: the command failed; the message gives the reason.
@@ -168,7 +178,8 @@ def evaluate(
         ran = _run(
             "evaluate", _paths(specs), data, settings, names,
             {"--json": path, "--thresholds": thresholds, "--fitted": fitted, "--episodes": groups,
-             "--allow-overlap": allow_overlap, "--folds": folds, "--jobs": jobs},
+             "--labels": labels, "--label-by": label_by, "--allow-overlap": allow_overlap,
+             "--folds": folds, "--jobs": jobs},
             ["--by-episode"] if by_episode else [],
         )  # fmt: skip
         found = json.loads(path.read_text(encoding="utf-8"))
@@ -283,7 +294,9 @@ def _run(
     words += [encoded("settings", f"--set={key}={to}") for key, to in (settings or {}).items()]
     words += [encoded("names", f"--map={key}={to}") for key, to in (names or {}).items()]
     for option, value in options.items():
-        if value is not None:
+        if option == "--labels" and value is not None:
+            words += [b"--labels", *(encoded_path("labels", path) for path in _paths(value))]
+        elif value is not None:
             path = value if isinstance(value, (str, bytes, os.PathLike)) else str(value)
             words += [option.encode(), encoded_path(option.lstrip("-"), path)]
     words += [flag.encode() for flag in flags]

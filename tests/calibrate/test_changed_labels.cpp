@@ -37,9 +37,10 @@ TEST_F(Labelled, ByArraysAndThenATruthIsStated) {
         const Calibrated before = calibrated(silent, arrays.paths());
         ASSERT_FALSE(before.thresholds.empty()) << testing::PrintToString(before.codes);
         EXPECT_TRUE(checked(silent, before.thresholds).model);
-        const std::string note = spec.find("against") == std::string::npos
-                                     ? "the labels were: an array truth.a; they are: y > 0.5 ||"
-                                     : "the truth was: a: array; own: x - y <= 0.8; it is: a: y >";
+        const std::string note =
+            spec.find("against") == std::string::npos
+                ? "the labels were: an array truth.a or a table; they are: y > 0.5 ||"
+                : "the truth was: a: array; own: x - y <= 0.8; it is: a: y >";
         expect_refused(spec, before.thresholds, note);
     }
 }
@@ -80,7 +81,7 @@ TEST_F(Labelled, ByATruthThatIsRemoved) {
     for (const std::string& spec : specs()) {
         const bool whole = spec.find("against") != std::string::npos;
         expect_refused(replaced(spec, kTruth, ""), calibrated(spec, plain.paths()).thresholds,
-                       whole ? "; it is: a: array;" : "; they are: an array truth.a");
+                       whole ? "; it is: a: array;" : "; they are: an array truth.a or a table");
     }
 }
 

@@ -142,5 +142,40 @@ TEST(Folds, AreDealtByContentAlone) {
     }
 }
 
+TEST(Folds, KeepGroupsTogether) {
+    std::mt19937 random(7);
+    for (int round = 0; round < 200; ++round) {
+        std::vector<std::string> groups(1 + random() % 40);
+        const std::size_t names = 1 + random() % 12;
+        for (std::string& group : groups)
+            if (random() % 3 != 0) group = fmt::format("g{}", random() % names);
+        const std::size_t folds = 2 + random() % 4;
+        const auto of = episodes::dealt(groups, folds);
+        std::size_t largest = 1;
+        std::size_t apart = 0;
+        for (std::size_t a = 0; a < groups.size(); ++a) {
+            EXPECT_LT(of[a], folds);
+            std::size_t size = 0;
+            std::size_t first = a;
+            for (std::size_t b = groups.size(); b-- > 0;) {
+                if (groups[a].empty() || groups[a] != groups[b]) continue;
+                EXPECT_EQ(of[a], of[b]);
+                first = std::min(first, b);
+                ++size;
+            }
+            largest = std::max(largest, size);
+            apart += first == a ? 1 : 0;
+        }
+        EXPECT_EQ(episodes::count_apart(groups), apart);
+        std::vector<std::size_t> sizes(folds);
+        for (const std::uint32_t fold : of) ++sizes[fold];
+        const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
+        EXPECT_LE(*most - *least, largest);
+        if (apart >= folds) {
+            EXPECT_GT(*least, 0U);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace etlc::tests

@@ -55,6 +55,15 @@ for name, text in {
 }.items():
     seed("fuzz_csv", name, text.encode())
 
+for name, text in {
+    "steps.csv": "episode,start,end,predicate\nep1,3,9,docked\nep1,12,,?docked\nep2,,,!docked\n",
+    "seconds.csv": "predicate,episode,start_s,end_s,group\n"
+                   'docked,"pick:3",0.5,1.25,monday\n,pick:4,,,tuesday\n',
+    "whole.csv": "episode,predicate\nruns/ep1.npz,docked\n",
+    "empty_interval.csv": "episode,predicate,start,end\na,p,5,5\n",
+}.items():
+    seed("fuzz_labels", name, text.encode())
+
 def incident(words, row_bytes, rows, alarm, size):
     """The head of an incident, and `size` bytes of rows; the target makes the checksum."""
     length = 96 + size + 8

@@ -676,6 +676,23 @@ monitor arrives = F near;
         )
         self.assertEqual(other.path.read_text(), made.path.read_text())
 
+    def test_labels_in_tables_and_folders(self):
+        path = self.folder()
+        (path / "reach.etl").write_text(
+            re.sub(r"truth near = .*\n", "", (path / "reach.etl").read_text())
+        )
+        with self.assertRaisesRegex(etlc.SpecError, "E0810"):
+            etlc.calibrate(path / "reach.etl", path / "data")
+        tables = [path / "first.csv", path / "second.csv"]
+        for part, table in enumerate(tables):
+            rows = [f"{episode},near,3,9\n" for episode in range(6 * part, 6 * part + 6)]
+            table.write_text("episode,predicate,start,end\n" + "".join(rows))
+        made = etlc.calibrate(path / "reach.etl", path / "data", labels=tables)
+        self.assertIn("labels: 72 frames positive, 288 negative", made.report)
+        (path / "data").rename(path / "near")
+        made = etlc.calibrate(path / "reach.etl", path / "near", label_by="folder")
+        self.assertIn("labels: 360 frames positive, 0 negative", made.report)
+
     def test_fits(self):
         path = self.folder("fitted(kmeans, k = 2, of = z, where = near)", "1")
         with self.assertRaises(etlc.SpecError):

@@ -85,7 +85,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
                 "alpha = 0.1);");
         return std::nullopt;
     }
-    if (!episodes::can_be_dealt(request.episodes.size(), request.folds, model, sink))
+    if (!episodes::can_be_dealt(request.episodes, request.reading, request.folds, model, sink))
         return std::nullopt;
     const episodes::Leaks leaks(model, predicates);
     const std::vector<Guaranteed> guarantees = guaranteed(model);
@@ -97,7 +97,9 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     std::uint64_t frames = 0;
     const bool all_scored = episodes::over_shared_episodes<Demonstration>(
         request.episodes, request, sink,
-        [&] { return std::make_unique<Scorer>(model, leaks, predicates, watched, request.names); },
+        [&] {
+            return std::make_unique<Scorer>(model, leaks, predicates, watched, request.reading);
+        },
         [&](std::size_t, const Demonstration& demonstration) {
             demonstrations.add(demonstration);
             frames += demonstration.frames;
@@ -158,7 +160,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     for (std::size_t i = 0; i < guarantees.size(); ++i)
         warn_of_empty(model, guarantees[i], others.by_guarantee[i], sink);
     result.report = report(calibrated, predicates, evidence, frames, all, others) +
-                    report_of_folds(model, predicates, evidence, demonstrations, request.folds) +
+                    report_of_folds(model, predicates, evidence, demonstrations, request) +
                     episodes::remark_on(allowance);
     return result;
 }

@@ -23,7 +23,7 @@ namespace etlc::calibrate {
 
 struct Request {
     std::vector<std::string> episodes;  ///< as data::find_episodes gives them
-    data::NamesInFile names;
+    episodes::ReadOptions reading;
     std::string allow_overlap;  ///< reason to allow overlaps; empty: refuse them
     fitted::File fitted;        ///< the model's fitted entries, whose episodes are refused
     unsigned jobs = 0;          ///< threads; 0: as many as the machine has
@@ -61,6 +61,6 @@ std::string report(const check::Model& model, const std::vector<Index>& predicat
 /// how much the thresholds depend on single recordings, and guarantee nothing.
 std::string report_of_folds(const check::Model& model, const std::vector<Index>& predicates,
                             const std::vector<Evidence>& evidence,
-                            const episodes::Identities& episodes, std::uint32_t folds);
+                            const episodes::Identities& episodes, const Request& request);
 
 }  // namespace etlc::calibrate

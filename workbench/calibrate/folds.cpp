@@ -95,9 +95,10 @@ HeldOut held_out(std::uint32_t folds, const FitOthers& fit_others, const Judge& 
 
 std::string report_of_folds(const check::Model& model, const std::vector<Index>& predicates,
                             const std::vector<Evidence>& evidence,
-                            const episodes::Identities& episodes, std::uint32_t folds) {
+                            const episodes::Identities& episodes, const Request& request) {
+    const std::uint32_t folds = request.folds;
     if (folds == 0) return "";
-    const auto fold_of = episodes::folds_of(episodes, folds);
+    const auto fold_of = episodes::folds_of(episodes, folds, request.reading);
     std::string text = heading(folds);
     for (std::size_t i = 0; i < predicates.size(); ++i) {
         const check::Predicate& predicate = model.predicates[predicates[i]];
@@ -121,9 +122,10 @@ std::string report_of_folds(const check::Model& model, const std::vector<Index>&
 
 std::string report_of_folds(const check::Model& model, const std::vector<Index>& monitors,
                             const std::vector<MonitorScores>& scores,
-                            const episodes::Identities& episodes, std::uint32_t folds) {
+                            const episodes::Identities& episodes, const Request& request) {
+    const std::uint32_t folds = request.folds;
     if (folds == 0) return "";
-    const auto fold_of = episodes::folds_of(episodes, folds);
+    const auto fold_of = episodes::folds_of(episodes, folds, request.reading);
     std::string text = heading(folds);
     for (std::size_t i = 0; i < monitors.size(); ++i) {
         const check::Monitor& monitor = model.monitors[monitors[i]];

@@ -45,13 +45,13 @@ std::vector<Index> calibrated_predicates(const check::Model& model) {
 }
 
 Scorer::Scorer(const check::Model& model, const episodes::Leaks& leaks,
-               std::vector<Index> predicates, Watched watched, data::NamesInFile names)
+               std::vector<Index> predicates, Watched watched, episodes::ReadOptions reading)
     : model_(model),
       predicates_(std::move(predicates)),
       watched_(std::move(watched)),
       plan_(plan::measuring(model, all_of(predicates_, watched_.predicates))),
       measured_(plan_),
-      names_(std::move(names)) {
+      reading_(std::move(reading)) {
     const plan::Plan calibrated = plan::measuring(model, predicates_);
     wanted_ = episodes::wanted(model, {&calibrated}, predicates_, leaks);
     wanted_.optional = all_of(plan_.inputs, watched_.flags);
@@ -62,7 +62,7 @@ Scorer::Scorer(const check::Model& model, const episodes::Leaks& leaks,
 }
 
 diag::Result<Demonstration> Scorer::score(const std::string& path) {
-    auto recording = episodes::Recording::open(wanted_, path, names_);
+    auto recording = episodes::Recording::open(wanted_, path, reading_);
     if (!recording) return recording.failure();
     std::vector<Scores> scores(predicates_.size());
     std::string track;

@@ -91,7 +91,7 @@ class Scorer {
 public:
     /// Inputs that only the watched predicates and flags read may be absent.
     Scorer(const check::Model& model, const episodes::Leaks& leaks, std::vector<Index> predicates,
-           Watched watched, data::NamesInFile names);
+           Watched watched, episodes::ReadOptions reading);
     Scorer(const Scorer&) = delete;
     Scorer& operator=(const Scorer&) = delete;
 
@@ -107,7 +107,7 @@ private:
     plan::Plan plan_;
     episodes::Follower measured_;
     episodes::Wanted wanted_;
-    data::NamesInFile names_;
+    episodes::ReadOptions reading_;
 };
 
 }  // namespace etlc::calibrate

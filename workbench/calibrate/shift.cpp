@@ -58,7 +58,7 @@ class MonitorScorer {
 public:
     MonitorScorer(const check::Model& model, const MonitorPlans& plans,
                   const episodes::Leaks& leaks, const std::vector<Index>& monitors,
-                  const Watched& watched, const data::NamesInFile& names);
+                  const Watched& watched, const episodes::ReadOptions& reading);
     MonitorScorer(const MonitorScorer&) = delete;
     MonitorScorer& operator=(const MonitorScorer&) = delete;
 
@@ -71,7 +71,7 @@ private:
     const check::Model& model_;
     const std::vector<Index>& monitors_;
     const Watched& watched_;
-    const data::NamesInFile& names_;
+    const episodes::ReadOptions& reading_;
     episodes::Follower highest_;  ///< the highest rho in any build
     episodes::Follower lowest_;
     episodes::Follower truths_;
@@ -80,11 +80,11 @@ private:
 
 MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plans,
                              const episodes::Leaks& leaks, const std::vector<Index>& monitors,
-                             const Watched& watched, const data::NamesInFile& names)
+                             const Watched& watched, const episodes::ReadOptions& reading)
     : model_(model),
       monitors_(monitors),
       watched_(watched),
-      names_(names),
+      reading_(reading),
       highest_(plans.monitors),
       lowest_(plans.monitors),
       truths_(plans.truths, &plans.ground_truth),
@@ -103,7 +103,7 @@ MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plan
 }
 
 diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path) {
-    auto recording = episodes::Recording::open(wanted_, path, names_);
+    auto recording = episodes::Recording::open(wanted_, path, reading_);
     if (!recording) return recording.failure();
     std::vector<MonitorScore> scores(monitors_.size());
     std::string track;
@@ -259,7 +259,7 @@ check::Model unshifted(check::Model model) {
 std::optional<Calibration> calibrate_monitors(const check::Model& model, thresholds::File before,
                                               const Request& request, diag::Sink& sink) {
     const std::vector<Index> monitors = calibrated_monitors(model);
-    if (!episodes::can_be_dealt(request.episodes.size(), request.folds, model, sink))
+    if (!episodes::can_be_dealt(request.episodes, request.reading, request.folds, model, sink))
         return std::nullopt;
     const auto labelled = find_labelled(model, monitors, request, sink);
     if (!labelled) return std::nullopt;
@@ -283,7 +283,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         request.episodes, request, sink,
         [&] {
             return std::make_unique<MonitorScorer>(model, plans, leaks, monitors, watched,
-                                                   request.names);
+                                                   request.reading);
         },
         [&](std::size_t, MonitorEpisode episode) {
             recorded.add(episode);
@@ -334,7 +334,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         warn_of_empty(model, guarantees[i], others[i], sink);
     }
     result.report += std::string("\n") + kOtherErrors;
-    result.report += report_of_folds(model, monitors, scored, recorded, request.folds);
+    result.report += report_of_folds(model, monitors, scored, recorded, request);
     thresholds::drop_unused_recordings(result.file);
     for (const thresholds::Allowance& used : result.file.allowances)
         result.report += fmt::format("\n{}\n", thresholds::text(used));

@@ -66,6 +66,6 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
 /// Reports the shifts without each fold, as for predicates. `scores` are per episode.
 std::string report_of_folds(const check::Model& model, const std::vector<Index>& monitors,
                             const std::vector<MonitorScores>& scores,
-                            const episodes::Identities& episodes, std::uint32_t folds);
+                            const episodes::Identities& episodes, const Request& request);
 
 }  // namespace etlc::calibrate

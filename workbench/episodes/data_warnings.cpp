@@ -83,7 +83,7 @@ bool warn_of_labels(const check::Predicate& predicate, Labels labels,
                                  diag::counted(all, "labelled frame")),
                      span, sink)
             .note(fmt::format("there are no labels of frames at which it is {}: look at its truth "
-                              "or the array truth.{}, or record such frames too",
+                              "or its labels truth.{}, or record such frames too",
                               holds ? "false" : "true", predicate.name));
         return true;
     }
@@ -95,9 +95,10 @@ bool warn_of_labels(const check::Predicate& predicate, Labels labels,
                     "to {:.2f}",
                     predicate.name, auroc->value, auroc->interval->low, auroc->interval->high),
         span, sink)
-        .note(fmt::format("below 0.5, {} numbers are labelled true: look at its truth or the array "
-                          "truth.{}, and at the comparison",
-                          predicate.upper_bound() ? "the greater" : "the smaller", predicate.name));
+        .note(
+            fmt::format("below 0.5, {} numbers are labelled true: look at its truth or its labels "
+                        "truth.{}, and at the comparison",
+                        predicate.upper_bound() ? "the greater" : "the smaller", predicate.name));
     return true;
 }
 

@@ -127,6 +127,10 @@ std::string array_name(const check::Model& model, Index predicate) {
     return "truth." + model.predicates[predicate].name;
 }
 
+bool has_labels(const ReadOptions& options, const std::string& predicate) {
+    return options.labels && options.labels->has(predicate);
+}
+
 /// Returns the channels to open: the inputs, then an array of labels for every predicate.
 std::vector<Channel> channels_of(const Wanted& wanted, const std::vector<Index>& inputs,
                                  const std::vector<bool>& required) {
@@ -205,7 +209,7 @@ std::vector<Index> identity_inputs(const check::Model& model) {
 }
 
 diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const std::string& path,
-                                             const data::NamesInFile& names) {
+                                             const ReadOptions& options) {
     std::vector<Index> asked;
     std::vector<Channel> channels;
     for (Index p = 0; p < model.predicates.size(); ++p) {
@@ -218,22 +222,23 @@ diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const st
     if (!asked.empty()) {
         for (const Index input : identity_inputs(model))  // they give the number of steps
             channels.push_back(channel_of(model.inputs[input]));
-        const auto trace = data::open_trace(path, data::renamed(channels, names));
+        const auto trace = open_labelled(path, channels, options);
         if (!trace) return trace.failure();
         for (std::size_t i = 0; i < asked.size(); ++i)
-            if ((*trace)->has(i)) labelled.push_back(asked[i]);
+            if ((*trace)->has(i) || has_labels(options, model.predicates[asked[i]].name))
+                labelled.push_back(asked[i]);
     }
     std::sort(labelled.begin(), labelled.end());
     return labelled;
 }
 
 diag::Result<Recording> Recording::open(const Wanted& wanted, const std::string& path,
-                                        const data::NamesInFile& names, const Wrap& wrap) {
-    const auto is_unmarked = read_encoders(wanted, path, names);
+                                        const ReadOptions& options, const Wrap& wrap) {
+    const auto is_unmarked = read_encoders(wanted, path, options.names);
     if (!is_unmarked) return is_unmarked.failure();
     if (auto failure = data::check_rate(path, wanted.model->step_seconds)) return *failure;
     const Opener file = [&](const std::vector<Channel>& channels) {
-        return data::open_trace(path, data::renamed(channels, names));
+        return open_labelled(path, channels, options);
     };
     auto recording = open(wanted, wrap ? wrap(file) : file);
     if (!recording) return recording;

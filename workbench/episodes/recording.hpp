@@ -16,6 +16,7 @@
 #include "data/recordings/open.hpp"
 #include "data/spill/spool.hpp"
 #include "diag/diag.hpp"
+#include "episodes/labels/labels.hpp"
 #include "episodes/leaks/leaks.hpp"
 #include "episodes/truth.hpp"
 #include "plan/evaluate/inputs.hpp"
@@ -119,10 +120,10 @@ Identities recorded(const Episodes& episodes) {
 /// that agree in these give equal scores. Without such a predicate, returns the inputs of all.
 std::vector<Index> identity_inputs(const check::Model& model);
 
-/// Returns the predicates with a truth in the spec, or an array in this episode. Failures do not
-/// name the path.
+/// Returns the predicates with a truth in the spec, an array in this episode, or labels beside any
+/// episode of the call. Failures do not name the path.
 diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const std::string& path,
-                                             const data::NamesInFile& names);
+                                             const ReadOptions& options);
 
 /// Opens an episode with these channels.
 using Opener =
@@ -137,13 +138,13 @@ public:
     /// neither a truth nor an array. Failures do not name the episode. `wrap`: null, or what to
     /// make of the opener of the file.
     static diag::Result<Recording> open(const Wanted& wanted, const std::string& path,
-                                        const data::NamesInFile& names, const Wrap& wrap = nullptr);
+                                        const ReadOptions& options, const Wrap& wrap = nullptr);
     static diag::Result<Recording> open(const Wanted& wanted, const Opener& open);
 
     diag::Result<bool> next() override;
     const std::vector<plan::Sample>& samples() const override { return samples_; }
     Label label(Index predicate) const override;
-    /// Returns whether its labels come from an array of the episode.
+    /// Returns whether its labels come from an array of the episode, or from beside it.
     bool from_array(Index predicate) const { return sources_[predicate].from_array; }
 
     /// Returns whether the episode has all optional inputs.

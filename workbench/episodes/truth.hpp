@@ -10,14 +10,12 @@
 #include <vector>
 
 #include "check/model/model.hpp"
+#include "episodes/labels/label.hpp"
 #include "plan/evaluate/inputs.hpp"
 
 namespace etlc::episodes {
 
 using check::Index;
-
-/// Ordered: && is the minimum, || the maximum, unknown in between (Kleene's strong logic).
-enum class Label : std::uint8_t { no, unknown, yes };
 
 /// The samples of one frame by index of the model's inputs, as recorded; empty where missing. An
 /// int8 embedding holds its integers.

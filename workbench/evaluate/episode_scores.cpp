@@ -49,11 +49,11 @@ std::vector<Index> unmeasured(const plan::Plan& plan, std::vector<Index> predica
 
 EpisodeScorer::EpisodeScorer(const plan::Plan& plan, const plan::Plan& truth,
                              const Subject& subject, const episodes::Leaks& leaks,
-                             const data::NamesInFile& names,
+                             const episodes::ReadOptions& reading,
                              const std::vector<episodes::Variant>& variants)
     : plan_(plan),
       subject_(subject),
-      names_(names),
+      reading_(reading),
       variants_(variants),
       measuring_(plan::measuring(*plan.model, unmeasured(plan, subject.labelled))),
       monitors_(plan),
@@ -65,7 +65,7 @@ diag::Result<EpisodeResult> EpisodeScorer::score(const std::string& path) {
     episodes::KeptFrames kept;
     Truths truths(variants_.empty() ? 0 : subject_.labelled.size());
     const auto keep = [&](const episodes::Opener& open) { return kept.keeping(open); };
-    auto recording = episodes::Recording::open(wanted_, path, names_,
+    auto recording = episodes::Recording::open(wanted_, path, reading_,
                                                variants_.empty() ? nullptr : episodes::Wrap(keep));
     if (!recording) return recording.failure();
     EpisodeResult result;

@@ -79,7 +79,7 @@ void fields(Archive& archive, EpisodeResult& result) {
 class EpisodeScorer {
 public:
     EpisodeScorer(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
-                  const episodes::Leaks& leaks, const data::NamesInFile& names,
+                  const episodes::Leaks& leaks, const episodes::ReadOptions& reading,
                   const std::vector<episodes::Variant>& variants);
     EpisodeScorer(const EpisodeScorer&) = delete;
     EpisodeScorer& operator=(const EpisodeScorer&) = delete;
@@ -111,7 +111,7 @@ private:
 
     const plan::Plan& plan_;
     const Subject& subject_;
-    const data::NamesInFile& names_;
+    const episodes::ReadOptions& reading_;
     const std::vector<episodes::Variant>& variants_;
     plan::Plan measuring_;  ///< measures labelled predicates that no monitor uses
     episodes::Follower monitors_;

@@ -46,7 +46,8 @@ bool refuse_without_truth(const check::Model& model, const Subject& subject, dia
     sink.report(diag::Code::nothing_to_evaluate, model.monitors.front().span,
                 "no predicate of this spec has a truth to compare it with")
         .note(fmt::format("add 'truth {0} = ...;' to the spec, or record an array "
-                          "'truth.{0}' of 0 and 1 in the episodes, which --map may name",
+                          "'truth.{0}' of 0 and 1 in the episodes, which --map may name, or label "
+                          "them in a table labels.csv",
                           shown));
     return false;
 }
@@ -118,7 +119,7 @@ bool score(const Trial& trial, std::size_t fold, const Subject& subject, const R
         paths, request, sink,
         [&] {
             return std::make_unique<EpisodeScorer>(trial.spec.plan, truth->plan, subject, leaks,
-                                                   request.names, request.variants);
+                                                   request.reading, request.variants);
         },
         [&](std::size_t i, EpisodeResult result) {
             if (trial.seen || !trial.fitted.episodes.empty()) own.add(result);

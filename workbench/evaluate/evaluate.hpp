@@ -36,7 +36,7 @@ struct Trial {
 
 struct Request {
     std::vector<std::string> episodes;  ///< as data::find_episodes gives them
-    data::NamesInFile names;
+    episodes::ReadOptions reading;
     std::string allow_overlap;  ///< reason to allow overlaps with calibration; empty: refuse them
     unsigned jobs = 0;          ///< threads; 0: as many as the machine has
     plan::Limits limits;        ///< limits on the ground truth's plan

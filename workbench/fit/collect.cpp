@@ -9,6 +9,7 @@
 
 #include "check/guarantees/guarantees.hpp"
 #include "check/guarantees/provenance.hpp"
+#include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
 #include "episodes/truth.hpp"
 #include "fit/blocks.hpp"
@@ -325,16 +326,20 @@ bool read_point(const check::Model& model, Index point, const std::vector<plan::
 std::optional<Collection> collect(const check::Model& model, const std::vector<Need>& needs,
                                   const std::vector<Measured>& measured, const Request& request,
                                   diag::Sink& sink) {
-    const auto have_labels = episodes::labelled_in(model, request.episodes.front(), request.names);
+    const auto have_labels =
+        episodes::labelled_in(model, request.episodes.front(), request.reading);
     if (!have_labels) {
         sink.report(data::in_trace(have_labels.failure(), request.episodes.front()));
         return std::nullopt;
     }
     auto readings = Readings::read(wanted_for(model, needs, measured, *have_labels), request, sink);
     if (!readings) return std::nullopt;
-    Collection all{std::move(*readings), {}};
+    Collection all{std::move(*readings), {}, {}};
     const std::size_t count = all.readings.episodes().size();
-    all.folds.assign(std::min(kFolds, count), std::vector<Collected>(needs.size()));
+    const auto groups = episodes::groups_of(all.readings.paths(), request.reading);
+    all.folds.assign(std::min(kFolds, episodes::count_apart(groups)),
+                     std::vector<Collected>(needs.size()));
+    all.dealt = episodes::dealt(groups, all.folds.size());
     const Shares shares{std::max<std::size_t>(1, kMostFrames / count),
                         (count + kMostFrames - 1) / kMostFrames};
     std::vector<std::string> firsts;

@@ -67,8 +67,9 @@ struct Collected {
 struct Collection {
     Readings readings;
     std::vector<std::vector<Collected>> folds;  ///< by fold, then by need
+    std::vector<std::uint32_t> dealt;           ///< per episode, its fold
 
-    std::size_t fold_of(std::size_t episode) const { return episode % folds.size(); }
+    std::size_t fold_of(std::size_t episode) const { return dealt[episode]; }
 };
 
 /// A predicate to measure, and the predicate whose labels it is scored against.

@@ -111,7 +111,7 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
     }
     const std::vector<std::string>& paths = request.episodes;
     fix_order_of_sums();
-    const auto labelled = episodes::labelled_in(model, paths.front(), request.names);
+    const auto labelled = episodes::labelled_in(model, paths.front(), request.reading);
     if (!labelled) {
         sink.report(data::in_trace(labelled.failure(), paths.front()));
         return std::nullopt;

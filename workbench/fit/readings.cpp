@@ -98,11 +98,11 @@ struct Read : episodes::Recorded {
 
 class Reader {
 public:
-    Reader(const episodes::Wanted& wanted, const data::NamesInFile& names, Room& room)
-        : wanted_(wanted), names_(names), room_(room) {}
+    Reader(const episodes::Wanted& wanted, const episodes::ReadOptions& reading, Room& room)
+        : wanted_(wanted), reading_(reading), room_(room) {}
 
     diag::Result<Read> score(const std::string& path) const {
-        auto recording = episodes::Recording::open(wanted_, path, names_);
+        auto recording = episodes::Recording::open(wanted_, path, reading_);
         if (!recording) return recording.failure();
         Keeper keeper(wanted_, room_);
         for (;;) {
@@ -119,7 +119,7 @@ public:
 
 private:
     const episodes::Wanted& wanted_;
-    const data::NamesInFile& names_;
+    const episodes::ReadOptions& reading_;
     Room& room_;
 };
 
@@ -129,10 +129,10 @@ std::optional<Readings> Readings::read(episodes::Wanted wanted, const Request& r
                                        diag::Sink& sink) {
     Readings result;
     result.wanted_ = std::make_unique<const episodes::Wanted>(std::move(wanted));
-    result.names_ = request.names;
+    result.reading_ = request.reading;
     Room room(request.most_kept);
     auto all = episodes::over_episodes<Read>(request.episodes, request, sink, [&] {
-        return std::make_unique<Reader>(*result.wanted_, request.names, room);
+        return std::make_unique<Reader>(*result.wanted_, request.reading, room);
     });
     if (!all) return std::nullopt;
     result.labelling_.episodes = all->size();
@@ -156,7 +156,7 @@ diag::Result<std::unique_ptr<episodes::Frames>> Readings::open(std::size_t episo
     if (kept_[episode] != nullptr)
         return std::unique_ptr<episodes::Frames>(
             std::make_unique<KeptFrames>(*wanted_, kept_[episode]));
-    auto recording = episodes::Recording::open(*wanted_, episodes_[episode].path, names_);
+    auto recording = episodes::Recording::open(*wanted_, episodes_[episode].path, reading_);
     if (!recording) return recording.failure();
     return std::unique_ptr<episodes::Frames>(
         std::make_unique<episodes::Recording>(std::move(*recording)));

@@ -23,7 +23,7 @@ namespace etlc::fit {
 /// The arguments of `etlc fit`.
 struct Request {
     std::vector<std::string> episodes;  ///< as data::find_episodes gives them
-    data::NamesInFile names;
+    episodes::ReadOptions reading;
     /// The reason of --allow-overlap; empty without the option.
     std::string allow_overlap;
     unsigned jobs = 0;    ///< threads; 0: as many as the machine has
@@ -120,7 +120,7 @@ public:
 
 private:
     std::unique_ptr<const episodes::Wanted> wanted_;
-    data::NamesInFile names_;
+    episodes::ReadOptions reading_;
     std::vector<episodes::Recorded> episodes_;
     std::vector<std::shared_ptr<const Kept>> kept_;  ///< per episode; null: read again
     std::unordered_map<std::string, std::size_t> index_;

@@ -283,8 +283,8 @@ private:
 }  // namespace
 
 std::optional<std::string> picture(const pipeline::Compiled& spec, const std::string& trace,
-                                   const data::NamesInFile& names, diag::Sink& sink) {
-    const Scene scene{spec.plan, spec.plan.predicates, nullptr, nullptr, names, {}, {}};
+                                   const episodes::ReadOptions& reading, diag::Sink& sink) {
+    const Scene scene{spec.plan, spec.plan.predicates, nullptr, nullptr, reading, {}, {}};
     const auto tracks = TrackReader(scene).score(trace);
     if (tracks) return Drawing(scene, *tracks).text();
     sink.report(data::in_trace(tracks.failure(), trace));

@@ -126,7 +126,7 @@ std::array<float, 2> Plane::operator()(const float* z) const {
 diag::Result<std::vector<Plane>> planes(const check::Model& model,
                                         const std::vector<Index>& predicates,
                                         const std::vector<std::string>& paths,
-                                        const data::NamesInFile& names) {
+                                        const episodes::ReadOptions& reading) {
     fit::fix_order_of_sums();
     const std::vector<Index> points = points_to_draw(model, predicates);
     const plan::Plan measuring = plan::measuring(model, predicates);
@@ -135,7 +135,7 @@ diag::Result<std::vector<Plane>> planes(const check::Model& model,
     episodes::Follower follower(measuring);
     for (std::size_t i = 0; i < read && !points.empty(); ++i) {
         auto recording = episodes::Recording::open({&model, measuring.inputs},
-                                                   paths[i * paths.size() / read], names);
+                                                   paths[i * paths.size() / read], reading);
         if (!recording) return recording.failure();
         std::vector<EvenFrames> of_points(points.size(), EvenFrames(kMostFrames / read));
         const auto done = episodes::replay(*recording, {&follower}, [&] {

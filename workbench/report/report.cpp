@@ -219,10 +219,10 @@ std::optional<std::string> page(const Material& material, const Request& request
                 shown_predicates(material),
                 material.truth,
                 truth ? &truth->plan : nullptr,
-                request.names,
+                request.reading,
                 {},
                 {}};
-    auto drawn = planes(*plan.model, scene.predicates, request.episodes, request.names);
+    auto drawn = planes(*plan.model, scene.predicates, request.episodes, request.reading);
     if (!drawn) {
         sink.report(data::in_trace(drawn.failure(), request.episodes[0]));
         return std::nullopt;

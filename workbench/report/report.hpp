@@ -22,7 +22,7 @@ inline constexpr std::uint64_t kUsualMegabytes = 5;
 
 struct Request {
     std::vector<std::string> episodes;  ///< as data::find_episodes gives them
-    data::NamesInFile names;
+    episodes::ReadOptions reading;
     unsigned jobs = 0;                          ///< threads; 0: as many as the machine has
     std::uint64_t megabytes = kUsualMegabytes;  ///< requested size of the page
     FramesOption frames;
@@ -47,6 +47,6 @@ std::optional<std::string> page(const Material& material, const Request& request
 
 /// Returns the timelines of one trace, without truths, as an SVG picture.
 std::optional<std::string> picture(const pipeline::Compiled& spec, const std::string& trace,
-                                   const data::NamesInFile& names, diag::Sink& sink);
+                                   const episodes::ReadOptions& reading, diag::Sink& sink);
 
 }  // namespace etlc::report

@@ -98,7 +98,7 @@ diag::Result<Tracks> TrackReader::score(const std::string& path) {
     Tracks tracks;
     tracks.path = path;
     begin(tracks);
-    auto recording = episodes::Recording::open(wanted(), path, scene_.names);
+    auto recording = episodes::Recording::open(wanted(), path, scene_.reading);
     if (!recording) return recording.failure();
     std::vector<episodes::Follower*> followers = {&monitors_, &*atoms_};
     if (truths_) followers.push_back(&*truths_);

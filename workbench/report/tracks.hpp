@@ -38,7 +38,7 @@ struct Plane {
 diag::Result<std::vector<Plane>> planes(const check::Model& model,
                                         const std::vector<Index>& predicates,
                                         const std::vector<std::string>& paths,
-                                        const data::NamesInFile& names);
+                                        const episodes::ReadOptions& reading);
 
 /// The parts of a spec that the page shows.
 struct Scene {
@@ -46,7 +46,7 @@ struct Scene {
     std::vector<Index> predicates;   ///< shown on the page
     const evaluate::Subject* truth;  ///< null without truths
     const plan::Plan* truth_plan;    ///< of the ground truth; null without truths
-    const data::NamesInFile& names;
+    const episodes::ReadOptions& reading;
     std::vector<Plane> planes;  ///< of the points drawn
     TargetPictures target_pictures;
 };

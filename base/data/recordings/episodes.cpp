@@ -31,13 +31,17 @@ bool is_directory(const std::string& path) {
     return fs::is_directory(path, error);
 }
 
+bool is_labels_file(const std::string& path) {
+    return fs::path(path).filename() == kLabelsFile;
+}
+
 /// Lists the traces in a folder, without its subfolders.
 diag::Result<std::vector<std::string>> in_folder(const std::string& folder) {
     std::vector<std::string> files;
     std::error_code error;
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
         const std::string path = it->path().string();
-        if (is_trace(path) && !is_directory(path)) files.push_back(path);
+        if (is_trace(path) && !is_directory(path) && !is_labels_file(path)) files.push_back(path);
     }
     if (error)
         return diag::Failure{Code::unreadable_trace,
@@ -94,6 +98,7 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
                                        const std::string& groups, diag::Sink& sink) {
     std::vector<std::string> episodes;
     std::set<std::string> seen;
+    std::string table;  // a pattern of the shell may match it too
     for (const std::string& argument : arguments) {
         auto files = expand(argument, sink);
         if (!files) {
@@ -102,6 +107,10 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
         }
         std::sort(files->begin(), files->end());
         for (const std::string& file : *files) {
+            if (is_labels_file(file)) {
+                table = file;
+                continue;
+            }
             if (!seen.insert(fs::path(file).lexically_normal().string()).second) continue;
             const std::string place = trace_file(file);
             const auto why = is_directory(place) ? std::nullopt : why_unreadable(place);
@@ -119,6 +128,9 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
                 for (const std::string& group : *found) episodes.push_back(file + ":" + group);
         }
     }
+    if (episodes.empty() && !table.empty() && !sink.has_errors())
+        sink.report(
+            in_file({Code::unreadable_trace, "is a table of labels, and no episode"}, table));
     return episodes;
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "data/traces/overlap.hpp"
@@ -15,6 +16,9 @@
 #include "diag/diag.hpp"
 
 namespace etlc::data {
+
+/// A file of this name is a table of labels of the episodes beside it, never an episode.
+inline constexpr std::string_view kLabelsFile = "labels.csv";
 
 /// Returns the episodes of all arguments. An argument is a file; a data set, which stands for its
 /// episodes, FOLDER:NUMBER (FOLDER:FIRST:END for a range), with warnings about incomplete ones; a

@@ -110,7 +110,8 @@ private:
         const std::string then = stated(entry_.truth);
         if (then == entry_.truth && !now_.truth.empty()) return add("truth", then, now_.truth);
         const auto labels = [&](std::string_view truth) {
-            return truth.empty() ? fmt::format("an array truth.{}", name_) : std::string(truth);
+            return truth.empty() ? fmt::format("an array truth.{} or a table", name_)
+                                 : std::string(truth);
         };
         found_.push_back(fmt::format("the labels were: {}; they are: {}",
                                      labels(entry_.truth == "array" ? then : entry_.truth),
@@ -203,8 +204,8 @@ const thresholds::Entry* find_entry(Context& c, const std::string& name, const T
 void reserve(Context& c, const std::string& labels, const std::string& name) {
     if (labels != "array" && labels != stated(labels))
         c.model.reservations.push_back(
-            fmt::format("'{}' was calibrated on labels from arrays in the episodes, not from its "
-                        "truth in the spec",
+            fmt::format("'{}' was calibrated on labels from arrays or tables, not from its truth "
+                        "in the spec",
                         name));
 }
 

@@ -51,6 +51,7 @@ std::optional<Calibration> calibrate_model(const check::Model& model, const Requ
 std::vector<std::string> inputs(const check::Model& model, const source::File& file,
                                 const Request& request, const calibrate::Request& calibration) {
     std::vector<std::string> paths = merged_files(calibration.sharing);
+    for (const std::string& table : label_tables(calibration.reading)) paths.push_back(table);
     for (const std::string& episode : calibration.episodes)
         paths.push_back(data::trace_file(episode));
     paths.push_back(file.path());
@@ -61,8 +62,9 @@ std::vector<std::string> inputs(const check::Model& model, const source::File& f
 
 /// Returns the files that scores depend on, besides the episodes.
 std::vector<std::string> loaded(const check::Model& model, const source::File& file,
-                                const std::string& output) {
-    std::vector<std::string> paths = {file.path()};
+                                const std::string& output, const episodes::ReadOptions& reading) {
+    std::vector<std::string> paths = label_tables(reading);
+    paths.push_back(file.path());
     for (const std::string& path : model.dependencies)
         if (path != output) paths.push_back(path);
     return paths;
@@ -83,10 +85,12 @@ bool calibrate(const source::File& file, const Request& request, diag::Sink& sin
     calibration.sharing = shard ? &*shard : request.merged;
     calibration.allow_overlap = request.allow_overlap;
     calibration.folds = request.folds;
-    if (!check_names({&*model}, calibration.names, sink)) return false;
+    if (!check_names({&*model}, calibration.reading.names, sink)) return false;
     calibration.episodes =
         find_shared_episodes(calibration.sharing, request.data, request.groups, sink);
     if (sink.has_errors()) return false;
+    if (!read_labels({&*model}, request, calibration.episodes, calibration.reading, sink))
+        return false;
     calibration.version = library::kVersion;
     calibration.fitted = fitted_file(*model, file.path(), request);
     const std::string output =
@@ -94,7 +98,8 @@ bool calibrate(const source::File& file, const Request& request, diag::Sink& sin
     if (!check_outputs({is_shard(calibration.sharing) ? request.shard.part : output},
                        inputs(*model, file, request, calibration), sink))
         return false;
-    if (!note_loaded(calibration.sharing, loaded(*model, file, output), sink)) return false;
+    if (!note_loaded(calibration.sharing, loaded(*model, file, output, calibration.reading), sink))
+        return false;
     const auto result = calibrate_model(*model, request, calibration, sink);
     if (is_shard(calibration.sharing))
         return write_part(*calibration.sharing, request.shard.part, sink);

@@ -96,15 +96,25 @@ fitted::File fitted_file(const check::Model& model, const std::string& spec,
 bool check_names(const std::vector<const check::Model*>& models, const data::NamesInFile& names,
                  diag::Sink& sink);
 
-/// Returns the files that a call reads: the spec, its dependencies, and recordings.
+/// Reads the labels that lie beside the episodes or that the call names into `reading`. Returns
+/// false after an error.
+bool read_labels(const std::vector<const check::Model*>& models, const Request& request,
+                 const std::vector<std::string>& episodes, episodes::ReadOptions& reading,
+                 diag::Sink& sink);
+
+/// Returns the tables of labels that were read.
+std::vector<std::string> label_tables(const episodes::ReadOptions& reading);
+
+/// Returns the files that a call reads: the spec, its dependencies, recordings and their labels.
 std::vector<std::string> files_read(const check::Model& model, const source::File& spec,
-                                    const std::vector<std::string>& recordings);
+                                    const std::vector<std::string>& recordings,
+                                    const episodes::ReadOptions& reading = {});
 
 /// Copies what the requests of fit, calibrate, evaluate and report have in common.
 template <class Asked>
 Asked asked_of(const Request& request) {
     Asked asked;
-    asked.names = request.names;
+    asked.reading.names = request.names;
     asked.jobs = request.jobs;
     asked.progress = episodes_progress();
     return asked;

@@ -18,10 +18,12 @@ namespace {
 
 using Paths = std::vector<std::string>;
 
-/// Deals the episodes into `count` parts whose sizes differ by at most one.
-std::vector<Paths> parts(const Paths& episodes, std::size_t count) {
+/// Deals the episodes into `count` parts as into folds.
+std::vector<Paths> parts(const Paths& episodes, const episodes::ReadOptions& reading,
+                         std::size_t count) {
     std::vector<Paths> result(count);
-    for (std::size_t i = 0; i < episodes.size(); ++i) result[i % count].push_back(episodes[i]);
+    const auto part_of = episodes::dealt(episodes::groups_of(episodes, reading), count);
+    for (std::size_t i = 0; i < episodes.size(); ++i) result[part_of[i]].push_back(episodes[i]);
     return result;
 }
 
@@ -59,15 +61,18 @@ public:
         const auto untrained = check({true, true, true});
         if (!untrained) return std::nullopt;
         const std::vector<Stage> stages = stages_of(*untrained);
-        if (episodes.size() < stages.size()) {
+        const std::size_t apart =
+            episodes::count_apart(episodes::groups_of(episodes, calibration_.reading));
+        if (apart < stages.size()) {
             sink_.report(
                 diag::Code::too_few_for_folds, untrained->monitors.front().span,
-                fmt::format("fitting and calibration take {} besides those of a fold; there {} {}",
-                            diag::counted(stages.size(), "episode"),
-                            episodes.size() == 1 ? "is" : "are", episodes.size()));
+                fmt::format(
+                    "fitting and calibration take {} besides those of a fold; there {} {}",
+                    diag::counted(stages.size(), apart < episodes.size() ? "group" : "episode"),
+                    apart == 1 ? "is" : "are", apart));
             return std::nullopt;
         }
-        const std::vector<Paths> of_stages = parts(episodes, stages.size());
+        const std::vector<Paths> of_stages = parts(episodes, calibration_.reading, stages.size());
         for (std::size_t s = 0; s < stages.size(); ++s)
             if (!(this->*stages[s])(of_stages[s])) return std::nullopt;
         auto model = check({});
@@ -101,7 +106,7 @@ private:
 
     bool fit(const Paths& episodes) {
         const auto model = check({true, true, true});
-        fit::Request request{episodes,          calibration_.names,   calibration_.allow_overlap,
+        fit::Request request{episodes,          calibration_.reading, calibration_.allow_overlap,
                              calibration_.jobs, calibration_.version, calibration_.progress};
         if (!model) return false;
         auto found = fit::fit(*model, request, sink_);
@@ -157,13 +162,17 @@ private:
 
 std::optional<Folds> deal(const check::Model& model, const calibrate::Request& request,
                           std::uint32_t folds, diag::Sink& sink) {
-    if (!episodes::can_be_dealt(request.episodes.size(), folds, model, sink)) return std::nullopt;
+    if (!episodes::can_be_dealt(request.episodes, request.reading, folds, model, sink))
+        return std::nullopt;
     const auto read = episodes::over_episodes<episodes::Recorded>(
         request.episodes, request, sink,
-        [&] { return std::make_unique<episodes::ContentScorer>(model, request.names); });
+        [&] { return std::make_unique<episodes::ContentScorer>(model, request.reading); });
     if (!read) return std::nullopt;
     const auto recorded = episodes::recorded(*read);
-    Folds result{folds, episodes::folds_of(recorded, folds), episodes::by_content(recorded), {}};
+    Folds result{folds,
+                 episodes::folds_of(recorded, folds, request.reading),
+                 episodes::by_content(recorded),
+                 {}};
     // Entries in the file of fitted entries do not matter here.
     result.allowance = episodes::admit(model, recorded, {}, {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;

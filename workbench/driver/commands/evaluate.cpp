@@ -43,8 +43,9 @@ std::optional<Candidate> candidate(const SpecToJudge& spec, const Request& reque
 }
 
 std::vector<std::string> inputs(const std::vector<Candidate>& candidates,
-                                const std::vector<std::string>& episodes) {
-    std::vector<std::string> paths;
+                                const std::vector<std::string>& episodes,
+                                const episodes::ReadOptions& reading) {
+    std::vector<std::string> paths = label_tables(reading);
     for (const Candidate& one : candidates) {
         const auto& loaded = one.model().dependencies;
         paths.insert(paths.end(), loaded.begin(), loaded.end());
@@ -67,7 +68,7 @@ public:
     Judging(const Request& request, const evaluate::Request& asked)
         : request_(request), asked_(asked) {
         calibration_.episodes = asked.episodes;
-        calibration_.names = asked.names;
+        calibration_.reading = asked.reading;
         calibration_.allow_overlap = asked.allow_overlap;
         calibration_.jobs = asked.jobs;
         calibration_.version = library::kVersion;
@@ -185,17 +186,18 @@ bool evaluate(const std::vector<SpecToJudge>& specs, const Request& request) {
     asked.allow_overlap = request.allow_overlap;
     asked.limits = request.limits;
     asked.variants = request.evaluate.variants;
-    if (!check_names(models, asked.names, sink)) return false;
+    if (!check_names(models, asked.reading.names, sink)) return false;
     asked.episodes = find_shared_episodes(asked.sharing, request.data, request.groups, sink);
     if (sink.has_errors()) return false;
+    if (!read_labels(models, request, asked.episodes, asked.reading, sink)) return false;
     const auto outputs = is_shard(asked.sharing) ? std::vector<std::string>{request.shard.part}
                                                  : std::vector<std::string>{request.evaluate.json,
                                                                             request.evaluate.csv};
-    auto read = inputs(candidates, asked.episodes);
+    auto read = inputs(candidates, asked.episodes, asked.reading);
     const auto parts = merged_files(asked.sharing);
     read.insert(read.end(), parts.begin(), parts.end());
     if (!check_outputs(outputs, read, sink)) return false;
-    if (!note_loaded(asked.sharing, inputs(candidates, {}), sink)) return false;
+    if (!note_loaded(asked.sharing, inputs(candidates, {}, asked.reading), sink)) return false;
     const auto result = judged(candidates, request, asked);
     if (is_shard(asked.sharing)) return write_part(*asked.sharing, request.shard.part, sink);
     return result && write(*result, request, sink);

@@ -80,8 +80,8 @@ private:
     }
 
     bool step_through_trace() {
-        auto recording =
-            episodes::Recording::open({&model_, plan_.inputs}, request_.trace, request_.names);
+        auto recording = episodes::Recording::open({&model_, plan_.inputs}, request_.trace,
+                                                   {request_.names, nullptr});
         if (!recording) return fail(recording.failure());
         episodes::Follower monitors(plan_);
         episodes::Follower atoms(observations_.plan());

@@ -49,14 +49,16 @@ bool fit(const source::File& file, const Request& request, diag::Sink& sink) {
 
     auto asked = asked_of<fit::Request>(request);
     asked.allow_overlap = request.allow_overlap;
-    if (!check_names({&*model}, asked.names, sink)) return false;
+    if (!check_names({&*model}, asked.reading.names, sink)) return false;
     asked.version = library::kVersion;
     const std::string output =
         request.output.empty() ? fitted::default_path(file.path()) : request.output;
     asked.episodes = data::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return false;
+    if (!read_labels({&*model}, request, asked.episodes, asked.reading, sink)) return false;
     if (request.fit.suggest) return suggest(file, *model, options, request, asked, sink);
-    if (!check_outputs({output}, files_read(*model, file, asked.episodes), sink)) return false;
+    if (!check_outputs({output}, files_read(*model, file, asked.episodes, asked.reading), sink))
+        return false;
     const auto result = fit::fit(*model, asked, sink);
     if (!result || sink.refused()) return false;
 

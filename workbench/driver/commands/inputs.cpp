@@ -32,9 +32,24 @@ bool check_names(const std::vector<const check::Model*>& models, const data::Nam
     return sound;
 }
 
+bool read_labels(const std::vector<const check::Model*>& models, const Request& request,
+                 const std::vector<std::string>& episodes, episodes::ReadOptions& reading,
+                 diag::Sink& sink) {
+    episodes::LabelSources sources = request.labels;
+    sources.has_episodes = request.merged == nullptr;
+    reading.labels = episodes::LabelSet::read(sources, models, episodes, sink);
+    return !sink.has_errors();
+}
+
+std::vector<std::string> label_tables(const episodes::ReadOptions& reading) {
+    return reading.labels ? reading.labels->tables() : std::vector<std::string>{};
+}
+
 std::vector<std::string> files_read(const check::Model& model, const source::File& spec,
-                                    const std::vector<std::string>& recordings) {
-    std::vector<std::string> files = model.dependencies;
+                                    const std::vector<std::string>& recordings,
+                                    const episodes::ReadOptions& reading) {
+    std::vector<std::string> files = label_tables(reading);
+    files.insert(files.end(), model.dependencies.begin(), model.dependencies.end());
     files.push_back(spec.path());
     for (const std::string& recording : recordings) files.push_back(data::trace_file(recording));
     return files;

@@ -21,15 +21,15 @@ struct Truths {
 
 /// Finds the truths by the first episode: there are none where it lacks what truths read.
 diag::Result<Truths> truths_of(const Compiled& compiled, const std::string& episode,
-                               const data::NamesInFile& names) {
+                               const episodes::ReadOptions& reading) {
     const check::Model& model = *compiled.model;
-    auto labelled = episodes::labelled_in(model, episode, names);
+    auto labelled = episodes::labelled_in(model, episode, reading);
     if (!labelled) return labelled.failure();
     const auto complete =
-        episodes::Recording::open({&model, compiled.plan.inputs, *labelled}, episode, names);
+        episodes::Recording::open({&model, compiled.plan.inputs, *labelled}, episode, reading);
     if (!complete) {
         const auto samples =
-            episodes::Recording::open({&model, compiled.plan.inputs}, episode, names);
+            episodes::Recording::open({&model, compiled.plan.inputs}, episode, reading);
         if (!samples) return samples.failure();
         return Truths{{}, complete.failure().message};
     }
@@ -48,17 +48,21 @@ bool report(const source::File& spec, const Compiled& compiled, const Request& r
     wanted.frames = request.report.frames;
     wanted.megabytes = request.report.megabytes;
     wanted.limits = request.limits;
-    if (!check_names({&model}, wanted.names, sink)) return false;
+    if (!check_names({&model}, wanted.reading.names, sink)) return false;
     wanted.episodes = data::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return false;
-    if (!check_outputs({request.output}, files_read(model, spec, wanted.episodes), sink))
+    if (!request.report.without_truths &&
+        !read_labels({&model}, request, wanted.episodes, wanted.reading, sink))
+        return false;
+    if (!check_outputs({request.output}, files_read(model, spec, wanted.episodes, wanted.reading),
+                       sink))
         return false;
     OutputFiles output(sink);
     if (!output.begin(request.output)) return false;  // before the work, so that errors come early
 
     Truths truths{{}, "none were asked for"};
     if (!request.report.without_truths) {
-        auto found = truths_of(compiled, wanted.episodes[0], wanted.names);
+        auto found = truths_of(compiled, wanted.episodes[0], wanted.reading);
         if (!found) {
             sink.report(data::in_trace(found.failure(), wanted.episodes[0]));
             return false;
@@ -72,6 +76,7 @@ bool report(const source::File& spec, const Compiled& compiled, const Request& r
     if (truths.subject) {
         auto held_to = asked_of<evaluate::Request>(request);
         held_to.episodes = wanted.episodes;
+        held_to.reading = wanted.reading;
         held_to.allow_overlap = request.allow_overlap;
         held_to.limits = request.limits;
         judgement = judge_as_it_is(compiled, spec.path(), request, held_to, sink);
@@ -80,8 +85,8 @@ bool report(const source::File& spec, const Compiled& compiled, const Request& r
         material.judgement = &*judgement;
     }
     if (!judgement)
-        episodes::warn_of_unmarked(model, compiled.plan.inputs, wanted.episodes, wanted.names,
-                                   sink);
+        episodes::warn_of_unmarked(model, compiled.plan.inputs, wanted.episodes,
+                                   wanted.reading.names, sink);
     const auto page = report::page(material, wanted, sink);
     return page && !sink.refused() && output.write(*page) && output.commit();
 }
@@ -93,7 +98,7 @@ std::optional<std::string> page_of_trace(const source::File& spec, const Compile
     material.why_no_truth = "etlc run shows what the monitors say; etlc report compares it";
     report::Request wanted;
     wanted.episodes = {trace};
-    wanted.names = names;
+    wanted.reading.names = names;
     wanted.jobs = 1;
     return report::page(material, wanted, sink);
 }

@@ -11,6 +11,7 @@
 #include "check/check.hpp"
 #include "data/recordings/open.hpp"
 #include "embed/encoder.hpp"
+#include "episodes/labels/labels.hpp"
 #include "episodes/shared/sharing.hpp"
 #include "episodes/variants/variants.hpp"
 #include "pipeline/compile.hpp"
@@ -40,10 +41,11 @@ struct Request : pipeline::Options {
     std::vector<std::string> data;  ///< episodes or recordings: files, folders and patterns
     std::string groups;             ///< pattern of the groups of .h5 files that are episodes
     std::string trace;
-    data::NamesInFile names;    ///< names of inputs and labels in the files
-    std::string allow_overlap;  ///< why overlaps are accepted; empty: they are refused
-    unsigned jobs = 0;          ///< threads; 0: as many as the machine has
-    std::uint32_t folds = 0;    ///< 0: none
+    data::NamesInFile names;        ///< names of inputs and labels in the files
+    episodes::LabelSources labels;  ///< besides those in the files
+    std::string allow_overlap;      ///< why overlaps are accepted; empty: they are refused
+    unsigned jobs = 0;              ///< threads; 0: as many as the machine has
+    std::uint32_t folds = 0;        ///< 0: none
     ShardRequest shard;
     std::vector<std::string> words;       ///< the call itself, from the command on
     episodes::Sharing* merged = nullptr;  ///< the parts of all shards; null: episodes are read

@@ -210,7 +210,7 @@ private:
             if (!page || !output_.add(request_.run.html, *page)) return false;
         }
         if (request_.run.svg.empty()) return true;
-        const auto picture = report::picture(compiled_, trace, request_.names, sink_);
+        const auto picture = report::picture(compiled_, trace, {request_.names, nullptr}, sink_);
         return picture && output_.add(request_.run.svg, *picture);
     }
 
@@ -234,8 +234,8 @@ private:
     }
 
     bool step_through_trace() {
-        auto recording =
-            episodes::Recording::open({plan_.model, plan_.inputs}, request_.trace, request_.names);
+        auto recording = episodes::Recording::open({plan_.model, plan_.inputs}, request_.trace,
+                                                   {request_.names, nullptr});
         if (!recording) return fail(recording.failure());
         episodes::AfterStep rest;
         if (request_.run.finish) rest = [&] { return report(); };

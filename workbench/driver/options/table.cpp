@@ -97,6 +97,13 @@ Takes encoder_timeout() {
         std::to_string(embed::Running().max_silence_seconds));
 }
 
+Takes label_by() {
+    Takes takes =
+        choice<bool>({{"folder", true}}, in(&Call::labels, &episodes::LabelSources::by_folder));
+    takes.usual.clear();
+    return takes;
+}
+
 Takes folds() {
     return number<std::uint32_t>(in(&Call::folds), 2, 1000);
 }
@@ -228,6 +235,12 @@ std::vector<Option> make_options() {
          "written into the result"},
         {kReadEpisodes, "-j,--jobs", number<unsigned>(in(&Call::jobs), 1, 1024),
          "threads (default: as many as the machine has)"},
+        {kReadEpisodes, "--labels",
+         texts("FILE...", in(&Call::labels, &episodes::LabelSources::tables)),
+         "tables of labels, .csv files (default: labels.csv beside the episodes, if it exists)"},
+        {kReadEpisodes, "--label-by", label_by(),
+         "folder: the name of an episode's folder is the predicate that holds in it, and in no "
+         "other"},
         {kReadRecordings, "--map", several(form("NAME=OTHER", read_names)),
          "name of an input in the files: --map z=obs/z"},
 

@@ -85,7 +85,7 @@ std::optional<std::vector<Index>> labelled_in_first(const check::Model& model,
                                                     const Request& request, diag::Sink& sink) {
     if (request.sharing != nullptr && request.sharing->merges())
         return request.sharing->part().labelled;
-    auto labelled = labelled_in(model, request.episodes.front(), request.names);
+    auto labelled = labelled_in(model, request.episodes.front(), request.reading);
     if (!labelled) {
         sink.report(data::in_trace(labelled.failure(), request.episodes.front()));
         return std::nullopt;

@@ -250,7 +250,7 @@ std::optional<Separations> measure(const check::Model& spec, const std::vector<M
 std::optional<Suggested> suggest(const check::Model& model, const CheckText& check_text,
                                  const std::vector<std::string>& names, const Request& request,
                                  diag::Sink& sink) {
-    const auto labelled = episodes::labelled_in(model, request.episodes.front(), request.names);
+    const auto labelled = episodes::labelled_in(model, request.episodes.front(), request.reading);
     if (!labelled) {
         sink.report(data::in_trace(labelled.failure(), request.episodes.front()));
         return std::nullopt;

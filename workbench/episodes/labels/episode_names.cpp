@@ -1,0 +1,144 @@
+#include "episodes/labels/episode_names.hpp"
+
+#include <filesystem>
+#include <set>
+#include <string_view>
+
+#include "data/datasets/dataset.hpp"
+#include "data/hdf5/hdf5.hpp"
+#include "data/recordings/episodes.hpp"
+#include "data/recordings/open.hpp"
+
+namespace etlc::episodes {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The parts of the path of an episode.
+struct EpisodePath {
+    std::string file;   ///< the file, or the folder of the data set
+    std::string group;  ///< of the file, or the number in the data set; empty: none
+    bool is_number = false;
+};
+
+EpisodePath parts_of(const std::string& episode) {
+    EpisodePath parts;
+    const std::string file = data::trace_file(episode);
+    parts.is_number = data::dataset_path(episode).has_value();
+    parts.file = fs::path(file).lexically_normal().string();
+    if (parts.is_number && parts.file.ends_with('/')) parts.file.pop_back();
+    if (file.size() < episode.size()) parts.group = episode.substr(file.size() + 1);
+    return parts;
+}
+
+/// Returns "3" for "000003".
+std::string_view without_zeros(std::string_view number) {
+    const std::size_t first = number.find_first_not_of('0');
+    return first == std::string_view::npos ? "0" : number.substr(first);
+}
+
+/// Returns the whole names of an episode, the path first.
+std::vector<std::string> whole_names(const EpisodePath& parts) {
+    if (parts.group.empty()) {
+        std::vector<std::string> names{parts.file};
+        const fs::path path(parts.file);
+        if (data::is_trace(parts.file))
+            names.push_back((path.parent_path() / path.stem()).string());
+        return names;
+    }
+    std::vector<std::string> names{parts.file + ":" + parts.group};
+    if (parts.is_number)
+        names.push_back(parts.file + ":" + std::string(without_zeros(parts.group)));
+    return names;
+}
+
+void add(std::size_t episode, const std::string& name, bool is_whole, std::set<std::string>& whole,
+         Named& names) {
+    const auto found = names.find(name);
+    if (found == names.end()) return;
+    std::vector<std::size_t>& of = found->second;
+    if (is_whole) {
+        if (whole.insert(name).second) of.clear();
+        of.push_back(episode);
+        return;
+    }
+    if (whole.contains(name) || of.size() > 1 || (!of.empty() && of.back() == episode)) return;
+    of.push_back(episode);
+}
+
+}  // namespace
+
+std::string folder_of(const std::string& episode) {
+    const std::string file = data::trace_file(episode);
+    if (data::dataset_path(episode)) return file;
+    return fs::path(file).parent_path().string();
+}
+
+std::string name_of_folder_of(const std::string& episode) {
+    const EpisodePath parts = parts_of(episode);
+    const fs::path inside(parts.is_number ? "" : parts.group);
+    if (inside.has_parent_path()) return inside.parent_path().filename().string();
+    std::error_code ignored;
+    const fs::path file = fs::absolute(parts.file, ignored).lexically_normal();
+    return (parts.is_number ? file : file.parent_path()).filename().string();
+}
+
+void find_named(const std::vector<std::string>& episodes, Named& names) {
+    std::set<std::string> whole;
+    for (std::size_t e = 0; e < episodes.size(); ++e) {
+        const EpisodePath parts = parts_of(episodes[e]);
+        bool is_path = true;
+        for (const std::string& name : whole_names(parts)) {
+            add(e, name, is_path, whole, names);
+            is_path = false;
+            for (std::size_t at = name.find_first_of("/:"); at != std::string::npos;
+                 at = name.find_first_of("/:", at + 1))
+                if (name[at] == '/' || at == parts.file.size())
+                    add(e, name.substr(at + 1), false, whole, names);
+        }
+    }
+}
+
+std::vector<std::string> neighbours_of(const std::vector<std::string>& episodes) {
+    std::set<std::string> places;
+    std::vector<std::string> found;
+    for (const std::string& episode : episodes) {
+        const EpisodePath parts = parts_of(episode);
+        if (parts.is_number) {
+            const auto set = data::Dataset::known(parts.file);
+            if (!set || !places.insert(parts.file).second) continue;
+            for (const data::DatasetEpisode& one : (*set)->episodes())
+                found.push_back(data::episode_path(parts.file, one.index));
+            continue;
+        }
+        const std::string parent = fs::path(parts.group).parent_path().string();
+        const std::string pattern = parent.empty() ? "*" : parent + "/*";
+        if (!parts.group.empty()) {
+            if (!places.insert(parts.file + ":" + pattern).second) continue;
+            const auto groups = data::list_hdf5(parts.file, pattern);
+            if (!groups) continue;
+            for (const std::string& group : *groups) found.push_back(parts.file + ":" + group);
+            continue;
+        }
+        const std::string folder = folder_of(episode);
+        if (!places.insert(folder).second) continue;
+        std::error_code error;
+        for (fs::directory_iterator it(folder.empty() ? "." : folder, error), end;
+             !error && it != end; it.increment(error))
+            if (data::is_trace(it->path().string())) found.push_back(it->path().string());
+    }
+    return found;
+}
+
+bool is_episode_in(const std::string& folder, const std::string& name) {
+    const std::string path = (fs::path(folder) / name).string();
+    std::error_code ignored;
+    const auto exists = [&](const std::string& file) { return fs::is_regular_file(file, ignored); };
+    if (exists(data::trace_file(path))) return true;
+    for (const char* ending : {".csv", ".npz", ".h5", ".hdf5"})
+        if (exists(path + ending)) return true;
+    return false;
+}
+
+}  // namespace etlc::episodes

@@ -1,0 +1,86 @@
+// Labels beside recordings: from tables and from names of folders. A reader of episodes gets them
+// as arrays `truth.NAME` of the episode.
+// Takes: the tables, the episodes and the specs of a call. Gives: the labels of each episode, and
+// its group. Keeps true: no label is used if any is in error; a label and an array of the episode,
+// or two labels of one step, are an error that names both places.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "check/model/model.hpp"
+#include "data/recordings/open.hpp"
+#include "diag/diag.hpp"
+#include "episodes/labels/label.hpp"
+
+namespace etlc::episodes {
+
+/// Where the labels of a call are.
+struct LabelSources {
+    std::vector<std::string> tables;  ///< empty: labels.csv beside the episodes, if there is one
+    bool by_folder = false;           ///< folders are named after predicates
+    bool has_episodes = true;         ///< false where parts are merged: no episode is looked for
+};
+
+/// Steps from `start` up to but excluding `end` with this label.
+struct LabelledSteps {
+    static constexpr std::uint64_t kToTheEnd = std::numeric_limits<std::uint64_t>::max();
+
+    std::uint64_t start = 0;
+    std::uint64_t end = kToTheEnd;
+    Label label = Label::yes;
+    std::string place;  ///< "labels.csv:12"
+};
+
+/// Intervals in the order of their steps by the name of the predicate. No two overlap, and steps
+/// outside are false.
+using EpisodeLabels = std::map<std::string, std::vector<LabelledSteps>>;
+
+class LabelSet {
+public:
+    /// Reads the labels of these episodes. Steps of seconds are those of the models. Returns null
+    /// where there are no labels, and after an error, which it reports.
+    static std::shared_ptr<const LabelSet> read(const LabelSources& sources,
+                                                const std::vector<const check::Model*>& models,
+                                                const std::vector<std::string>& episodes,
+                                                diag::Sink& sink);
+
+    /// Returns whether some episode of the call has labels of the predicate.
+    bool has(const std::string& predicate) const;
+    /// Returns the labels of an episode; null where it has none.
+    const EpisodeLabels* of(const std::string& episode) const;
+    /// Returns the group of an episode; empty: it has none.
+    std::string group_of(const std::string& episode) const;
+    /// Returns the tables that were read.
+    const std::vector<std::string>& tables() const { return tables_; }
+
+private:
+    friend class LabelReader;
+
+    std::vector<std::string> tables_;
+    std::map<std::string, EpisodeLabels> of_;  ///< by path of the episode
+    std::map<std::string, std::string> groups_;
+};
+
+/// How a call reads its episodes.
+struct ReadOptions {
+    data::NamesInFile names;                 ///< names of inputs and labels in the files
+    std::shared_ptr<const LabelSet> labels;  ///< null: none beside the files
+};
+
+/// Opens an episode as data::open_trace does, with its labels as Boolean channels `truth.NAME`.
+/// Fails with E0862 where the file has such an array too. At its end `next` fails with E0861 where
+/// there are labels of later steps.
+diag::Result<std::unique_ptr<data::Trace>> open_labelled(const std::string& path,
+                                                         const std::vector<data::Channel>& channels,
+                                                         const ReadOptions& options);
+
+/// Returns the groups of episodes, in order; empty where an episode has none.
+std::vector<std::string> groups_of(const std::vector<std::string>& episodes,
+                                   const ReadOptions& options);
+
+}  // namespace etlc::episodes
