@@ -232,20 +232,27 @@ def folders_agree(made):
 
 def groups_of_files_agree(made):
     names = [f"data/demo_{number}" for number in range(EPISODES)]
-    halves = [[f"runs.h5:{name}" for name in half] for half in (names[:6], names[6:])]
-    arrays = {f"{name}/z": z for name, (z, _) in zip(names, made)}
-    truth = {f"{name}/truth.{predicate}": values for name, (_, labels) in zip(names, made)
-             for predicate, values in labels.items()}
-    h5("runs", {**arrays, **truth}, ["data", *names])
-    expected = results("dock.etl", *halves)
-    h5("runs", arrays, ["data", *names])
+    halves, words = (["a.h5"], ["b.h5"]), ["--episodes", "data/*"]
+
+    def write(with_arrays):
+        for file, numbers in (("a", range(6)), ("b", range(6, EPISODES))):
+            arrays = {f"{names[n]}/z": made[n][0] for n in numbers}
+            for n in numbers if with_arrays else ():
+                for predicate, values in made[n][1].items():
+                    arrays[f"{names[n]}/truth.{predicate}"] = values
+            h5(file, arrays, ["data", *(names[n] for n in numbers)])
+
+    write(True)
+    expected = results("dock.etl", *halves, *words)
+    write(False)
     lines = []
     for number, (_, labels) in enumerate(made):
-        name = (names[number][5:], names[number], f"runs.h5:{names[number]}")[number % 3]
+        file = "ab"[number // 6]
+        name = (names[number][5:], names[number], f"{file}.h5:{names[number]}")[number % 3]
         for predicate, values in labels.items():
             lines += rows(name, predicate, values)
-    write_table("labels.csv", lines)  # beside the file
-    expect_same(results("dock.etl", *halves), expected, "groups of a file")
+    write_table("labels.csv", lines)  # beside both files
+    expect_same(results("dock.etl", *halves, *words), expected, "groups of files")
     os.remove("labels.csv")
 
 

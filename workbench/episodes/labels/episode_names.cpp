@@ -53,6 +53,15 @@ std::vector<std::string> whole_names(const EpisodePath& parts) {
     return names;
 }
 
+std::vector<std::string> traces_in(const std::string& folder) {
+    std::vector<std::string> found;
+    std::error_code error;
+    for (fs::directory_iterator it(folder.empty() ? "." : folder, error), end; !error && it != end;
+         it.increment(error))
+        if (data::is_trace(it->path().string())) found.push_back(it->path().string());
+    return found;
+}
+
 void add(std::size_t episode, const std::string& name, bool is_whole, std::set<std::string>& whole,
          Named& names) {
     const auto found = names.find(name);
@@ -112,21 +121,17 @@ std::vector<std::string> neighbours_of(const std::vector<std::string>& episodes)
                 found.push_back(data::episode_path(parts.file, one.index));
             continue;
         }
-        const std::string parent = fs::path(parts.group).parent_path().string();
-        const std::string pattern = parent.empty() ? "*" : parent + "/*";
-        if (!parts.group.empty()) {
-            if (!places.insert(parts.file + ":" + pattern).second) continue;
-            const auto groups = data::list_hdf5(parts.file, pattern);
-            if (!groups) continue;
-            for (const std::string& group : *groups) found.push_back(parts.file + ":" + group);
-            continue;
-        }
         const std::string folder = folder_of(episode);
-        if (!places.insert(folder).second) continue;
-        std::error_code error;
-        for (fs::directory_iterator it(folder.empty() ? "." : folder, error), end;
-             !error && it != end; it.increment(error))
-            if (data::is_trace(it->path().string())) found.push_back(it->path().string());
+        const std::string pattern =
+            parts.group.empty() ? "" : (fs::path(parts.group).parent_path() / "*").string();
+        if (!places.insert(folder + ":" + pattern).second) continue;
+        for (const std::string& file : traces_in(folder)) {
+            if (pattern.empty()) found.push_back(file);
+            if (pattern.empty() || !data::is_hdf5(file)) continue;
+            const auto groups = data::list_hdf5(file, pattern);
+            if (!groups) continue;
+            for (const std::string& group : *groups) found.push_back(file + ":" + group);
+        }
     }
     return found;
 }
