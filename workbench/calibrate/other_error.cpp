@@ -264,8 +264,8 @@ void warn_of_empty(const check::Model& model, const Guaranteed& of, const OtherE
                     error.errors, counted(error.cases, "step"), counted(error.episodes, "episode"),
                     percent(error.interval->low), percent(error.interval->high)));
     warning.note(fmt::format(
-        "a predicate that has to hold for some steps (held[5 steps] p), {}or one that separates "
-        "better (etlc fit --suggest) makes it tell them apart",
+        "try a predicate that has to hold for some steps (held[5 steps] p), {}or a distance that "
+        "separates better (etlc fit --suggest)",
         monitor.calibration ? "" : "a monitor that is calibrated as a whole, "));
 }
 

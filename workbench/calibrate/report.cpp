@@ -65,9 +65,8 @@ std::string predicate_report(const check::Model& model, Index index, const Evide
     text += '\n';
     if (evidence.from_array > 0)
         text += fmt::format(
-            "    labels of {} of {} come from an array truth.{} or a table, not from a truth in "
-            "the "
-            "spec\n",
+            "    labels of {} of {} come from an array truth.{} or a table, not from a truth "
+            "in the spec\n",
             evidence.from_array, counted(evidence.demonstrations, "demonstration"), predicate.name);
     const bool by_demonstration =
         predicate.threshold.origin == ThresholdOrigin::conformal || predicate.threshold.adaptation;

@@ -84,8 +84,7 @@ diag::Diagnostic in_trace(const diag::Failure& failure, const std::string& path)
         result.note(
             "--map truth.NAME=NAME_IN_FILE says what the labels are called in the file; a 'truth' "
             "in the spec makes them of other inputs; a table labels.csv beside the files has them "
-            "in "
-            "rows, where !NAME says that NAME never holds");
+            "in rows, where !NAME says that NAME never holds");
     return result;
 }
 

@@ -101,10 +101,9 @@ bool note_loaded(episodes::Sharing* sharing, std::vector<std::string> loaded, di
     std::string& noted = sharing->part().loaded;
     if (!sharing->merges()) noted = hashes;
     if (noted == hashes) return true;
-    sink.report(
-            {Code::part_of_another,
-             "the spec, a file that it loads or a table of labels has changed since the parts were "
-             "written"})
+    sink.report({Code::part_of_another,
+                 "the spec, a file that it loads or a table of labels has changed since the parts "
+                 "were written"})
         .note("run the shards again, or merge with the files that they had");
     return false;
 }

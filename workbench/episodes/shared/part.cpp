@@ -39,9 +39,8 @@ std::string difference(const Part& a, const Part& b) {
     if (a.shards != b.shards)
         return fmt::format("is one of {} shards, the first one of {}", b.shards, a.shards);
     if (a.loaded != b.loaded)
-        return "was made with another spec, or other targets, thresholds or tables of labels, than "
-               "the "
-               "first";
+        return "was made with another spec, or other targets, thresholds or tables of labels, "
+               "than the first";
     if (a.episodes != b.episodes) return "was made over other episodes than the first";
     return "was made with other labels in the first episode";
 }
