@@ -72,7 +72,7 @@ struct Judgement {
         std::uint64_t episodes = 0;                             ///< held out
         std::vector<std::pair<std::string, float>> thresholds;  ///< from the others, by name
     };
-    std::vector<Predicate> predicates;  ///< those with labels
+    std::vector<Predicate> predicates;  ///< those with labels, then the lets with a truth
     std::vector<Monitor> monitors;
     episodes::Identities episodes;          ///< ordered by fold, as those of predicates, monitors
     std::vector<std::uint32_t> place;       ///< index in that order, per episode of the request
@@ -112,7 +112,7 @@ struct PredicateScore {
     std::string name;
     bool adaptive = false;  ///< evaluated with its initial threshold, as there is no feedback here
     Score frames;
-    Figure auroc;                  ///< of the distance, independent of the threshold
+    Figure auroc;                  ///< of the distance, or of a let's robustness
     Figure coverage;               ///< share of the episodes with a positive frame that miss none
     std::uint64_t unmeasured = 0;  ///< labelled frames of unknown distance, counted as misses
     std::uint64_t arrays = 0;      ///< episodes with an array of labels

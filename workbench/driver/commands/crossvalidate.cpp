@@ -138,6 +138,7 @@ private:
 
     std::optional<check::Model> check(const Lacks& lacks) {
         check::Options options = request_.check;
+        options.judged_lets = true;
         options.allow_unfitted = lacks.fitted;
         options.allow_uncalibrated = lacks.predicates;
         options.allow_uncalibrated_monitors = lacks.monitors;

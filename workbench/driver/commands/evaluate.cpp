@@ -9,6 +9,7 @@
 #include "driver/commands/crossvalidate.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
+#include "library/open.hpp"
 #include "library/version.hpp"
 #include "parse/parse.hpp"
 #include "source/escape.hpp"
@@ -28,15 +29,16 @@ struct Candidate {
 
 std::optional<Candidate> candidate(const SpecToJudge& spec, const Request& request, bool trains) {
     Candidate result{spec, {}, {}};
+    check::Options options = request.check;
+    options.judged_lets = true;
     if (trains) {
-        check::Options options = request.check;
         options.allow_uncalibrated = true;
         options.allow_uncalibrated_monitors = true;
         options.allow_unfitted = true;
         result.untrained =
             check::check(parse::parse(spec.file, spec.sink), spec.file, options, spec.sink);
     } else {
-        result.compiled = compile(spec.file, request, spec.sink);
+        result.compiled = library::compile(spec.file, options, request, spec.sink);
     }
     if (spec.sink.refused() || (!result.compiled && !result.untrained)) return std::nullopt;
     return result;
