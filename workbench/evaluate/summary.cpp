@@ -226,6 +226,45 @@ Evaluation summarise(const Judgement& judgement) {
     return result;
 }
 
+Figure f1_by_frames(const Judgement& judgement, std::size_t predicate) {
+    const std::vector<Counts> each =
+        judgement.each(judgement.predicates[predicate].episodes,
+                       [](const PredicateEpisode& episode) { return episode.frames; });
+    return Bootstrap(each.size()).figure([&](const Weights& weights) {
+        std::vector<std::optional<double>> values;
+        for (const Rates& one : rates(each, weights)) values.push_back(one.f1);
+        return values;
+    });
+}
+
+std::optional<double> f1_of_duration(const Judgement& judgement, std::size_t predicate) {
+    const auto judged =
+        judged_by_duration(truths(judgement, judgement.predicates[predicate].episodes));
+    return judged ? rates(*judged).f1 : std::nullopt;
+}
+
+Figure agreement_with_variants(const Judgement& judgement, std::size_t monitor) {
+    std::vector<Counts> verdicts;
+    std::vector<Counts> variants;
+    judgement.for_each(judgement.monitors[monitor].episodes,
+                       [&](std::size_t, const MonitorEpisode& episode) {
+                           verdicts.push_back(episode.episode);
+                           Counts& all = variants.emplace_back();
+                           for (const Counts& kind : episode.variants) all.add(kind);
+                       });
+    return Bootstrap(verdicts.size()).figure([&](const Weights& weights) {
+        const std::vector<Rates> on_episodes = rates(verdicts, weights);
+        const std::vector<Rates> on_variants = rates(variants, weights);
+        std::vector<std::optional<double>> means;
+        for (std::size_t i = 0; i < on_episodes.size(); ++i) {
+            const auto& a = on_episodes[i].agreement;
+            const auto& b = on_variants[i].agreement;
+            means.push_back(a && b ? std::optional((*a + *b) / 2) : a ? a : b);
+        }
+        return means;
+    });
+}
+
 std::vector<EpisodeRow> by_episode(const Judgement& judgement) {
     std::vector<EpisodeRow> rows;
     for (std::size_t e = 0; e < judgement.place.size(); ++e) rows.push_back(row_of(judgement, e));
