@@ -176,14 +176,17 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
 
 Evaluation summarise(const Judgement& judgement);
 
-/// Return figures of summarise() alone, where there are many predicates: F1 by frames of a
-/// predicate or let, and that of its duration baseline.
-Figure f1_by_frames(const Judgement& judgement, std::size_t predicate);
-std::optional<double> f1_of_duration(const Judgement& judgement, std::size_t predicate);
-
-/// Returns the mean of a monitor's agreements on the episodes and on their broken variants; on the
+/// A figure of each resample of the episodes.
+using Statistic = std::function<std::vector<std::optional<double>>(const Weights&)>;
+/// F1 by frames of a predicate or let.
+Statistic f1_by_frames(const Judgement& judgement, std::size_t predicate);
+/// The mean of a monitor's agreements on the episodes and on their broken variants; on the
 /// episodes alone where there are no variants.
-Figure agreement_with_variants(const Judgement& judgement, std::size_t monitor);
+Statistic agreement_with_variants(const Judgement& judgement, std::size_t monitor);
+/// Returns the second less the first, over the same resamples.
+Figure less(const Bootstrap& bootstrap, const Statistic& second, const Statistic& first);
+/// Returns the F1 by frames of the duration baseline.
+std::optional<double> f1_of_duration(const Judgement& judgement, std::size_t predicate);
 
 /// Returns a row per episode, worst first, since figures over all episodes hide a session on which
 /// a monitor fails. An episode is worse with more wrong verdicts of monitors; ties go to the

@@ -226,33 +226,24 @@ Evaluation summarise(const Judgement& judgement) {
     return result;
 }
 
-Figure f1_by_frames(const Judgement& judgement, std::size_t predicate) {
-    const std::vector<Counts> each =
-        judgement.each(judgement.predicates[predicate].episodes,
-                       [](const PredicateEpisode& episode) { return episode.frames; });
-    return Bootstrap(each.size()).figure([&](const Weights& weights) {
+Statistic f1_by_frames(const Judgement& judgement, std::size_t predicate) {
+    return [each = judgement.each(judgement.predicates[predicate].episodes,
+                                  [](const PredicateEpisode& episode) { return episode.frames; })](
+               const Weights& weights) {
         std::vector<std::optional<double>> values;
         for (const Rates& one : rates(each, weights)) values.push_back(one.f1);
         return values;
-    });
+    };
 }
 
-std::optional<double> f1_of_duration(const Judgement& judgement, std::size_t predicate) {
-    const auto judged =
-        judged_by_duration(truths(judgement, judgement.predicates[predicate].episodes));
-    return judged ? rates(*judged).f1 : std::nullopt;
-}
-
-Figure agreement_with_variants(const Judgement& judgement, std::size_t monitor) {
-    std::vector<Counts> verdicts;
-    std::vector<Counts> variants;
-    judgement.for_each(judgement.monitors[monitor].episodes,
-                       [&](std::size_t, const MonitorEpisode& episode) {
-                           verdicts.push_back(episode.episode);
-                           Counts& all = variants.emplace_back();
-                           for (const Counts& kind : episode.variants) all.add(kind);
-                       });
-    return Bootstrap(verdicts.size()).figure([&](const Weights& weights) {
+Statistic agreement_with_variants(const Judgement& judgement, std::size_t monitor) {
+    const auto& all = judgement.monitors[monitor].episodes;
+    return [verdicts = judgement.each(all, [](const MonitorEpisode& one) { return one.episode; }),
+            variants = judgement.each(all, [](const MonitorEpisode& one) {
+                Counts sum;
+                for (const Counts& kind : one.variants) sum.add(kind);
+                return sum;
+            })](const Weights& weights) {
         const std::vector<Rates> on_episodes = rates(verdicts, weights);
         const std::vector<Rates> on_variants = rates(variants, weights);
         std::vector<std::optional<double>> means;
@@ -262,7 +253,13 @@ Figure agreement_with_variants(const Judgement& judgement, std::size_t monitor) 
             means.push_back(a && b ? std::optional((*a + *b) / 2) : a ? a : b);
         }
         return means;
-    });
+    };
+}
+
+std::optional<double> f1_of_duration(const Judgement& judgement, std::size_t predicate) {
+    const auto judged =
+        judged_by_duration(truths(judgement, judgement.predicates[predicate].episodes));
+    return judged ? rates(*judged).f1 : std::nullopt;
 }
 
 std::vector<EpisodeRow> by_episode(const Judgement& judgement) {

@@ -89,20 +89,43 @@ void add_agreements(const evaluate::Judgement& judgement, std::size_t monitor, f
     one.on_variants = evaluate::rates(on_variants).agreement;
 }
 
-/// Looks up the figures of the candidates by the names of their trials.
+/// Returns the score of a candidate in each resample; nothing where it cannot be judged.
+std::optional<evaluate::Statistic> score_of(const evaluate::Judgement& judgement, bool of_monitor,
+                                            const std::string& trial) {
+    if (of_monitor) {
+        const std::size_t m = place_of(judgement.monitors, trial);
+        if (!judgement.monitors[m].lacking.empty()) return std::nullopt;
+        return evaluate::agreement_with_variants(judgement, m);
+    }
+    const std::size_t p = place_of(judgement.predicates, trial);
+    if (p == judgement.predicates.size()) return std::nullopt;
+    return evaluate::f1_by_frames(judgement, p);
+}
+
+/// Whether the interval of the difference reaches 0.
+bool may_be_as_good(const evaluate::Figure& difference) {
+    return difference.value &&
+           (difference.interval ? difference.interval->low : *difference.value) <= 0;
+}
+
+/// Looks up the figures of the candidates by the names of their trials, and ranks them.
 void fill_in(const evaluate::Judgement& judgement, fit::RankedInTime& ranking) {
+    const evaluate::Bootstrap bootstrap(judgement.place.size());
     for (fit::InTime& one : ranking.ranked) {
-        if (ranking.of_monitor) {
-            const std::size_t m = place_of(judgement.monitors, one.trial);
-            if (!judgement.monitors[m].lacking.empty()) continue;
-            one.score = evaluate::agreement_with_variants(judgement, m);
-            add_agreements(judgement, m, one);
-            continue;
-        }
-        const std::size_t p = place_of(judgement.predicates, one.trial);
-        if (p == judgement.predicates.size()) continue;  // its truth needs other labels
-        one.score = evaluate::f1_by_frames(judgement, p);
-        if (one.lines.empty()) ranking.clock = evaluate::f1_of_duration(judgement, p);
+        const auto score = score_of(judgement, ranking.of_monitor, one.trial);
+        if (!score) continue;
+        one.score = bootstrap.figure(*score);
+        if (ranking.of_monitor)
+            add_agreements(judgement, place_of(judgement.monitors, one.trial), one);
+        else if (one.lines.empty())
+            ranking.clock =
+                evaluate::f1_of_duration(judgement, place_of(judgement.predicates, one.trial));
+    }
+    fit::rank(ranking);
+    const auto best = score_of(judgement, ranking.of_monitor, ranking.ranked.front().trial);
+    for (fit::InTime& one : ranking.ranked) {
+        const auto score = score_of(judgement, ranking.of_monitor, one.trial);
+        one.ties = best && score && may_be_as_good(evaluate::less(bootstrap, *best, *score));
     }
 }
 
@@ -122,10 +145,7 @@ fit::SuggestedInTime suggest_in_time(const source::File& file, const check::Mode
     }
     result.folds = judgement->folds.size();
     result.all = std::move(trials.all);
-    for (fit::RankedInTime& ranking : result.all) {
-        fill_in(*judgement, ranking);
-        fit::rank(ranking);
-    }
+    for (fit::RankedInTime& ranking : result.all) fill_in(*judgement, ranking);
     return result;
 }
 

@@ -235,12 +235,6 @@ void rank(RankedInTime& all) {
     std::stable_sort(all.ranked.begin(), all.ranked.end(), [](const InTime& a, const InTime& b) {
         return a.score.value.value_or(-1) > b.score.value.value_or(-1);
     });
-    const episodes::Figure& best = all.ranked.front().score;
-    if (!best.value) return;
-    const double low = best.interval ? best.interval->low : *best.value;
-    for (InTime& one : all.ranked)
-        one.ties = one.score.value &&
-                   (one.score.interval ? one.score.interval->high : *one.score.value) >= low;
 }
 
 }  // namespace etlc::fit

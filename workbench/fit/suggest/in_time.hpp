@@ -22,7 +22,7 @@ struct InTime {
     episodes::Figure score{};
     std::optional<double> on_episodes{};
     std::optional<double> on_variants{};
-    bool ties = false;  ///< its interval reaches that of the best
+    bool ties = false;  ///< the interval of its difference to the best has 0
 };
 
 struct RankedInTime {
@@ -49,7 +49,7 @@ struct TimeTrials {
 TimeTrials time_trials(const check::Model& model, const std::vector<check::Index>& asked,
                        const std::vector<check::Index>& labelled);
 
-/// Ranks the candidates by their figures.
+/// Sorts the candidates by their scores, the best first.
 void rank(RankedInTime& all);
 
 std::string report(const SuggestedInTime& suggested);

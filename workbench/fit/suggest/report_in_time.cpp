@@ -81,7 +81,7 @@ std::string report(const SuggestedInTime& suggested) {
     std::string text = fmt::format(
         "\nIn time{}: formulas beside the truth of\n"
         "a predicate, by F1 over frames; and in its place in monitors, by the mean of the\n"
-        "agreements on episodes and on broken variants of them.\n",
+        "agreements on episodes and on broken variants of them. *: may be as good as the best.\n",
         suggested.folds > 0 ? fmt::format(", trained on other episodes ({} folds)", suggested.folds)
                             : "");
     for (const RankedInTime& one : suggested.all) text += text_of_ranking(one);
