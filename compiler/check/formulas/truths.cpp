@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string>
 #include <utility>
 
 #include "check/context/context.hpp"
@@ -252,15 +253,19 @@ Index with_truths_of_lets(Context& c, Index formula) {
     return found == truths.end() ? kNone : found->second;
 }
 
+/// Equal selections of frames are one formula, so that etlc fit collects them once.
 void check_fitted_frames(Context& c) {
+    std::map<std::string, Index> first;  // by text
     for (Index i = 0; i < c.model.fitted.size(); ++i) {
         const ast::Formula& written = *c.fitted_where[i];
         if (written.kind == ast::Formula::Kind::constant_true) continue;
         const Index where = check_formula(c, written);
         c.model.fitted[i].where = where;
         if (where == kNone) continue;
-        if (const Index truth = with_truths_of_lets(c, where); truth != kNone)
-            c.model.fitted[i].where = truth;
+        Index& selects = c.model.fitted[i].where;
+        if (const Index truth = with_truths_of_lets(c, where); truth != kNone) selects = truth;
+        if (lets_are_written_out(c.model, selects))
+            selects = first.try_emplace(print(c.model, selects), selects).first->second;
         const std::vector<Reach> all = reaches(c.model);
         if (const Index future = all[where].future; future != kNone)
             c.report(Code::future_in_truth, c.operator_spans[future],
