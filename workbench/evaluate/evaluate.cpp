@@ -135,19 +135,28 @@ bool score(const Trial& trial, std::size_t fold, const Subject& subject, const R
 /// Fewer episodes give no reliable interval.
 constexpr std::uint64_t kFewEpisodes = 5;
 
-/// Warns where both labels occur and nearly no resample has a gain. Only predicates: a monitor that
-/// must not miss an alarm raises many on purpose.
+/// Warns where both labels occur, and nearly no resample is better than saying true at every frame,
+/// or all are worse than a rule that looks at the number of the frame alone. Only predicates: a
+/// monitor that must not miss an alarm raises many on purpose.
 void warn_of_no_gain(const std::string& name, const Score& score, source::Span span,
                      diag::Sink& sink) {
     const bool both = score.counts.positives() > 0 && score.counts.negatives() > 0;
-    if (!both || !score.gain.interval || score.gain.interval->high > 0) return;
-    episodes::warn_of_data(
-        diag::Code::no_better_than_true,
-        fmt::format("'{}' has an F1 of {:.3f}, no better than the {:.3f} of saying true at every "
-                    "frame",
-                    name, *score.f1.value, *score.f1.value - *score.gain.value),
-        span, sink)
-        .note("check the threshold, which may be too wide, the targets and the labels");
+    if (!both || !score.f1.interval) return;
+    const auto warn = [&](double other, const std::string& of) -> diag::Diagnostic& {
+        return episodes::warn_of_data(
+            diag::Code::no_better_than_true,
+            fmt::format("'{}' has an F1 of {:.3f}, no better than the {:.3f} of {}", name,
+                        *score.f1.value, other, of),
+            span, sink);
+    };
+    const auto clock = score.duration ? rates(*score.duration).f1 : std::nullopt;
+    if (score.gain.interval && score.gain.interval->high <= 0)
+        warn(*score.f1.value - *score.gain.value, "saying true at every frame")
+            .note("check the threshold, which may be too wide, the targets and the labels");
+    else if (clock && score.f1.interval->high < *clock)
+        warn(*clock, "a rule over the number of the frame alone")
+            .note("time tells more than the distance: try formulas over time (etlc fit --suggest), "
+                  "and episodes whose timing differs");
 }
 
 }  // namespace
