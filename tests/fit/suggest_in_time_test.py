@@ -181,7 +181,7 @@ def main(etlc):
         spec = PLACE.replace("THRESHOLD", "0.5")
         found = suggested(spec, "place")
         for name in ("hold", "placed"):
-            assert len(found[name]["ranked"]) == 1 + 8 + 5
+            assert len(found[name]["ranked"]) == 1 + 10 + 5
             for one in found[name]["ranked"]:
                 expected = f1_by_loops(folder / "place", one["formula"], name, 0.5)
                 assert abs(one["score"] - expected) < 1e-12, (one, expected)

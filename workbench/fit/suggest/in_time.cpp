@@ -22,9 +22,9 @@ using check::Model;
 
 /// Returns the durations to try, in steps, ascending.
 std::vector<std::uint32_t> durations(const Model& model) {
-    if (model.step_seconds <= 0) return {2, 5, 10, 20};
+    if (model.step_seconds <= 0) return {2, 5, 10, 20, 40};
     std::set<std::uint32_t> steps;
-    for (const double seconds : {0.1, 0.2, 0.5, 1.0})
+    for (const double seconds : {0.1, 0.2, 0.5, 1.0, 2.0})
         steps.insert(
             std::max(2U, static_cast<std::uint32_t>(std::lround(seconds / model.step_seconds))));
     return {steps.begin(), steps.end()};
