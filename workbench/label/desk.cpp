@@ -267,6 +267,11 @@ diag::Result<std::optional<std::size_t>> Desk::undo() {
     return std::optional(episode);
 }
 
+bool Desk::have_tables_changed() const {
+    return std::any_of(tables_.begin(), tables_.end(),
+                       [](const Table& table) { return table.has_changed(); });
+}
+
 std::optional<Failure> Desk::reload() {
     diag::Sink sink;
     if (read(sink)) return std::nullopt;

@@ -63,6 +63,8 @@ public:
     std::optional<diag::Failure> accept(std::size_t episode, const std::vector<Marks>& proposed);
     /// Takes the last change back. Returns the episode that it was about; nothing without a change.
     diag::Result<std::optional<std::size_t>> undo();
+    /// Returns whether another program has changed a table.
+    bool have_tables_changed() const;
     /// Reads the tables again, after another program has changed them. Nothing can be undone then.
     std::optional<diag::Failure> reload();
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -248,13 +247,14 @@ std::optional<std::vector<Proposal>> propose(const check::Model& model, const De
     return proposals;
 }
 
-std::string text_of(const std::vector<Proposal>& proposals, const Desk& desk) {
-    nlohmann::ordered_json all = nlohmann::ordered_json::array();
-    for (const Proposal& proposal : proposals) {
-        nlohmann::ordered_json marks = nlohmann::ordered_json::object();
+std::string text_of(const Proposals& proposals, const Desk& desk) {
+    using Json = nlohmann::ordered_json;
+    Json all = Json::array();
+    for (const Proposal& proposal : proposals.found) {
+        Json marks = Json::object();
         for (std::size_t p = 0; p < proposal.marks.size(); ++p) {
             if (!proposal.marks[p]) continue;
-            auto& intervals = marks[desk.predicate(p)] = nlohmann::ordered_json::array();
+            Json& intervals = marks[desk.predicate(p)] = Json::array();
             for (const Interval& one : *proposal.marks[p])
                 intervals.push_back({one.start, one.end, code_of(one.label)});
         }
@@ -263,34 +263,43 @@ std::string text_of(const std::vector<Proposal>& proposals, const Desk& desk) {
                        {"doubt", proposal.doubt},
                        {"predicates", marks}});
     }
-    return nlohmann::ordered_json{{"labelled", labelled_episodes(desk).size()},
-                                  {"proposals", all}}
-               .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-           "\n";
+    const Json text{{"labelled", labelled_episodes(desk).size()},
+                    {"why_none", proposals.why_none},
+                    {"proposals", all}};
+    return text.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::optional<std::vector<Proposal>> parse_proposals(const std::string& text, const Desk& desk) {
-    std::map<std::string, std::size_t> places;
-    for (std::size_t p = 0; p < desk.predicates().size(); ++p) places[desk.predicate(p)] = p;
-    try {
-        std::vector<Proposal> proposals;
-        const auto all = nlohmann::json::parse(text);
-        for (const auto& one : all.at("proposals")) {
-            Proposal proposal{one.at("episode"), one.at("doubt"),
-                              std::vector<Marks>(places.size())};
-            const std::uint64_t steps = desk.episodes().at(proposal.episode).steps;
-            for (const auto& [predicate, intervals] : one.at("predicates").items()) {
-                std::vector<Interval> marks;
-                for (const auto& [start, end, code] :
-                     intervals.get<std::vector<std::tuple<std::uint64_t, std::uint64_t, int>>>())
-                    if (start < end && end <= steps)
-                        marks.push_back({start, end, code == 2 ? Label::unknown : Label::yes});
-                proposal.marks.at(places.at(predicate)) = std::move(marks);
-            }
-            proposals.push_back(std::move(proposal));
+namespace {
+
+Proposal proposal_of(const nlohmann::json& text, const Desk& desk) {
+    Proposal proposal{text.at("episode"), text.at("doubt"), {}};
+    const std::uint64_t steps = desk.episodes().at(proposal.episode).steps;
+    const nlohmann::json& predicates = text.at("predicates");
+    for (std::size_t p = 0; p < desk.predicates().size(); ++p) {
+        Marks& marks = proposal.marks.emplace_back();
+        const auto found = predicates.find(desk.predicate(p));
+        if (found == predicates.end()) continue;
+        marks.emplace();
+        for (const nlohmann::json& one : *found) {
+            const std::uint64_t start = one.at(0);
+            const std::uint64_t end = one.at(1);
+            if (start < end && end <= steps)
+                marks->push_back({start, end, one.at(2) == 2 ? Label::unknown : Label::yes});
         }
+    }
+    return proposal;
+}
+
+}  // namespace
+
+std::optional<Proposals> parse_proposals(const std::string& text, const Desk& desk) {
+    try {
+        const auto all = nlohmann::json::parse(text);
+        Proposals proposals{all.at("why_none"), {}};
+        for (const nlohmann::json& one : all.at("proposals"))
+            proposals.found.push_back(proposal_of(one, desk));
         return proposals;
-    } catch (const std::exception&) {  // another program's output, or that of an ended process
+    } catch (const std::exception&) {  // the program was another one, or was stopped
         return std::nullopt;
     }
 }

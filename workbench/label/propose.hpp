@@ -26,15 +26,21 @@ struct Proposal {
     std::vector<Marks> marks;  ///< per predicate; nothing where it needs none
 };
 
-/// Returns the proposals, the most doubtful first. Returns nothing after an error.
+struct Proposals {
+    std::string why_none;         ///< empty: nothing went wrong
+    std::vector<Proposal> found;  ///< the most doubtful first
+};
+
+/// Returns the proposals for all episodes that somebody has to label. Returns nothing after an
+/// error.
 std::optional<std::vector<Proposal>> propose(const check::Model& model, const Desk& desk,
                                              const data::NamesInFile& names, diag::Sink& sink);
 
-/// The episodes that all predicates are labelled in.
+/// Returns the episodes that all predicates are labelled in.
 std::vector<std::string> labelled_episodes(const Desk& desk);
 
 /// Writes proposals as JSON, on one line; reads them. Nothing where the text is none.
-std::string text_of(const std::vector<Proposal>& proposals, const Desk& desk);
-std::optional<std::vector<Proposal>> parse_proposals(const std::string& text, const Desk& desk);
+std::string text_of(const Proposals& proposals, const Desk& desk);
+std::optional<Proposals> parse_proposals(const std::string& text, const Desk& desk);
 
 }  // namespace etlc::label

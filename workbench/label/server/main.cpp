@@ -4,15 +4,21 @@
 // another origin, or was addressed to another name (DNS rebinding).
 #include <httplib.h>
 #include <poll.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "label/server/protocol.hpp"
 
@@ -23,6 +29,8 @@ using etlc::data::frames::number_at;
 
 constexpr const char* kHost = "127.0.0.1";
 constexpr int kForbidden = 403;
+constexpr std::size_t kConnections = 32;          ///< a browser opens six for a page
+constexpr std::size_t kMostRequests = 1'000'000;  ///< of a connection
 
 bool read_all(char* to, std::size_t n) {
     while (n > 0) {
@@ -132,12 +140,15 @@ int serve() {
     if (!asked || !token || token->size() != kTokenSize) return 1;
     httplib::Server server;
     server.set_payload_max_length(kMostContent);
+    server.set_tcp_nodelay(true);
+    server.set_keep_alive_max_count(kMostRequests);
+    server.new_task_queue = [] { return new httplib::ThreadPool(kConnections); };
     server.set_default_headers({{"Cache-Control", "no-store"},
                                 {"Referrer-Policy", "no-referrer"},
                                 {"X-Content-Type-Options", "nosniff"},
                                 {"X-Frame-Options", "DENY"},
                                 {"Cross-Origin-Resource-Policy", "same-origin"}});
-    // Another program that listens to the port is not shut out, but an error.
+    // By default another program could listen to the same port.
     server.set_socket_options([](int socket) {
         const int yes = 1;
         ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
