@@ -6,13 +6,14 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "data/files/file.hpp"
 #include "data/recordings/episodes.hpp"
 #include "data/recordings/open.hpp"
 #include "data/text/quote.hpp"
 #include "episodes/labels/episode_names.hpp"
-#include "episodes/recording.hpp"
+#include "plan/evaluate/inputs.hpp"
 
 namespace etlc::label {
 
@@ -29,18 +30,22 @@ bool is_own_truth(const check::Predicate& predicate) {
            predicate.threshold.origin == check::ThresholdOrigin::literal;
 }
 
-/// Returns the number of steps of an episode. Failures do not name the path.
-diag::Result<std::uint64_t> steps_of(const check::Model& model, const std::string& path,
-                                     const std::vector<Index>& inputs,
-                                     const episodes::ReadOptions& reading) {
-    auto recording = episodes::Recording::open({&model, inputs}, path, reading);
-    if (!recording) return recording.failure();
-    if (recording->length() > 0) return recording->length();
-    for (;;) {
-        const auto more = recording->next();
+/// Returns the number of steps of an episode, and which of the channels it has.
+diag::Result<std::pair<std::uint64_t, std::vector<bool>>> measured(
+    const std::string& path, const std::vector<data::Channel>& channels) {
+    const auto trace = data::open_trace(path, channels);
+    if (!trace) return trace.failure();
+    std::vector<bool> has;
+    for (std::size_t c = 0; c < channels.size(); ++c) has.push_back((*trace)->has(c));
+    std::uint64_t steps = (*trace)->length();
+    data::Sample sample;
+    for (bool is_known = steps > 0; !is_known; ++steps) {
+        const auto more = (*trace)->next(sample);
         if (!more) return more.failure();
-        if (!*more) return recording->frames();
+        if (!*more) break;
     }
+    if (steps == 0) return data::no_steps();
+    return std::pair{steps, has};
 }
 
 /// Says what the first error of a sink says, with its place.
@@ -102,25 +107,24 @@ bool Desk::is_labelled(std::size_t episode) const {
 
 /// Finds the length of each episode, and the labels that recordings have.
 bool Desk::measure(diag::Sink& sink) {
-    std::set<Index> read;
-    for (const Index p : predicates_)
-        read.insert(model_->predicates[p].inputs.begin(), model_->predicates[p].inputs.end());
-    const std::vector<Index> inputs(read.begin(), read.end());
-    std::vector<data::Channel> arrays;
-    for (std::size_t p = 0; p < predicates_.size(); ++p)
-        arrays.push_back({"truth." + predicate(p), data::Channel::Kind::boolean, 1, true});
+    std::vector<data::Channel> channels;
+    std::set<Index> inputs;  // they give the number of steps
+    for (std::size_t p = 0; p < predicates_.size(); ++p) {
+        channels.push_back({"truth." + predicate(p), data::Channel::Kind::boolean, 1, true});
+        const auto& read = model_->predicates[predicates_[p]].inputs;
+        inputs.insert(read.begin(), read.end());
+    }
+    for (const Index input : inputs) channels.push_back(plan::channel_of(model_->inputs[input]));
+    channels = data::renamed(std::move(channels), request_.names);
     for (const std::string& path : request_.episodes) {
-        Episode episode{path};
-        const auto steps = steps_of(*model_, path, inputs, {request_.names, nullptr});
-        const auto trace = data::open_trace(path, data::renamed(arrays, request_.names));
-        if (!steps || !trace) {
-            sink.report(data::in_trace(steps ? trace.failure() : steps.failure(), path));
+        auto found = measured(path, channels);
+        if (!found) {
+            sink.report(data::in_trace(found.failure(), path));
             continue;
         }
-        episode.steps = *steps;
-        for (std::size_t p = 0; p < predicates_.size(); ++p)
-            episode.is_recorded.push_back((*trace)->has(p));
-        episodes_.push_back(std::move(episode));
+        auto& [steps, has] = *found;
+        has.resize(predicates_.size());
+        episodes_.push_back({path, "", steps, 0, std::move(has)});
     }
     return !sink.has_errors();
 }

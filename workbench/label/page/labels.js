@@ -100,7 +100,7 @@ async function refresh() {
   const { json } = await post("state", { version: store.version, proposed: store.proposed });
   store.isBusy = json.busy;
   if (!json.holds) sayRefusal({ kind: "elsewhere", error: "This page is open elsewhere, too" });
-  else if (!store.holds) say("");
+  const isBack = json.holds && !store.holds;
   store.holds = json.holds;
   if (json.labels) store.labels = json.labels;
   store.version = json.version;
@@ -109,6 +109,8 @@ async function refresh() {
     store.whyNone = json.why_none;
     store.proposed = json.proposed;
   }
+  if (isBack) say("");
+  if (isBack) send();
   if (json.labels || json.proposals) showLabels(null);
   showProgress();
 }
