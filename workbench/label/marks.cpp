@@ -55,13 +55,30 @@ std::optional<Key> key_named(std::string_view word) {
     return std::nullopt;
 }
 
+std::vector<Interval> joined(const std::vector<Interval>& intervals) {
+    Intervals result;
+    for (const Interval& one : intervals) {
+        if (!result.empty() && result.back().end == one.start && result.back().label == one.label)
+            result.back().end = one.end;
+        else
+            result.push_back(one);
+    }
+    return result;
+}
+
 Marks after_key(const Marks& before, Key key, std::uint64_t step, std::uint64_t steps) {
     if (key == Key::forget) return std::nullopt;
     if (key == Key::never) return Intervals();
     Intervals intervals = before.value_or(Intervals());
-    if (key == Key::begin) begin_at(intervals, step, steps);
-    if (key == Key::end) end_at(intervals, step);
-    if (key == Key::begin || key == Key::end) return intervals;
+    if (key == Key::end) {
+        end_at(intervals, step);
+        return joined(intervals);
+    }
+    intervals = joined(intervals);
+    if (key == Key::begin) {
+        begin_at(intervals, step, steps);
+        return intervals;
+    }
     const auto found = at_or_after(intervals, step);
     if (found == intervals.end() || found->start > step) return before;
     if (key == Key::unknown)

@@ -1,6 +1,7 @@
 // The labels of a predicate in an episode, and what a key does to them.
 // Takes: the labels before, the key, and the step under the cursor. Gives: the labels after. Keeps
-// true: intervals are sorted, none is empty or beyond the episode, and no two overlap.
+// true: intervals are sorted, none is empty or beyond the episode, and no two overlap. An interval
+// that begins before another one touches it until the next key, which may be its end.
 #pragma once
 
 #include <cstdint>
@@ -35,6 +36,9 @@ enum class Key : std::uint8_t {
 
 /// Returns the key of "begin", "end", ...
 std::optional<Key> key_named(std::string_view word);
+
+/// Returns the intervals with those joined that touch and have the same label.
+std::vector<Interval> joined(const std::vector<Interval>& intervals);
 
 /// Returns the labels after a key. `step` is less than `steps`, the length of the episode.
 Marks after_key(const Marks& before, Key key, std::uint64_t step, std::uint64_t steps);

@@ -165,8 +165,9 @@ private:
     void learn_runs(const std::vector<const Measured*>& episodes) {
         for (const Measured* one : episodes) {
             std::size_t start = 0;
-            for (std::size_t step = 1; step < one->labels.size(); ++step) {
-                if (one->labels[step] == one->labels[step - 1]) continue;
+            for (std::size_t step = 1; step <= one->labels.size(); ++step) {
+                const bool is_end = step == one->labels.size();
+                if (!is_end && one->labels[step] == one->labels[step - 1]) continue;
                 shortest_run_ = std::min<std::uint64_t>(shortest_run_, step - start);
                 start = step;
             }

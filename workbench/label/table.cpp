@@ -137,7 +137,7 @@ void Table::put(const LabelsOf& labels, Rows& rows) const {
         if (!in_seconds_) return static_cast<double>(step);
         return std::round(static_cast<double>(step) * step_seconds_ * kParts) / kParts;
     };
-    for (const Interval& interval : labels.marks.value_or(std::vector<Interval>())) {
+    for (const Interval& interval : joined(labels.marks.value_or(std::vector<Interval>()))) {
         row.label = interval.label;
         row.start = time_of(interval.start);
         row.end = interval.end == labels.steps ? kEndless : time_of(interval.end);
