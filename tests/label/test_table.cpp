@@ -32,8 +32,7 @@ TEST(Table, IsMadeWithTheFirstLabel) {
     const TemporaryPath file("labels.csv");
     Table table = read(file.path());
     EXPECT_FALSE(table.write({near_in_a({{{2, 5}, {7, 20, Label::unknown}}})}));
-    EXPECT_EQ(file_bytes(file.path()),
-              "episode,predicate,start,end\na,near,2,5\na,?near,7,\n");
+    EXPECT_EQ(file_bytes(file.path()), "episode,predicate,start,end\na,near,2,5\na,?near,7,\n");
     EXPECT_FALSE(table.write({near_in_a(std::vector<Interval>())}));
     EXPECT_EQ(file_bytes(file.path()), "episode,predicate,start,end\na,!near,,\n");
     EXPECT_FALSE(table.write({near_in_a(std::nullopt)}));

@@ -130,11 +130,10 @@ int serve_editors(Call&) {
 int merge(Call& call);
 
 /// The function of each command, in the order of Command.
-constexpr int (*kFunctions[])(Call& call) = {compile_spec,     run_trace,          on_spec<embed>,
-                                             on_spec<fit>,     on_spec<calibrate>, evaluate_specs,
-                                             evaluate_specs,   serve_editors,      merge,
-                                             on_plan<explain>, on_plan<incident>,  make_report,
-                                             make_labels};
+constexpr int (*kFunctions[])(Call& call) = {
+    compile_spec,      run_trace,      on_spec<embed>, on_spec<fit>, on_spec<calibrate>,
+    evaluate_specs,    evaluate_specs, serve_editors,  merge,        on_plan<explain>,
+    on_plan<incident>, make_report,    make_labels};
 static_assert(std::size(kFunctions) == kCommandCount);
 
 int execute(Command command, int argc, char** argv, episodes::Sharing* merged = nullptr) {

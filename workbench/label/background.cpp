@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kQuiet = 700ms;          ///< without a key, before proposals are made
+constexpr auto kQuiet = 700ms;            ///< without a key, before proposals are made
 constexpr int kMaxSilenceSeconds = 3600;  ///< of the process that makes them
 
 /// Runs this program. Returns its output, or a sentence in place of proposals.
@@ -28,10 +28,9 @@ std::string output_of(const std::vector<std::string>& call) {
     };
     std::error_code error;
     const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
-    const auto child = data::Child::start(self.string(), call,
-                                          {.max_silence_seconds = kMaxSilenceSeconds,
-                                           .whole_environment = true,
-                                           .heard = true});
+    const auto child = data::Child::start(
+        self.string(), call,
+        {.max_silence_seconds = kMaxSilenceSeconds, .whole_environment = true, .heard = true});
     if (!child) return none("cannot be started");
     std::string output;
     while (!child->at_end()) {
@@ -53,8 +52,8 @@ std::string lesson_of(const Desk& desk) {
         text += fmt::format("{}:", e);
         for (std::size_t p = 0; p < desk.predicates().size(); ++p)
             for (const Interval& one : desk.marks(e, p).value_or(std::vector<Interval>()))
-                text += fmt::format("{} {} {} {};", p, one.start, one.end,
-                                    static_cast<int>(one.label));
+                text +=
+                    fmt::format("{} {} {} {};", p, one.start, one.end, static_cast<int>(one.label));
     }
     return text;
 }

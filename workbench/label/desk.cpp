@@ -145,9 +145,8 @@ void Desk::place() {
             episodes_[inside[i]].table = paths_.size();
             episodes_[inside[i]].name = names[i];
         }
-        paths_.push_back(request_.table.empty()
-                             ? (fs::path(folder) / data::kLabelsFile).string()
-                             : request_.table);
+        paths_.push_back(request_.table.empty() ? (fs::path(folder) / data::kLabelsFile).string()
+                                                : request_.table);
     }
 }
 
@@ -196,8 +195,8 @@ bool Desk::take(const episodes::LabelSet* labels, diag::Sink& sink) {
                 sink.report(data::in_trace(
                     {Code::contradictory_labels,
                      fmt::format("has an array {}, and {} labels {} too: remove one of them",
-                                 data::in_quotes(data::name_in_file("truth." + predicate(p),
-                                                                    request_.names)),
+                                 data::in_quotes(
+                                     data::name_in_file("truth." + predicate(p), request_.names)),
                                  first.place, data::in_quotes(predicate(p)))},
                     episode.path));
             if (step >= episode.steps)
@@ -236,7 +235,8 @@ std::optional<Failure> Desk::put(std::size_t episode,
 std::optional<Failure> Desk::change(std::size_t episode,
                                     std::vector<std::pair<std::size_t, Marks>> labels) {
     Change change{episode, {}};
-    std::erase_if(labels, [&](const auto& one) { return marks_[episode][one.first] == one.second; });
+    std::erase_if(labels,
+                  [&](const auto& one) { return marks_[episode][one.first] == one.second; });
     if (labels.empty()) return std::nullopt;
     for (const auto& [p, marks] : labels) change.before.emplace_back(p, marks_[episode][p]);
     if (auto failure = put(episode, labels)) return failure;

@@ -23,10 +23,10 @@ using diag::Code;
 using diag::Failure;
 using report::Picture;
 
-constexpr std::uint32_t kMostSide = 480;           ///< pixels of a picture
+constexpr std::uint32_t kMostSide = 480;  ///< pixels of a picture
 constexpr std::size_t kMostPictureBytes = 256U << 20U;
-constexpr std::uint64_t kMostPassed = 64;          ///< frames that are decoded rather than skipped
-constexpr std::uint64_t kBefore = 16;              ///< frames before the one asked for
+constexpr std::uint64_t kMostPassed = 64;  ///< frames that are decoded rather than skipped
+constexpr std::uint64_t kBefore = 16;      ///< frames before the one asked for
 constexpr std::uint64_t kMostFileBytes = 64U << 20U;
 
 void append(std::string& bytes, std::uint32_t number, unsigned size) {
@@ -117,13 +117,12 @@ diag::Result<std::unique_ptr<data::FrameSource>> Frames::open(const Episode& epi
         file_ = episode.path;
         return data::open_image_array(episode.path, request_.option.text);
     }
-    const std::vector<std::string> paths =
-        report::files_of_frames(request_.option, episode.path);
+    const std::vector<std::string> paths = report::files_of_frames(request_.option, episode.path);
     file_ = paths.empty() ? "--frames " + request_.option.text : paths[0];
     if (paths.size() != 1 || !data::is_video(paths[0]))
-        return Failure{Code::no_frames, fmt::format("found {}, expected {}, one per step",
-                                                    diag::counted(paths.size(), "picture"),
-                                                    episode.steps)};
+        return Failure{Code::no_frames,
+                       fmt::format("found {}, expected {}, one per step",
+                                   diag::counted(paths.size(), "picture"), episode.steps)};
     can_skip_ = true;
     next_ = from;
     data::FrameChoice choice;
@@ -137,8 +136,8 @@ void Frames::make_room(std::uint64_t step) {
     while (bytes_ > kMostPictureBytes && pictures_.size() > 1) {
         const auto first = pictures_.begin();
         const auto last = std::prev(pictures_.end());
-        const bool is_first = step - std::min(step, first->first) >
-                              std::max(last->first, step) - step;
+        const bool is_first =
+            step - std::min(step, first->first) > std::max(last->first, step) - step;
         const auto dropped = is_first ? first : last;
         bytes_ -= dropped->second.pixels.size();
         pictures_.erase(dropped);
@@ -151,8 +150,7 @@ std::optional<Failure> Frames::read_up_to(std::uint64_t step) {
         const auto more = source_->next(frame);
         if (!more) return of_path(more.failure(), file_);
         if (!*more)
-            return Failure{Code::no_frames,
-                           fmt::format("{}: ends before step {}", file_, step)};
+            return Failure{Code::no_frames, fmt::format("{}: ends before step {}", file_, step)};
         Picture picture = report::shrunk(frame.rgb, frame.width, frame.height, 3, kMostSide);
         if (const auto [at, is_new] = pictures_.try_emplace(next_, std::move(picture)); is_new)
             bytes_ += at->second.pixels.size();

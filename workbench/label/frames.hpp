@@ -49,9 +49,9 @@ private:
     FramesRequest request_;
     std::string episode_;  ///< whose frames the members below are
     std::unique_ptr<data::FrameSource> source_;
-    std::string file_;         ///< of the source, for messages
-    bool can_skip_ = false;    ///< the source may begin at any step
-    std::uint64_t next_ = 0;   ///< step of the source's next frame
+    std::string file_;                                   ///< of the source, for messages
+    bool can_skip_ = false;                              ///< the source may begin at any step
+    std::uint64_t next_ = 0;                             ///< step of the source's next frame
     std::map<std::uint64_t, report::Picture> pictures_;  ///< by step
     std::size_t bytes_ = 0;
 };

@@ -43,13 +43,12 @@ void end_at(Intervals& intervals, std::uint64_t step) {
 }  // namespace
 
 std::optional<Key> key_named(std::string_view word) {
-    constexpr std::array<std::pair<std::string_view, Key>, 6> kKeys = {
-        {{"begin", Key::begin},
-         {"end", Key::end},
-         {"unknown", Key::unknown},
-         {"remove", Key::remove},
-         {"never", Key::never},
-         {"forget", Key::forget}}};
+    constexpr std::array<std::pair<std::string_view, Key>, 6> kKeys = {{{"begin", Key::begin},
+                                                                        {"end", Key::end},
+                                                                        {"unknown", Key::unknown},
+                                                                        {"remove", Key::remove},
+                                                                        {"never", Key::never},
+                                                                        {"forget", Key::forget}}};
     for (const auto& [name, key] : kKeys)
         if (name == word) return key;
     return std::nullopt;

@@ -14,7 +14,7 @@ namespace etlc::label {
 const std::vector<report::PageFile>& page_files();
 
 struct PageRequest {
-    std::string spec;       ///< its name
+    std::string spec;  ///< its name
     std::string spec_path;
     double step_seconds = 0;
     std::vector<bool> has_frames;  ///< per episode

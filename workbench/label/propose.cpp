@@ -49,8 +49,8 @@ diag::Result<std::vector<Measured>> measure(const check::Model& model, const Des
     const plan::Plan plan = plan::measuring(model, predicates);
     const episodes::Leaks leaks(model, {});
     episodes::Follower follower(plan);
-    auto recording = episodes::Recording::open(
-        episodes::wanted(model, {&plan}, recorded, leaks), of.path, {names, nullptr});
+    auto recording = episodes::Recording::open(episodes::wanted(model, {&plan}, recorded, leaks),
+                                               of.path, {names, nullptr});
     if (!recording) return recording.failure();
     std::vector<Measured> measured(predicates.size());
     const auto done = episodes::replay(*recording, {&follower}, [&] {
@@ -58,8 +58,7 @@ diag::Result<std::vector<Measured>> measure(const check::Model& model, const Des
             const float delta = follower.evaluator().distance(predicates[p]);
             const bool is_upper = !model.predicates[predicates[p]].lower_bound();
             measured[p].scores.push_back(is_upper ? delta : -delta);
-            if (of.is_recorded[p])
-                measured[p].labels.push_back(recording->label(predicates[p]));
+            if (of.is_recorded[p]) measured[p].labels.push_back(recording->label(predicates[p]));
         }
         return true;
     });
@@ -78,8 +77,8 @@ public:
                                       const std::vector<const Measured*>& episodes) {
         Judge judge(predicate);
         if (predicate.threshold.origin == check::ThresholdOrigin::literal)
-            judge.epsilon_ = predicate.lower_bound() ? -predicate.threshold.value
-                                                     : predicate.threshold.value;
+            judge.epsilon_ =
+                predicate.lower_bound() ? -predicate.threshold.value : predicate.threshold.value;
         else if (!judge.fit(episodes))
             return std::nullopt;
         judge.learn_doubt(episodes);
@@ -127,7 +126,7 @@ private:
         const bool is_equal = score == epsilon_;
         const bool holds = predicate_->comparison == check::Comparison::not_equal ? !is_equal
                            : predicate_->equality()                               ? is_equal
-                           : predicate_->strict() ? score < epsilon_
+                           : predicate_->strict()                                 ? score < epsilon_
                                                   : score <= epsilon_;
         return holds ? Label::yes : Label::no;
     }
@@ -157,7 +156,8 @@ private:
         });
         doubtful_ = least;
         if (misjudged.empty()) return;
-        const auto place = misjudged.begin() + static_cast<std::ptrdiff_t>(misjudged.size() * 9 / 10);
+        const auto place =
+            misjudged.begin() + static_cast<std::ptrdiff_t>(misjudged.size() * 9 / 10);
         std::nth_element(misjudged.begin(), place, misjudged.end());
         doubtful_ = *place;
     }

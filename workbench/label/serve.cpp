@@ -19,10 +19,10 @@ namespace etlc::label {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using data::frames::number_at;
 using diag::Code;
 using diag::Failure;
 using episodes::Label;
-using data::frames::number_at;
 
 constexpr std::string_view kServer = "etlc-serve";
 /// Longer than anybody labels: etlc-serve is silent while nobody does.
@@ -239,10 +239,9 @@ Failure serve(Desk& desk, Frames& frames, Background& background, const ServeReq
     const std::string token = random_token();
     const auto child =
         token.empty() ? nullptr
-                      : data::Child::start(data::helper_path(kServer), {},
-                                           {.max_silence_seconds = kSilenceSeconds,
-                                            .fed = true,
-                                            .heard = true});
+                      : data::Child::start(
+                            data::helper_path(kServer), {},
+                            {.max_silence_seconds = kSilenceSeconds, .fed = true, .heard = true});
     if (!child) return {Code::unwritable_output, fmt::format("{} cannot be run", kServer)};
     std::string head;
     data::frames::append(head, request.port);

@@ -169,7 +169,8 @@ std::string Table::bound(double value) const {
 std::string Table::text_of(const Rows& rows) const {
     const bool has_groups =
         std::any_of(rows.begin(), rows.end(), [](const Row& row) { return !row.group.empty(); });
-    std::string text = in_seconds_ ? "episode,predicate,start_s,end_s" : "episode,predicate,start,end";
+    std::string text =
+        in_seconds_ ? "episode,predicate,start_s,end_s" : "episode,predicate,start,end";
     text += has_groups ? ",group\n" : "\n";
     for (const Row& row : rows) {
         const bool is_whole = row.start == 0 && std::isinf(row.end);

@@ -19,8 +19,8 @@ namespace etlc::label {
 
 /// The labels of a predicate in an episode.
 struct LabelsOf {
-    std::string episode;    ///< its path
-    std::string name;       ///< its name for new rows
+    std::string episode;  ///< its path
+    std::string name;     ///< its name for new rows
     std::string predicate;
     std::uint64_t steps = 0;
     Marks marks;

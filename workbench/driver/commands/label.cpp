@@ -32,8 +32,8 @@ std::optional<check::Model> check_unlabelled(const source::File& file, const Req
 /// Fits what the spec declares fitted to the labelled episodes, and proposes labels for the others.
 std::optional<std::vector<label::Proposal>> learned(const source::File& file,
                                                     const check::Model& model,
-                                                    const label::Desk& desk,
-                                                    const Request& request, diag::Sink& sink) {
+                                                    const label::Desk& desk, const Request& request,
+                                                    diag::Sink& sink) {
     if (model.fitted.empty()) return label::propose(model, desk, request.names, sink);
     auto asked = asked_of<fit::Request>(request);
     asked.progress = nullptr;
@@ -97,8 +97,8 @@ bool label(const source::File& file, const Request& request, diag::Sink& sink) {
             text += fmt::format("Labels go to {}.\n", table);
         return print(text + "Open the address in a browser; Ctrl-C ends this program.\n", sink);
     };
-    const diag::Failure ended = label::serve(*desk, frames, background,
-                                             {label::page_of(*desk, page), request.label.port, ready});
+    const diag::Failure ended = label::serve(
+        *desk, frames, background, {label::page_of(*desk, page), request.label.port, ready});
     if (!sink.has_errors()) sink.report(data::in_file(ended, "the page"));
     return false;
 }

@@ -45,7 +45,8 @@ constexpr Row kCommands[] = {
      "Writes a web page about recorded episodes: the verdicts of a spec's monitors, why, and where "
      "they are wrong."},
     {Command::label, "label", "SPEC.etl --data FILE...",
-     "Serves a page, on this machine alone, on which you label the predicates of a spec in recorded "
+     "Serves a page, on this machine alone, on which you label the predicates of a spec in "
+     "recorded "
      "episodes."}};
 static_assert(std::size(kCommands) == kCommandCount);
 

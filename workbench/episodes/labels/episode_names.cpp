@@ -134,9 +134,8 @@ std::vector<std::string> shortest_names(const std::vector<std::string>& episodes
             names[e].push_back(name);
             for_each_end(parts, name, [&](const std::string& end) { names[e].push_back(end); });
         }
-        std::stable_sort(names[e].begin(), names[e].end(), [](const auto& a, const auto& b) {
-            return a.size() < b.size();
-        });
+        std::stable_sort(names[e].begin(), names[e].end(),
+                         [](const auto& a, const auto& b) { return a.size() < b.size(); });
         for (const std::string& name : names[e]) named[name];
     }
     find_named(all, named);

@@ -20,7 +20,8 @@ function showRow(episode) {
     title: `${predicate}: ${isOpen(episode, index) ? "not labelled" : "labelled"}` }));
   row.replaceChildren(element("span", { class: "name", title: path }, name),
     element("span", { class: "dots" }, ...dots),
-    element("span", { class: "quiet" }, `${counted(steps, "step")}  ${rowState(episode)}`));
+    element("span", { class: "quiet" },
+      [counted(steps, "step"), rowState(episode)].filter((text) => text).join(", ")));
 }
 
 function markSelected() {

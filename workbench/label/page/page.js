@@ -129,11 +129,11 @@ for (let digit = 1; digit <= 9; digit++) keys[digit] = () => choosePredicate(dig
 
 const keyTable = [
   ["space", "play, pause"], [", .", "slower, faster"], ["← →", "a step; with Shift 10"],
-  ["[ ]", "the last, the next change"], ["1 … 9, p", "choose the predicate"],
+  ["[ ]", "the last, the next change"], ["1 … 9 p", "choose the predicate"],
   ["b", "it holds from here on"], ["e", "it holds up to here"], ["x", "remove the interval here"],
   ["f", "it never holds"], ["?", "nobody knows here"], ["c", "clear: not labelled"],
   ["a", "accept what is proposed"], ["u", "undo"], ["n", "next to label"],
-  ["↑ ↓, k j", "episode before, after"], ["+ - 0", "zoom"], ["d", "dark or light"],
+  ["↑ ↓ k j", "episode before, after"], ["+ - 0", "zoom"], ["d", "dark or light"],
 ];
 
 function begin() {

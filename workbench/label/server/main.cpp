@@ -95,12 +95,10 @@ public:
     /// Returns the path behind the token, with its slash; nothing where the request is refused.
     std::optional<std::string> path(const httplib::Request& request) const {
         if (!is_ours(request.get_header_value("Host"), "")) return std::nullopt;
-        if (request.has_header("Origin") &&
-            !is_ours(request.get_header_value("Origin"), "http://"))
+        if (request.has_header("Origin") && !is_ours(request.get_header_value("Origin"), "http://"))
             return std::nullopt;
         const std::string& path = request.path;
-        if (path.size() < token_.size() + 2 || path[0] != '/' ||
-            path[token_.size() + 1] != '/' ||
+        if (path.size() < token_.size() + 2 || path[0] != '/' || path[token_.size() + 1] != '/' ||
             !is_same(std::string_view(path).substr(1, token_.size()), token_))
             return std::nullopt;
         return path.substr(token_.size() + 1);
@@ -118,8 +116,7 @@ private:
 };
 
 /// Passes a request on, one at a time, and ends where nobody answers.
-void answer(const std::string& path, const httplib::Request& request,
-            httplib::Response& response) {
+void answer(const std::string& path, const httplib::Request& request, httplib::Response& response) {
     static std::mutex turn;
     const std::lock_guard lock(turn);
     std::string asked;

@@ -13,9 +13,9 @@
 
 namespace etlc::label::protocol {
 
-inline constexpr std::size_t kTokenSize = 32;              ///< characters: hexadecimal digits
-inline constexpr std::uint32_t kMostContent = 1U << 20U;   ///< bytes of a request
-inline constexpr std::uint32_t kMostAnswer = 1U << 30U;    ///< bytes of an answer
+inline constexpr std::size_t kTokenSize = 32;             ///< characters: hexadecimal digits
+inline constexpr std::uint32_t kMostContent = 1U << 20U;  ///< bytes of a request
+inline constexpr std::uint32_t kMostAnswer = 1U << 30U;   ///< bytes of an answer
 
 inline void append(std::string& bytes, std::string_view text) {
     data::frames::append(bytes, static_cast<std::uint32_t>(text.size()));
