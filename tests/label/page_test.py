@@ -1,8 +1,6 @@
 #!/usr/bin/env python3
 """page_test.py ETLC BROWSER_FOLDER: somebody labels episodes on the page of `etlc label`, with the
 keyboard alone, and the table on disk is right after each key; then all that may go wrong does."""
-import json
-import os
 import pathlib
 import resource
 import sys
@@ -237,8 +235,9 @@ def killed(browser, folder):
             service.kill()
             after = rows(service.table)
             name = labeller.name()
-            assert after in (before, sorted([row for row in before if row != [name, "!near", "", ""]]
-                                            + [[name, "near", "30", ""]])), (before, after)
+            written = [row for row in before if row != [name, "!near", "", ""]]
+            written = sorted([*written, [name, "near", "30", ""]])
+            assert after in (before, written), (before, after)
             labeller.page.key("e")
             labeller.page.wait("document.getElementById('trouble').textContent"
                                ".includes('does not answer')")

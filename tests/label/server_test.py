@@ -102,7 +102,8 @@ def wrong_tables(folder):
         status, _ = act(service, action="end", episode=1, predicate=0, step=9)
         assert status == 200
         # The hostile name is the first episode, so number 1 is ep0.
-        assert rows(table) == [["ep0", "near", "0", "1"], ["ep1", "near", "0.5", "1.2"]], rows(table)
+        assert rows(table) == [["ep0", "near", "0", "1"],
+                               ["ep1", "near", "0.5", "1.2"]], rows(table)
     table.unlink()
     refused(folder, "expected {episode}", "--frames", "camera/*.png")
     array = np.zeros(STEPS, bool)

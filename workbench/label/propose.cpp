@@ -23,8 +23,8 @@ namespace {
 using episodes::Label;
 using Labels = std::vector<Label>;
 
-/// What was measured of a predicate in an episode, a number per step: smaller where it holds, NaN
-/// where a sample is missing.
+/// Measurements of a predicate in an episode, one per step: smaller where it holds, NaN where a
+/// sample is missing.
 struct Measured {
     std::vector<float> scores;
     Labels labels;  ///< empty: nobody has labelled it
