@@ -3,7 +3,9 @@
 without a browser."""
 import http.client
 import json
+import os
 import pathlib
+import signal
 import socket
 import subprocess
 import sys
@@ -148,6 +150,29 @@ def proposals(folder):
     table.unlink()
 
 
+def ends_together(folder):
+    """Whichever of the two processes is killed, the other one ends, and etlc says why."""
+    with Service(ETLC, folder) as service:
+        [listener] = children(service.process.pid)
+        os.kill(listener, signal.SIGKILL)
+        assert service.process.wait(60) == 1
+        said = service.process.stderr.read()
+        assert "etlc-serve was stopped by signal 9" in said, said
+    with Service(ETLC, folder) as service:
+        [listener] = children(service.process.pid)
+        service.process.send_signal(signal.SIGINT)
+        service.process.wait(60)
+        end = time.monotonic() + 60
+        while pathlib.Path(f"/proc/{listener}/exe").exists():  # a zombie has no program
+            assert time.monotonic() < end, "etlc-serve goes on"
+            time.sleep(0.02)
+
+
+def children(process):
+    text = pathlib.Path(f"/proc/{process}/task/{process}/children").read_text()
+    return [int(word) for word in text.split()]
+
+
 def time_to_disk(service):
     times = []
     for step in range(60):
@@ -173,6 +198,7 @@ def main():
             time_to_disk(service)
             service.table.unlink()
         wrong_tables(folder)
+        ends_together(folder)
         proposals(folder)
 
 

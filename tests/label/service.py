@@ -44,7 +44,8 @@ def rows(path):
 class Service:
     def __init__(self, etlc, folder, *words):
         self.process = subprocess.Popen([etlc, "label", "stack.etl", "--data", "demos", *words],
-                                        cwd=folder, stdout=subprocess.PIPE, text=True)
+                                        cwd=folder, stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE, text=True)
         self.address = self.process.stdout.readline().strip()
         assert self.address.startswith("http://127.0.0.1:"), self.address
         self.port = int(self.address.split(":")[2].split("/")[0])
@@ -61,3 +62,4 @@ class Service:
     def __exit__(self, *_):
         self.kill()
         self.process.stdout.close()
+        self.process.stderr.close()

@@ -12,6 +12,7 @@
 
 #include "data/files/child.hpp"
 #include "data/text/number.hpp"
+#include "data/text/quote.hpp"
 #include "label/server/protocol.hpp"
 
 namespace etlc::label {
@@ -230,9 +231,9 @@ std::string what_serving_lacks() {
     const std::string path = data::helper_path(kServer);
     if (::access(path.c_str(), X_OK) == 0) return "";
     return fmt::format(
-        "{} is missing, which serves the page: etlc builds it where it finds cpp-httplib (Debian: "
-        "libcpp-httplib-dev)",
-        path);
+        "{} cannot be run, which serves the page; etlc builds it where it finds cpp-httplib "
+        "(Debian: libcpp-httplib-dev); of the packages of etlc, etlc-serve has it",
+        data::in_quotes(path));
 }
 
 Failure serve(Desk& desk, Frames& frames, Background& background, const ServeRequest& request) {
