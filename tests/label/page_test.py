@@ -190,8 +190,9 @@ def changed_meanwhile(labeller):
     others = labeller.table.read_text() + "ep9,?near,3,4\n"
     np.savez(labeller.table.parent / "ep9.npz", z=np.zeros((9, 2), np.float32))
     labeller.table.write_text(others)
-    labeller.page.key("b")
     labeller.page.wait("document.getElementById('trouble').textContent.includes('changed')")
+    labeller.page.key("b")
+    labeller.page.wait("document.getElementById('trouble').textContent.includes('1 key')")
     assert labeller.table.read_text() == others
     labeller.page.key("r")
     labeller.page.wait("document.body.dataset.waiting === '0'")

@@ -5,6 +5,7 @@ import http.client
 import json
 import os
 import pathlib
+import shutil
 import signal
 import socket
 import subprocess
@@ -150,6 +151,23 @@ def proposals(folder):
     table.unlink()
 
 
+def another_table(folder):
+    with Service(ETLC, folder, "--labels", "mine.csv") as service:
+        assert act(service, action="never", episode=1, predicate=1, step=0)[0] == 200
+        assert rows(folder / "mine.csv") == [["ep0", "!passes", "", ""]]
+        assert not service.table.exists()
+    refused(folder, "[E0860]", "--labels", "stack.etl")
+
+
+def without_a_server(folder):
+    (folder / "bin").mkdir()
+    alone = folder / "bin" / "etlc"
+    shutil.copy(ETLC, alone)
+    done = subprocess.run([alone, "label", "stack.etl", "--data", "demos"], cwd=folder,
+                          capture_output=True, text=True)
+    assert done.returncode == 1 and "libcpp-httplib-dev" in done.stderr, done.stderr
+
+
 def ends_together(folder):
     """Whichever of the two processes is killed, the other one ends, and etlc says why."""
     with Service(ETLC, folder) as service:
@@ -198,6 +216,8 @@ def main():
             time_to_disk(service)
             service.table.unlink()
         wrong_tables(folder)
+        another_table(folder)
+        without_a_server(folder)
         ends_together(folder)
         proposals(folder)
 

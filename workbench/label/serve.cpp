@@ -120,7 +120,8 @@ private:
         Json result{{"holds", takes(asked.at("page"))},
                     {"version", desk_.version()},
                     {"proposed", background_.version()},
-                    {"busy", background_.is_busy()}};
+                    {"busy", background_.is_busy()},
+                    {"changed", desk_.have_tables_changed()}};
         if (asked.at("version") != desk_.version()) {
             result["labels"] = Json::array();
             for (std::size_t e = 0; e < desk_.episodes().size(); ++e)

@@ -111,6 +111,8 @@ async function refresh() {
   }
   if (isBack) say("");
   if (isBack) send();
+  if (json.changed && !store.trouble)
+    say("Another program has changed the labels on disk. r: read them again.");
   if (json.labels || json.proposals) showLabels(null);
   showProgress();
 }
