@@ -204,8 +204,8 @@ std::vector<std::string> labelled_episodes(const Desk& desk) {
     return paths;
 }
 
-std::optional<std::vector<Proposal>> propose(const check::Model& model, const Desk& desk,
-                                             const data::NamesInFile& names, diag::Sink& sink) {
+std::optional<Proposals> propose(const check::Model& model, const Desk& desk,
+                                 const data::NamesInFile& names, diag::Sink& sink) {
     std::vector<std::vector<Measured>> measured;
     for (std::size_t e = 0; e < desk.episodes().size(); ++e) {
         auto one = measure(model, desk, e, names);
@@ -215,35 +215,32 @@ std::optional<std::vector<Proposal>> propose(const check::Model& model, const De
         }
         measured.push_back(std::move(*one));
     }
-    std::vector<Judge> judges;
+    Proposals proposals;
+    std::vector<std::optional<Judge>> judges;
     for (std::size_t p = 0; p < desk.predicates().size(); ++p) {
-        std::vector<const Measured*> labelled;
-        for (const auto& episode : measured) labelled.push_back(&episode[p]);
-        auto judge = Judge::learn(model.predicates[desk.predicates()[p]], labelled);
-        if (!judge) {
-            sink.report(diag::Code::no_label, model.predicates[desk.predicates()[p]].span,
-                        fmt::format("no labelled step of {} is true, so there is nothing to learn "
-                                    "its threshold from",
-                                    data::in_quotes(desk.predicate(p))));
-            return std::nullopt;
-        }
-        judges.push_back(*judge);
+        std::vector<const Measured*> all;
+        for (const auto& episode : measured) all.push_back(&episode[p]);
+        judges.push_back(Judge::learn(model.predicates[desk.predicates()[p]], all));
+        if (judges.back() || !proposals.why_none.empty()) continue;
+        proposals.why_none = fmt::format(
+            "no labelled step of {} is true, so there is nothing to learn its "
+            "threshold from",
+            data::in_quotes(desk.predicate(p)));
     }
-    std::vector<Proposal> proposals;
     for (std::size_t e = 0; e < measured.size(); ++e) {
-        if (desk.is_labelled(e)) continue;
         Proposal proposal{e, 0, std::vector<Marks>(judges.size())};
-        std::size_t open = 0;
+        std::size_t count = 0;
         for (std::size_t p = 0; p < judges.size(); ++p) {
-            if (!measured[e][p].labels.empty()) continue;
-            ++open;
-            proposal.marks[p] = judges[p].intervals(measured[e][p].scores);
-            proposal.doubt += judges[p].doubt(measured[e][p].scores);
+            if (!judges[p] || !measured[e][p].labels.empty()) continue;
+            ++count;
+            proposal.marks[p] = judges[p]->intervals(measured[e][p].scores);
+            proposal.doubt += judges[p]->doubt(measured[e][p].scores);
         }
-        proposal.doubt /= static_cast<double>(std::max<std::size_t>(open, 1));
-        proposals.push_back(std::move(proposal));
+        if (count == 0) continue;
+        proposal.doubt /= static_cast<double>(count);
+        proposals.found.push_back(std::move(proposal));
     }
-    std::stable_sort(proposals.begin(), proposals.end(),
+    std::stable_sort(proposals.found.begin(), proposals.found.end(),
                      [](const auto& a, const auto& b) { return a.doubt > b.doubt; });
     return proposals;
 }

@@ -27,14 +27,14 @@ struct Proposal {
 };
 
 struct Proposals {
-    std::string why_none;         ///< empty: nothing went wrong
+    std::string why_none;         ///< why there are none, or none of a predicate; empty: there are
     std::vector<Proposal> found;  ///< the most doubtful first
 };
 
 /// Returns the proposals for all episodes that somebody has to label. Returns nothing after an
 /// error.
-std::optional<std::vector<Proposal>> propose(const check::Model& model, const Desk& desk,
-                                             const data::NamesInFile& names, diag::Sink& sink);
+std::optional<Proposals> propose(const check::Model& model, const Desk& desk,
+                                 const data::NamesInFile& names, diag::Sink& sink);
 
 /// Returns the episodes that all predicates are labelled in.
 std::vector<std::string> labelled_episodes(const Desk& desk);

@@ -30,10 +30,9 @@ std::optional<check::Model> check_unlabelled(const source::File& file, const Req
 }
 
 /// Fits what the spec declares fitted to the labelled episodes, and proposes labels for the others.
-std::optional<std::vector<label::Proposal>> learned(const source::File& file,
-                                                    const check::Model& model,
-                                                    const label::Desk& desk, const Request& request,
-                                                    diag::Sink& sink) {
+std::optional<label::Proposals> learned(const source::File& file, const check::Model& model,
+                                        const label::Desk& desk, const Request& request,
+                                        diag::Sink& sink) {
     if (model.fitted.empty()) return label::propose(model, desk, request.names, sink);
     auto asked = asked_of<fit::Request>(request);
     asked.progress = nullptr;
@@ -56,7 +55,7 @@ bool print_proposals(const source::File& file, const check::Model& model, const 
     label::Proposals proposals;
     if (label::labelled_episodes(desk).size() >= label::kEnoughLabelled) {
         auto found = learned(file, model, desk, request, sink);
-        if (found) proposals.found = std::move(*found);
+        if (found) proposals = std::move(*found);
         for (const diag::Diagnostic& one : sink.sorted())
             if (!found && proposals.why_none.empty() && one.severity() == diag::Severity::error)
                 proposals.why_none = one.message;

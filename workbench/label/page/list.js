@@ -71,7 +71,7 @@ function nextOpen() {
 function showProgress() {
   const done = data.episodes.filter((_, episode) => isLabelled(episode)).length;
   const more = store.isBusy ? ", learning from them …"
-    : store.whyNone ? `, no proposals: ${store.whyNone}` : "";
+    : store.whyNone ? `, not proposed: ${store.whyNone}` : "";
   document.getElementById("progress").textContent =
     `${done} of ${counted(data.episodes.length, "episode")} labelled${more}`;
 }
