@@ -149,7 +149,7 @@ def proposals(folder):
     done = subprocess.run(call, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0 and "no labelled step of 'near' is true" in done.stdout, done
     for one in json.loads(done.stdout)["proposals"]:
-        assert one["predicates"] == {"passes": [[0, STEPS, 1]]}, one
+        assert list(one["predicates"]) == ["passes"], one
     table.unlink()
 
 

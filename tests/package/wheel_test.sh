@@ -43,5 +43,5 @@ grep -q "etlc-embed-video, which decodes video, cannot be run: .* package etlc-e
 
 # It says what serves the page of labels.
 "$native/bin/etlc" label t.etl --data "$data/trace.h5" 2>said && fail "the wheel serves a page"
-grep -q "etlc-serve' cannot be run, .* of the packages of etlc, etlc-serve has it" said ||
+grep -q "etlc-serve cannot be run, .* of the packages of etlc, etlc-serve has it" said ||
     fail "who serves pages: $(cat said)"

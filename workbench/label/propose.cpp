@@ -87,7 +87,7 @@ public:
     }
 
     /// Returns the intervals of an episode. A run that is less than half as long as any labelled
-    /// one takes the judgement before it.
+    /// one takes the judgement before it, or after it at the beginning.
     std::vector<Interval> intervals(const std::vector<float>& scores) const {
         std::vector<Interval> runs;
         for (std::size_t step = 0; step < scores.size(); ++step) {
@@ -98,11 +98,14 @@ public:
                 runs.back().end = step + 1;
         }
         std::vector<Interval> kept;
+        const auto is_short = [&](const Interval& run) {
+            return 2 * (run.end - run.start) < shortest_run_;
+        };
         for (const Interval& run : runs) {
-            const bool is_short = 2 * (run.end - run.start) < shortest_run_;
-            const bool goes_on = !kept.empty() && (is_short || kept.back().label == run.label);
-            if (goes_on)
+            if (!kept.empty() && (is_short(run) || kept.back().label == run.label))
                 kept.back().end = run.end;
+            else if (kept.size() == 1 && is_short(kept.front()))
+                kept.front() = {0, run.end, run.label};
             else
                 kept.push_back(run);
         }
@@ -167,7 +170,7 @@ private:
             std::size_t start = 0;
             for (std::size_t step = 1; step <= one->labels.size(); ++step) {
                 const bool is_end = step == one->labels.size();
-                if (!is_end && one->labels[step] == one->labels[step - 1]) continue;
+                if (is_end ? start == 0 : one->labels[step] == one->labels[step - 1]) continue;
                 shortest_run_ = std::min<std::uint64_t>(shortest_run_, step - start);
                 start = step;
             }

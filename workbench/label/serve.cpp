@@ -12,7 +12,6 @@
 
 #include "data/files/child.hpp"
 #include "data/text/number.hpp"
-#include "data/text/quote.hpp"
 #include "label/server/protocol.hpp"
 
 namespace etlc::label {
@@ -234,7 +233,7 @@ std::string what_serving_lacks() {
     return fmt::format(
         "{} cannot be run, which serves the page; etlc builds it where it finds cpp-httplib "
         "(Debian: libcpp-httplib-dev); of the packages of etlc, etlc-serve has it",
-        data::in_quotes(path));
+        kServer);
 }
 
 Failure serve(Desk& desk, Frames& frames, Background& background, const ServeRequest& request) {
