@@ -283,7 +283,7 @@ struct Predicate {
 };
 
 struct Truth {
-    Name predicate;
+    Name subject;  ///< a predicate or a let
     FormulaPtr formula;
     Span span;
 };

@@ -249,7 +249,7 @@ std::string text_of(const Predicate& predicate) {
 }
 
 std::string text_of(const Truth& truth) {
-    return fmt::format("truth {} = {}", truth.predicate.text, print(*truth.formula));
+    return fmt::format("truth {} = {}", truth.subject.text, print(*truth.formula));
 }
 
 std::string text_of(const Let& let) {

@@ -238,7 +238,7 @@ void visit(check::Model& model, check::Fitted& of, Changing& changing) {
 
 void visit(check::Model& model, check::Monitor& of, Changing& changing) {
     changing.of("Monitor");
-    auto& [name, formula, sliding, restarts, horizon, calibration, span] = of;
+    auto& [name, formula, sliding, restarts, horizon, calibration, span, truth] = of;
     field(changing, "name", name);
     field(changing, "formula", Place{formula, model.formulas.size()});
     field(changing, "sliding", sliding);
@@ -248,15 +248,17 @@ void visit(check::Model& model, check::Monitor& of, Changing& changing) {
     of.sliding = false;
     field(changing, "calibration", calibration);
     field(changing, "span", span);
+    field(changing, "truth", Place{truth, model.formulas.size()});
 }
 
 void visit(check::Model&, check::Let& of, Changing& changing) {
     changing.of("Let");
-    auto& [name, formula, span, telemetry] = of;
+    auto& [name, formula, span, telemetry, truth] = of;
     field(changing, "name", name);
     field(changing, "formula", formula);
     field(changing, "telemetry", telemetry);
     field(changing, "span", span);
+    field(changing, "truth", truth);
 }
 
 template <class T>

@@ -42,7 +42,8 @@ constexpr const char* kDeclarations =
     "predicate near = l2([x, y], g) <= 1;\n"
     "predicate half = x <= calibrated(conformal, alpha = 0.5); predicate rest = y <= "
     "calibrated(conformal, alpha = 5e-1);\n"
-    "predicate meant = s > 1; truth meant = s > 2;\n";
+    "predicate meant = s > 1; truth meant = s > 2;\n"
+    "let after = !a && O a; truth after = flag;\n";
 
 /// Returns all guarantees of one monitor, the parts in brackets.
 std::string claims_of(const std::string& formula) {
@@ -90,6 +91,16 @@ TEST(Claims, NothingWhereNothingIsKnown) {
     EXPECT_EQ(claims_of("F fall a"), "no guarantee: 'a' occurs both plain and negated");
     EXPECT_EQ(claims_of("F (half && rest)"),
               "no guarantee: the alphas of its predicates add up to 1");
+}
+
+/// The predicates of the let keep to truths that are not those of the let.
+TEST(Claims, NothingOfALetWithATruth) {
+    const std::string why = "no guarantee: 'after' has a truth of its own, not that of its parts";
+    EXPECT_EQ(claims_of("F after"), why);
+    EXPECT_EQ(claims_of("after"), why);
+    EXPECT_EQ(claims_of("after && F b"),
+              why + " | [!a && O a] " + why +
+                  " | [F b] P(some verdict of a new episode misses a success) <= 0.05");
 }
 
 TEST(Claims, MixedConjunctsSpeakForThemselves) {

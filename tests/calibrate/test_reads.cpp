@@ -78,7 +78,7 @@ const std::set<std::string> kUnread{
     // Derived.
     "Fitted.name", "Fitted.declaration", "Fitted.index", "Fitted.filled",
     // Names of formulas, and texts for people.
-    "Let.name", "Let.formula", "Let.telemetry", "Model.constants", "Model.rounded",
+    "Let.name", "Let.formula", "Let.telemetry", "Let.truth", "Model.constants", "Model.rounded",
     "Model.rounding",
     // Unrelated.
     "Model.name", "Model.retargetable", "Model.encoded", "Model.dependencies",

@@ -23,17 +23,22 @@ using calibrate::Index;
 constexpr int kShiftSteps = 6;
 constexpr int kShiftDraws = 2000;
 
+constexpr const char* kOverPredicate = "F[0, 2] (a && F[0, 2] !a)";
+constexpr const char* kOverLet = "F[0, 2] (late && F[0, 2] !late)";  // with the same truth
+
 /// Literal thresholds: only the shift is calibrated. It reads a, which is noisy, and the label px.
-std::string spec_text(const std::string& against) {
+std::string spec_text(const std::string& formula, const std::string& against) {
     return fmt::format(
         "spec t; input x, px : f32; predicate a = x <= 0.5; truth a = px > 0.5;\n"
-        "monitor m = F[0, 2] (a && F[0, 2] !a) calibrated(conformal, alpha = 0.2, against = {});",
-        against);
+        "let late = O[0, 1] a; truth late = a;\n"
+        "monitor m = {} calibrated(conformal, alpha = 0.2, against = {});",
+        formula, against);
 }
 
-check::Model model_of(const std::string& against, float shift) {
+check::Model model_of(const std::string& against, float shift,
+                      const std::string& formula = kOverPredicate) {
     diag::Sink sink;
-    const source::File file("t.etl", spec_text(against));
+    const source::File file("t.etl", spec_text(formula, against));
     check::Options options;
     options.allow_uncalibrated_monitors = true;
     auto model = *check::check(parse::parse(file, sink), file, options, sink);
@@ -137,40 +142,49 @@ TEST(Shift, CoversDrawnEpisodes) {
     }
 }
 
-/// The whole command gives the score computed by hand.
+/// Compares the shift of the whole command with the score computed by hand; returns the entry.
+thresholds::Entry shift_at_the_rank(const std::string& formula, const std::string& against) {
+    const bool alarms = against == "missed_alarm";
+    const check::Model model = model_of(against, 0, formula);
+    const Planned unshifted(calibrate::unshifted(model));
+    const Planned truths(episodes::ground_truth(unshifted.model, {0}).model);
+    plan::Evaluator said(unshifted.plan);
+    plan::Evaluator truth(truths.plan);
+    Random random(78);
+    std::vector<double> scores;
+    std::vector<std::unique_ptr<TemporaryPath>> files;
+    calibrate::Request request;
+    for (int i = 0; i < 15; ++i) {
+        const ShiftedEpisode episode = random_episode(random);
+        std::string text = "x,px\n";
+        for (std::size_t t = 0; t < kShiftSteps; ++t)
+            text += fmt::format("{},{}\n", episode.x[t], episode.label[t] ? 1 : 0);
+        files.push_back(std::make_unique<TemporaryPath>(fmt::format("shift{}.csv", i), text));
+        request.episodes.push_back(files.back()->path());
+        if (const auto one = score(run(said, truth, episode), alarms)) scores.push_back(*one);
+    }
+    std::sort(scores.begin(), scores.end());
+    diag::Sink sink;
+    const auto result = calibrate::calibrate_monitors(model, {}, request, sink);
+    EXPECT_TRUE(result);
+    const thresholds::Entry& entry = result->file.monitors.at("m");
+    EXPECT_EQ(entry.n, scores.size());
+    const auto expected = std::nextafter(static_cast<float>(scores[entry.k - 1]), INFINITY);
+    EXPECT_EQ(entry.epsilon, alarms ? expected : -expected) << against;
+    EXPECT_EQ(entry.against, against);
+    EXPECT_EQ(entry.episodes.size(), 15U);
+    return entry;
+}
+
 TEST(Shift, IsBeyondTheScoreAtTheRank) {
     for (const std::string against : {"missed_alarm", "missed_success"}) {
-        const bool alarms = against == "missed_alarm";
-        const check::Model model = model_of(against, 0);
-        const Planned unshifted(calibrate::unshifted(model));
-        const Planned truths(episodes::ground_truth(unshifted.model, {0}).model);
-        plan::Evaluator said(unshifted.plan);
-        plan::Evaluator truth(truths.plan);
-        Random random(78);
-        std::vector<double> scores;
-        std::vector<std::unique_ptr<TemporaryPath>> files;
-        calibrate::Request request;
-        for (int i = 0; i < 15; ++i) {
-            const ShiftedEpisode episode = random_episode(random);
-            std::string text = "x,px\n";
-            for (std::size_t t = 0; t < kShiftSteps; ++t)
-                text += fmt::format("{},{}\n", episode.x[t], episode.label[t] ? 1 : 0);
-            files.push_back(std::make_unique<TemporaryPath>(fmt::format("shift{}.csv", i), text));
-            request.episodes.push_back(files.back()->path());
-            if (const auto one = score(run(said, truth, episode), alarms)) scores.push_back(*one);
-        }
-        std::sort(scores.begin(), scores.end());
-        diag::Sink sink;
-        const auto result = calibrate::calibrate_monitors(model, {}, request, sink);
-        ASSERT_TRUE(result);
-        const thresholds::Entry& entry = result->file.monitors.at("m");
-        ASSERT_EQ(entry.n, scores.size());
-        const auto expected = std::nextafter(static_cast<float>(scores[entry.k - 1]), INFINITY);
-        EXPECT_EQ(entry.epsilon, alarms ? expected : -expected) << against;
-        EXPECT_EQ(entry.against, against);
-        EXPECT_EQ(entry.episodes.size(), 15U);
-        EXPECT_EQ(entry.predicate, "F[0, 2] (a && F[0, 2] !a) where a = x <= 0.5");
-        EXPECT_EQ(entry.truth, "a: px > 0.5");
+        const thresholds::Entry plain = shift_at_the_rank(kOverPredicate, against);
+        EXPECT_EQ(plain.predicate, "F[0, 2] (a && F[0, 2] !a) where a = x <= 0.5");
+        EXPECT_EQ(plain.truth, "a: px > 0.5");
+        const thresholds::Entry of_let = shift_at_the_rank(kOverLet, against);
+        EXPECT_EQ(of_let.predicate,
+                  "F[0, 2] (O[0, 1] a && F[0, 2] !O[0, 1] a) where a = x <= 0.5");
+        EXPECT_EQ(of_let.truth, "F[0, 2] (a && F[0, 2] !a); a: px > 0.5");
     }
 }
 

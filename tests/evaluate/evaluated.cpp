@@ -42,7 +42,9 @@ std::optional<evaluate::Judgement> run(const std::string& spec,
                                        diag::Sink& sink) {
     const Folder folder(episodes);
     const source::File file("t.etl", spec);
-    const auto compiled = driver::compile(file, {}, sink);
+    driver::Request compiling;
+    compiling.check.judged_lets = true;
+    const auto compiled = driver::compile(file, compiling, sink);
     if (!compiled) return std::nullopt;
     evaluate::Request request;
     request.episodes = folder.files;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
 
 #include "evaluated.hpp"
@@ -31,17 +32,35 @@ const std::vector<std::string> kFormulas = {
     "F (p && c) || G !(v > 1)",
     "X p && F[3, 8] (q S p)",
     "v > 0 R p",
+    "F (held_p && F (after && p))",
+    "G (later || q)",
+    "!held_p U after",
 };
-const std::vector<std::string> kSliding = {"G[0, 3] p", "p && !q", "p U[0, 5] q", "c -> F[1, 2] p",
-                                           "O[0, 3] q && F[0, 2] p"};
+/// Lets with the formulas of their truths; an empty one means that it has none.
+const std::vector<std::array<std::string, 3>> kLets = {
+    {"held_p", "held[2] p", "p"},
+    {"after", "!q && O[0, 4] p", "rise p || (c && held[1] q)"},
+    {"alias", "q", "p && q"},
+    {"later", "after S (alias && v > 1)", ""},
+};
+const std::vector<std::string> kSliding = {
+    "G[0, 3] p", "p && !q", "p U[0, 5] q", "c -> F[1, 2] p",        "O[0, 3] q && F[0, 2] p",
+    "held_p",    "after",   "alias",       "later && F[0, 3] after"};
+constexpr std::size_t kOfLets = 14;   ///< the sequential formula over lets
+constexpr std::size_t kFirstLet = 5;  ///< of the sliding monitors that are lets with a truth
 
-/// The truths of p and q depend on x and y, the predicates on u and w.
+/// The truths of p and q depend on x and y, the predicates on u and w. With `truths` the spec has
+/// the truths in place of the predicates and of the lets that have one.
 std::string spec(bool truths) {
     std::string text = "spec t; input u, w, x, y, v : f32; input c : bool;";
     text +=
         truths
             ? "predicate p = x > 0; predicate q = y <= 0.25;"
             : "predicate p = u > 0; predicate q = w <= 0.25; truth p = x > 0; truth q = y <= 0.25;";
+    for (const auto& [name, formula, truth] : kLets) {
+        text += fmt::format("let {} = {};", name, truths && !truth.empty() ? truth : formula);
+        if (!truths && !truth.empty()) text += fmt::format("truth {} = {};", name, truth);
+    }
     for (std::size_t i = 0; i < kFormulas.size(); ++i)
         text += fmt::format("monitor m{} = {};", i, kFormulas[i]);
     for (std::size_t i = 0; i < kSliding.size(); ++i)
@@ -134,7 +153,8 @@ TEST(Evaluation, IsThatOfTheReference) {
                                    : labels.back();
                 };
                 episodes[m].add(one(claims), one(truths));
-                const bool sequential = m == 3 || m == 4;  // F (p && F q), F (p && F (q && F p))
+                // F (p && F q), F (p && F (q && F p))
+                const bool sequential = m == 3 || m == 4;
                 bool p_visited = false;
                 bool q_visited = false;
                 for (const reference::Step& step : episode.trace) {
@@ -159,14 +179,21 @@ TEST(Evaluation, IsThatOfTheReference) {
         for (std::size_t m = 0; m < monitors; ++m) {
             EXPECT_EQ(found.monitors[m].steps.counts, steps[m]) << found.monitors[m].name;
             EXPECT_EQ(found.monitors[m].episodes.counts, episodes[m]) << found.monitors[m].name;
-            EXPECT_EQ(found.monitors[m].ordering.has_value(), m == 3 || m == 4);
-            if (found.monitors[m].ordering) {
+            EXPECT_EQ(found.monitors[m].ordering.has_value(), m == 3 || m == 4 || m == kOfLets);
+            if (found.monitors[m].ordering && m != kOfLets) {
                 EXPECT_EQ(found.monitors[m].ordering->counts, ordering[m - 3]);
                 EXPECT_GT(ordering[m - 3].total(), 10U);
             }
         }
+        ASSERT_EQ(found.predicates.size(), 5U);
         for (std::size_t p = 0; p < 2; ++p)
             EXPECT_EQ(found.predicates[p].frames.counts, predicates[p]);
+        // By frames a let is what a sliding monitor of it is by positions.
+        for (std::size_t l = 0; l < 3; ++l) {
+            EXPECT_EQ(found.predicates[2 + l].name, kLets[l][0]);
+            EXPECT_EQ(found.predicates[2 + l].frames.counts,
+                      steps[kFormulas.size() + kFirstLet + l]);
+        }
         const auto json = [](const evaluate::Evaluation& evaluation) {
             return evaluate::json({{{"t.etl", evaluation, {}}}});
         };

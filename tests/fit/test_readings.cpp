@@ -93,6 +93,27 @@ TEST(Readings, AreTheSameFromMemoryAndFromFiles) {
     }
 }
 
+/// A let in `where` stands for its truth, even where another selection has the same formula.
+TEST(Fitted, FramesAreSelectedByTheTruthOfALet) {
+    check::Options options;
+    options.allow_unfitted = true;
+    const Checked spec(
+        "spec t; input z : f32[2]; input was : bool; target g = [[0, 0]];predicate p = l2(z, g) <= "
+        "1;"
+        "let late = !p && O p; truth late = was;"
+        "target a = fitted(mean, of = z, where = late);"
+        "target b = fitted(mean, of = z, where = !p && O p);"
+        "target c = fitted(mean, of = z, where = !p && O p);"
+        "monitor m = F late;",
+        options);
+    ASSERT_TRUE(spec.model) << spec.diagnostics();
+    const check::Model& model = *spec.model;
+    EXPECT_EQ(check::print(model, model.fitted[0].where), "was");
+    EXPECT_EQ(check::print(model, model.fitted[1].where), "!p && O p");
+    EXPECT_EQ(model.fitted[1].where, model.fitted[2].where);
+    EXPECT_EQ(check::print(model, model.monitors[0].truth), "F was");
+}
+
 TEST(Room, IsNeverOverdrawn) {
     Room room(100);
     EXPECT_FALSE(room.take(11, 10));

@@ -135,6 +135,21 @@ std::vector<Guaranteed> guaranteed(const check::Model& model) {
     return found;
 }
 
+namespace {
+
+/// Whether a comparison in the monitor's truth is in no part of the monitor: episodes are kept as
+/// what the monitor measures, and labels.
+bool measures_in_its_truth(const check::Model& model, const check::Monitor& monitor) {
+    const auto measured = check::predicates_of(model, monitor.formula);
+    const auto judging = check::predicates_of(model, monitor.true_formula());
+    return std::any_of(judging.begin(), judging.end(), [&](Index p) {
+        return check::is_own_truth(model, p) &&
+               !std::binary_search(measured.begin(), measured.end(), p);
+    });
+}
+
+}  // namespace
+
 std::vector<OtherError> other_errors(const check::Model& model,
                                      const std::vector<Index>& predicates,
                                      const std::vector<Evidence>& evidence,
@@ -205,7 +220,10 @@ std::vector<OtherError> other_errors_of_shifts(const check::Model& model,
                                                const Tracked& recorded) {
     std::vector<OtherError> errors(all.size());
     for (std::size_t i = 0; i < all.size(); ++i)
-        if (!out[i].why.empty()) errors[i].why = "without one episode " + out[i].why;
+        if (!out[i].why.empty())
+            errors[i].why = "without one episode " + out[i].why;
+        else if (measures_in_its_truth(model, model.monitors[all[i].monitor]))
+            errors[i].why = "its truth measures something that the monitor does not";
     Thresholds thresholds;
     for (const check::Predicate& predicate : model.predicates)
         thresholds.predicates.push_back(predicate.threshold.value);

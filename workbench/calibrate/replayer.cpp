@@ -23,6 +23,12 @@ void set(plan::Sample& sample, bool present, float value) {
     sample.values.assign(present ? 1 : 0, value);
 }
 
+/// Returns the formula of the truth that judges the claim.
+Index true_formula(const check::Model& model, const Guaranteed& one) {
+    const check::Monitor& monitor = model.monitors[one.monitor];
+    return one.claim.formula == monitor.formula ? monitor.true_formula() : one.claim.formula;
+}
+
 /// Returns the model with only these monitors, in which an input per watched predicate, appended in
 /// their order, says whether the predicate was measured. Nothing is known in advance about the
 /// values of calibrated predicates, because their thresholds change.
@@ -34,12 +40,13 @@ check::Model replayed(const check::Model& model, const std::vector<Guaranteed>& 
     result.monitors.clear();
     for (const Guaranteed& one : all) {
         check::Monitor monitor = model.monitors[one.monitor];
+        monitor.truth = true_formula(model, one);
         monitor.formula = one.claim.formula;
         if (one.claim.negated) {
             check::Formula negation;
             negation.kind = check::Formula::Kind::negation;
             negation.operands = {monitor.formula};
-            monitor.formula = static_cast<Index>(result.formulas.size());
+            monitor.formula = monitor.truth = static_cast<Index>(result.formulas.size());
             result.formulas.push_back(std::move(negation));
         }
         result.monitors.push_back(std::move(monitor));
@@ -66,16 +73,21 @@ check::Model replayed(const check::Model& model, const std::vector<Guaranteed>& 
 Watched watched_by(const check::Model& model, const std::vector<Guaranteed>& all,
                    const std::vector<Index>& labelled) {
     std::set<Index> predicates;
+    std::set<Index> judging;  // the truth
     std::set<Index> flags;
     for (const Guaranteed& one : all) {
         const auto of = check::predicates_of(model, one.claim.formula);
         predicates.insert(of.begin(), of.end());
-        const auto bools = check::flags_of(model, one.claim.formula);
-        flags.insert(bools.begin(), bools.end());
+        for (const Index formula : {one.claim.formula, true_formula(model, one)}) {
+            const auto bools = check::flags_of(model, formula);
+            flags.insert(bools.begin(), bools.end());
+        }
+        const auto truly = check::predicates_of(model, true_formula(model, one));
+        judging.insert(truly.begin(), truly.end());
     }
     Watched result{{predicates.begin(), predicates.end()}, {}, {flags.begin(), flags.end()}};
     for (const Index p : labelled)
-        if (predicates.contains(p)) result.labelled.push_back(p);
+        if (judging.contains(p)) result.labelled.push_back(p);
     return result;
 }
 

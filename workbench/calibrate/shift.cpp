@@ -235,7 +235,7 @@ std::optional<std::vector<Index>> find_labelled(const check::Model& model,
     if (!labelled) return std::nullopt;
     std::set<Index> found;
     for (const Index monitor : monitors)
-        for (const Index predicate : check::predicates_of(model, model.monitors[monitor].formula))
+        for (const Index predicate : check::predicates_of(model, model.monitors[monitor]))
             if (!check::is_own_truth(model, predicate) ||
                 std::binary_search(labelled->begin(), labelled->end(), predicate))
                 found.insert(predicate);

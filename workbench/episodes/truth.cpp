@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "check/points/project.hpp"
 #include "episodes/exact_distance.hpp"
@@ -233,7 +234,11 @@ GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& la
         formula.kind = check::Formula::Kind::boolean_input;
         formula.index = label;
     }
+    for (check::Let& let : result.model.lets)
+        if (let.truth != check::kNone) let.formula = std::exchange(let.truth, check::kNone);
     for (check::Monitor& monitor : result.model.monitors) {
+        monitor.formula = monitor.true_formula();
+        monitor.truth = check::kNone;
         monitor.calibration.reset();  // the truth needs no shift
         // It is asked about the positions of the monitor that it judges.
         if (monitor.restarts == check::Restarts::when_final)

@@ -15,19 +15,6 @@ std::optional<std::size_t> find(const std::vector<Named>& all, const std::string
     return static_cast<std::size_t>(at - all.begin());
 }
 
-Figure less(const Bootstrap& bootstrap, const auto& second, const auto& first) {
-    return bootstrap.figure([&](const Weights& weights) {
-        std::vector<std::optional<double>> result = second(weights);
-        const std::vector<std::optional<double>> before = first(weights);
-        for (std::size_t r = 0; r < result.size(); ++r)
-            if (result[r] && before[r])
-                *result[r] -= *before[r];
-            else
-                result[r].reset();
-        return result;
-    });
-}
-
 /// Compares what two judgements have in common.
 class Pair {
 public:
@@ -106,6 +93,19 @@ private:
 };
 
 }  // namespace
+
+Figure less(const Bootstrap& bootstrap, const Statistic& second, const Statistic& first) {
+    return bootstrap.figure([&](const Weights& weights) {
+        std::vector<std::optional<double>> result = second(weights);
+        const std::vector<std::optional<double>> before = first(weights);
+        for (std::size_t r = 0; r < result.size(); ++r)
+            if (result[r] && before[r])
+                *result[r] -= *before[r];
+            else
+                result[r].reset();
+        return result;
+    });
+}
 
 std::vector<Difference> differences(const Judgement& first, const Judgement& second) {
     const Pair pair(first, second);

@@ -40,6 +40,14 @@ bool measures(const plan::Plan& plan, Index predicate) {
            plan.predicates.end();
 }
 
+/// Returns the verdict of a let at the last step.
+const Verdict& verdict_of(const episodes::Follower& follower, Index let) {
+    const auto& recorded = follower.plan().lets;
+    const auto at = std::find_if(recorded.begin(), recorded.end(),
+                                 [&](const plan::Let& one) { return one.index == let; });
+    return follower.evaluator().lets()[static_cast<std::size_t>(at - recorded.begin())];
+}
+
 std::vector<Index> unmeasured(const plan::Plan& plan, std::vector<Index> predicates) {
     std::erase_if(predicates, [&](Index p) { return measures(plan, p); });
     return predicates;
@@ -69,15 +77,17 @@ diag::Result<EpisodeResult> EpisodeScorer::score(const std::string& path) {
                                                variants_.empty() ? nullptr : episodes::Wrap(keep));
     if (!recording) return recording.failure();
     EpisodeResult result;
-    result.predicates.resize(subject_.labelled.size());
+    const std::size_t labelled = subject_.labelled.size();
+    result.predicates.resize(labelled + subject_.lets.size());
     tracks_.assign(subject_.monitors.size(), {});
     const auto rest = [&] {
         note_verdicts();
         return true;
     };
     const auto frame = [&] {
-        for (std::size_t i = 0; i < result.predicates.size(); ++i)
-            note_frame(*recording, i, result.predicates[i]);
+        for (std::size_t i = 0; i < labelled; ++i) note_frame(*recording, i, result.predicates[i]);
+        for (std::size_t i = 0; i < subject_.lets.size(); ++i)
+            note_let(i, recording->frames() - 1, result.predicates[labelled + i]);
         for (std::size_t i = 0; i < truths.size(); ++i)
             truths[i].push_back(recording->label(subject_.labelled[i]));
         return rest();
@@ -86,7 +96,7 @@ diag::Result<EpisodeResult> EpisodeScorer::score(const std::string& path) {
     if (!done) return done.failure();
     for (std::size_t m = 0; m < subject_.monitors.size(); ++m)
         result.monitors.push_back(conclude(subject_.monitors[m], tracks_[m]));
-    for (std::size_t i = 0; i < result.predicates.size(); ++i)
+    for (std::size_t i = 0; i < labelled; ++i)
         result.predicates[i].from_array = recording->from_array(subject_.labelled[i]);
     static_cast<episodes::Recorded&>(result) = recording->recorded();
     const auto done_too = score_variants(kept, truths, result);
@@ -144,6 +154,20 @@ void EpisodeScorer::note_frame(const episodes::Recording& recording, std::size_t
                         : predicate.upper_bound() ? -delta
                                                   : delta;
     result.scored.push_back({score, 0, is == Label::yes});
+}
+
+void EpisodeScorer::note_let(std::size_t i, std::uint64_t frame, PredicateEpisode& result) const {
+    const Verdict& says = verdict_of(monitors_, subject_.lets[i]);
+    const Label said = label_of(says);
+    const Label is = label_of(verdict_of(truths_, subject_.lets[i]));
+    result.frames.add(said, is);
+    result.truth.add(is);
+    if (is == Label::unknown) return;
+    if (said != is && !result.first_error) result.first_error = frame;
+    if (said == Label::unknown)
+        ++result.unmeasured;
+    else
+        result.scored.push_back({says.robustness, 0, is == Label::yes});
 }
 
 /// Records the verdicts of a step. Both plans delay a sliding monitor by the horizon of its formula

@@ -46,7 +46,7 @@ struct PredicateEpisode {
 };
 
 struct EpisodeResult : episodes::Recorded {
-    std::vector<PredicateEpisode> predicates;  ///< per labelled predicate
+    std::vector<PredicateEpisode> predicates;  ///< per labelled predicate, then per judged let
     /// Per monitor; all zero for monitors that cannot be evaluated.
     std::vector<MonitorEpisode> monitors;
     std::vector<std::uint64_t> variants;  ///< per requested kind, their number
@@ -100,6 +100,7 @@ private:
 
     void note_frame(const episodes::Recording& recording, std::size_t i,
                     PredicateEpisode& result) const;
+    void note_let(std::size_t i, std::uint64_t frame, PredicateEpisode& result) const;
     diag::Result<bool> score_variants(const episodes::KeptFrames& kept, const Truths& truths,
                                       EpisodeResult& result);
     void note_verdicts();

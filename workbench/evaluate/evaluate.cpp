@@ -76,6 +76,11 @@ Judgement judgement_of(const check::Model& model, const Subject& subject, std::s
         named.adaptive = model.predicates[p].threshold.adaptation.has_value();
         named.frames.resize(folds);
     }
+    for (const Index let : subject.lets) {
+        auto& named = result.predicates.emplace_back();
+        named.name = model.lets[let].name;
+        named.frames.resize(folds);
+    }
     for (const MonitorSubject& monitor : subject.monitors) {
         auto& named = result.monitors.emplace_back();
         named.name = model.monitors[monitor.monitor].name;

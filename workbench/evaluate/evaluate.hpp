@@ -72,7 +72,7 @@ struct Judgement {
         std::uint64_t episodes = 0;                             ///< held out
         std::vector<std::pair<std::string, float>> thresholds;  ///< from the others, by name
     };
-    std::vector<Predicate> predicates;  ///< those with labels
+    std::vector<Predicate> predicates;  ///< those with labels, then the lets with a truth
     std::vector<Monitor> monitors;
     episodes::Identities episodes;          ///< ordered by fold, as those of predicates, monitors
     std::vector<std::uint32_t> place;       ///< index in that order, per episode of the request
@@ -112,7 +112,7 @@ struct PredicateScore {
     std::string name;
     bool adaptive = false;  ///< evaluated with its initial threshold, as there is no feedback here
     Score frames;
-    Figure auroc;                  ///< of the distance, independent of the threshold
+    Figure auroc;                  ///< of the distance, or of a let's robustness
     Figure coverage;               ///< share of the episodes with a positive frame that miss none
     std::uint64_t unmeasured = 0;  ///< labelled frames of unknown distance, counted as misses
     std::uint64_t arrays = 0;      ///< episodes with an array of labels
@@ -175,6 +175,18 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
                                diag::Sink& sink);
 
 Evaluation summarise(const Judgement& judgement);
+
+/// A figure of each resample of the episodes.
+using Statistic = std::function<std::vector<std::optional<double>>(const Weights&)>;
+/// F1 by frames of a predicate or let.
+Statistic f1_by_frames(const Judgement& judgement, std::size_t predicate);
+/// The mean of a monitor's agreements on the episodes and on their broken variants; on the
+/// episodes alone where there are no variants.
+Statistic agreement_with_variants(const Judgement& judgement, std::size_t monitor);
+/// Returns the second less the first, over the same resamples.
+Figure less(const Bootstrap& bootstrap, const Statistic& second, const Statistic& first);
+/// Returns the F1 by frames of the duration baseline.
+std::optional<double> f1_of_duration(const Judgement& judgement, std::size_t predicate);
 
 /// Returns a row per episode, worst first, since figures over all episodes hide a session on which
 /// a monitor fails. An episode is worse with more wrong verdicts of monitors; ties go to the

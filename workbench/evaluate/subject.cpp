@@ -75,22 +75,33 @@ Index append_visit(check::Model& model, const std::string& name,
 }  // namespace
 
 Subject subject(const check::Model& model, std::vector<Index> labelled) {
-    Subject result{labelled, episodes::ground_truth(model, labelled), {}};
+    Subject result{labelled, {}, episodes::ground_truth(model, labelled), {}};
     check::Model& truth = result.truth.model;
+    const auto lacking_in = [&](Index formula) {
+        std::vector<Index> lacking;
+        for (const Index p : check::predicates_of(model, formula)) {
+            const bool has_label = std::find(labelled.begin(), labelled.end(), p) != labelled.end();
+            if (!has_label && !check::is_own_truth(model, p)) lacking.push_back(p);
+        }
+        return lacking;
+    };
+    for (Index l = 0; l < model.lets.size(); ++l) {
+        const check::Let& let = model.lets[l];
+        truth.lets[l].telemetry =
+            let.telemetry && let.truth != check::kNone && lacking_in(let.truth).empty();
+        if (truth.lets[l].telemetry) result.lets.push_back(l);
+    }
     const std::vector<check::Monitor> true_monitors = std::exchange(truth.monitors, {});
-    const std::vector<check::Reach> reaches = check::reaches(model);
+    const std::vector<check::Reach> reaches = check::reaches(truth);
     for (Index m = 0; m < model.monitors.size(); ++m) {
         const check::Monitor& monitor = model.monitors[m];
         MonitorSubject& subject = result.monitors.emplace_back();
         subject.monitor = m;
-        for (const Index p : check::predicates_of(model, monitor.formula)) {
-            const bool has_label = std::find(labelled.begin(), labelled.end(), p) != labelled.end();
-            if (!has_label && !check::is_own_truth(model, p)) subject.lacking.push_back(p);
-        }
+        subject.lacking = lacking_in(monitor.true_formula());
         if (!subject.lacking.empty()) continue;
         subject.truth = static_cast<Index>(truth.monitors.size());
         truth.monitors.push_back(true_monitors[m]);
-        const auto stages = stages_of(model, reaches, monitor.formula);
+        const auto stages = stages_of(truth, reaches, true_monitors[m].formula);
         if (monitor.sliding || stages.size() < 2) continue;
         for (const auto& conjuncts : stages)
             subject.stages.push_back(append_visit(truth, monitor.name, conjuncts));

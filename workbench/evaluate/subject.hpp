@@ -23,6 +23,7 @@ struct MonitorSubject {
 
 struct Subject {
     std::vector<Index> labelled;  ///< predicates
+    std::vector<Index> lets;      ///< with a truth over these; check::Options::judged_lets
     episodes::GroundTruth truth;
     std::vector<MonitorSubject> monitors;
 };

@@ -226,6 +226,42 @@ Evaluation summarise(const Judgement& judgement) {
     return result;
 }
 
+Statistic f1_by_frames(const Judgement& judgement, std::size_t predicate) {
+    return [each = judgement.each(judgement.predicates[predicate].episodes,
+                                  [](const PredicateEpisode& episode) { return episode.frames; })](
+               const Weights& weights) {
+        std::vector<std::optional<double>> values;
+        for (const Rates& one : rates(each, weights)) values.push_back(one.f1);
+        return values;
+    };
+}
+
+Statistic agreement_with_variants(const Judgement& judgement, std::size_t monitor) {
+    const auto& all = judgement.monitors[monitor].episodes;
+    return [verdicts = judgement.each(all, [](const MonitorEpisode& one) { return one.episode; }),
+            variants = judgement.each(all, [](const MonitorEpisode& one) {
+                Counts sum;
+                for (const Counts& kind : one.variants) sum.add(kind);
+                return sum;
+            })](const Weights& weights) {
+        const std::vector<Rates> on_episodes = rates(verdicts, weights);
+        const std::vector<Rates> on_variants = rates(variants, weights);
+        std::vector<std::optional<double>> means;
+        for (std::size_t i = 0; i < on_episodes.size(); ++i) {
+            const auto& a = on_episodes[i].agreement;
+            const auto& b = on_variants[i].agreement;
+            means.push_back(a && b ? std::optional((*a + *b) / 2) : a ? a : b);
+        }
+        return means;
+    };
+}
+
+std::optional<double> f1_of_duration(const Judgement& judgement, std::size_t predicate) {
+    const auto judged =
+        judged_by_duration(truths(judgement, judgement.predicates[predicate].episodes));
+    return judged ? rates(*judged).f1 : std::nullopt;
+}
+
 std::vector<EpisodeRow> by_episode(const Judgement& judgement) {
     std::vector<EpisodeRow> rows;
     for (std::size_t e = 0; e < judgement.place.size(); ++e) rows.push_back(row_of(judgement, e));

@@ -38,6 +38,8 @@ struct Options {
     bool allow_missing = false;
     /// For `--lets`: the values of lets at each step are telemetry.
     bool lets = false;
+    /// For `etlc evaluate`: so are those of lets with a truth.
+    bool judged_lets = false;
     /// For `--retargetable`: the numbers of the spec may change while its monitors run.
     bool retargetable = false;
     std::vector<Setting> settings;

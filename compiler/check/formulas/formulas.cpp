@@ -50,17 +50,10 @@ public:
                                   kMaxDepth));
             return kNone;
         }
-        return add(std::move(formula), written.operator_span, depth + 1);
+        return add_formula(c_, std::move(formula), written.operator_span, depth + 1);
     }
 
 private:
-    Index add(Formula formula, Span operator_span, std::uint32_t depth) {
-        c_.model.formulas.push_back(std::move(formula));
-        c_.operator_spans.push_back(operator_span);
-        c_.depths.push_back(depth);
-        return static_cast<Index>(c_.model.formulas.size() - 1);
-    }
-
     /// Adds an atom; kNone for kNone.
     Index leaf(Kind kind, Index index, const ast::Formula& written) {
         if (index == kNone) return kNone;
@@ -68,7 +61,7 @@ private:
         formula.kind = kind;
         formula.index = index;
         formula.span = written.span;
-        return add(std::move(formula), written.span, 1);
+        return add_formula(c_, std::move(formula), written.span, 1);
     }
 
     bool set_interval(Formula& formula, const ast::Formula& written) {
@@ -127,6 +120,13 @@ private:
 };
 
 }  // namespace
+
+Index add_formula(Context& c, Formula formula, Span operator_span, std::uint32_t depth) {
+    c.model.formulas.push_back(std::move(formula));
+    c.operator_spans.push_back(operator_span);
+    c.depths.push_back(depth);
+    return static_cast<Index>(c.model.formulas.size() - 1);
+}
 
 Index check_formula(Context& context, const ast::Formula& formula) {
     return FormulaCheck(context).build(formula);

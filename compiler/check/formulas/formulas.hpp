@@ -9,4 +9,14 @@ namespace etlc::check {
 /// Returns the index of the formula's node; kNone after an error, or if it names something broken.
 Index check_formula(Context& context, const ast::Formula& formula);
 
+/// Adds a node and returns its index. `depth`: levels of the formula with its lets written out.
+Index add_formula(Context& context, Formula formula, Span operator_span, std::uint32_t depth);
+
+/// Returns the formula with truths in place of the lets that have one; kNone where it has none of
+/// these lets, or after an error.
+Index with_truths_of_lets(Context& context, Index formula);
+
+/// Returns the node of a comparison that has neither a name nor a truth; otherwise kNone.
+Index node_without_truth(const Model& model, Index root);
+
 }  // namespace etlc::check

@@ -112,6 +112,8 @@ private:
 }  // namespace
 
 void choose_telemetry(Context& c) {
+    if (c.options.judged_lets)
+        for (Let& let : c.model.lets) let.telemetry = let.truth != kNone;
     if (!c.options.lets || c.sink.has_errors()) return;
     const std::vector<Reach> reach = reaches(c.model);
     bool any = false;

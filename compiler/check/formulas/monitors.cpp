@@ -1,6 +1,8 @@
-// Checks monitors and truths: which operators each may have, and by how many steps a sliding
-// verdict is delayed.
+// Checks monitors: which operators each kind may have, and by how many steps a sliding verdict is
+// delayed.
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "check/context/context.hpp"
 #include "check/formulas/formulas.hpp"
@@ -40,19 +42,6 @@ public:
         if (reaches_[monitor.formula].past_over_future == kNone) return;
         report_all(monitor, &Reach::past_over_future, reported_past_,
                    [&](Index at) { report_past(monitor, name, at); });
-    }
-
-    void truth(const Truth& truth, Span name) {
-        const Index future = reaches_[truth.formula].future;
-        if (future == kNone) return;
-        const Entity& predicate = c_.scope.entity(NameKind::predicate, truth.predicate);
-        note_use(
-            c_.report(
-                Code::future_in_truth, c_.operator_spans[future],
-                fmt::format(
-                    "{} looks ahead; the truth of '{}' may only look at the present and the past",
-                    word(future), predicate.name)),
-            truth.span, name, future, fmt::format("the truth of '{}' is here", predicate.name));
     }
 
 private:
@@ -117,40 +106,26 @@ private:
     std::vector<bool> reported_past_;
 };
 
-/// Returns the node of a predicate for which `is` holds, at or below `root`; otherwise kNone.
-template <class Is>
-Index predicate_node(const Model& model, Index root, Is is) {
-    for (const Index at : parts_of(model, root)) {
-        const Formula& formula = model.formulas[at];
-        if (formula.kind == Formula::Kind::predicate && is(formula.index)) return at;
-    }
-    return kNone;
-}
-
-/// Returns the node of a comparison that has neither a name nor a truth; otherwise kNone.
-Index node_without_truth(const Model& model, Index root) {
-    return predicate_node(model, root, [&](Index predicate) {
-        return model.predicates[predicate].name.empty() && !is_own_truth(model, predicate);
-    });
-}
-
 /// The guarantee of a shift holds for the thresholds that it was fitted with.
 void refuse_moving_thresholds(Context& c, const Monitor& monitor) {
-    const Index at = predicate_node(c.model, monitor.formula, [&](Index predicate) {
-        return c.model.predicates[predicate].threshold.adaptation.has_value();
+    const auto parts = parts_of(c.model, monitor.formula);
+    const auto at = std::find_if(parts.begin(), parts.end(), [&](Index part) {
+        const Formula& formula = c.model.formulas[part];
+        return formula.kind == Formula::Kind::predicate &&
+               c.model.predicates[formula.index].threshold.adaptation.has_value();
     });
-    if (at == kNone) return;
+    if (at == parts.end()) return;
     c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
              fmt::format("'{}' is calibrated as a whole, which needs fixed thresholds; that of "
                          "'{}' is adaptive",
-                         monitor.name, c.model.predicates[c.model.formulas[at].index].name))
-        .note(c.model.formulas[at].span, "it is used here");
+                         monitor.name, c.model.predicates[c.model.formulas[*at].index].name))
+        .note(c.model.formulas[*at].span, "it is used here");
 }
 
 /// A predicate over an embedding gets its truth by its name; compared with itself it would always
 /// agree.
 void refuse_comparisons_without_truth(Context& c, const Monitor& monitor) {
-    const Index at = node_without_truth(c.model, monitor.formula);
+    const Index at = node_without_truth(c.model, monitor.true_formula());
     if (at == kNone) return;
     const std::string comparison = c.model.predicates[c.model.formulas[at].index].shown();
     c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
@@ -162,93 +137,6 @@ void refuse_comparisons_without_truth(Context& c, const Monitor& monitor) {
                           "near = ...;' or an array truth.near in the episodes",
                           comparison));
 }
-
-/// Returns the predicate of a truth; kNone after an error or for a second truth.
-Index predicate_of(Context& c, const ast::Truth& declaration, std::map<Index, Span>& first) {
-    const Reference* before = c.scope.find(declaration.predicate.text);
-    const bool used = before != nullptr && c.scope.entity(*before).used;
-    const Index predicate = resolve(c, declaration.predicate, NameKind::predicate);
-    if (before != nullptr)
-        c.scope.entity(*before).used = used;  // a truth does not count as a use of its predicate
-    if (before == nullptr || before->kind != NameKind::predicate) return kNone;
-    const auto [at, is_new] = first.try_emplace(before->index, declaration.predicate.span);
-    if (is_new) return predicate;
-    c.report(Code::duplicate_truth, declaration.predicate.span,
-             fmt::format("a second truth of '{}'", declaration.predicate.text))
-        .note(at->second, "the first is here");
-    return kNone;
-}
-
-/// Fitted elements are fitted to truths, so truths cannot use them.
-void refuse_fitted(Context& c, const Truth& truth) {
-    const Index at = predicate_node(c.model, truth.formula, [&](Index predicate) {
-        bool found = false;
-        for_each_distance(c.model.predicates[predicate].expression, [&](Index distance) {
-            found = found || rests_on_fitted(c.model, c.model.distances[distance]);
-        });
-        return found;
-    });
-    if (at == kNone) return;
-    c.report(
-        Code::truth_of_fitted, c.model.formulas[at].span,
-        fmt::format("the truth of '{}' uses '{}', which depends on fitted values; a truth cannot",
-                    c.model.predicates[truth.predicate].name,
-                    c.model.predicates[c.model.formulas[at].index].shown()));
-}
-
-}  // namespace
-
-void check_truths(Context& c) {
-    std::map<Index, Span> first;
-    std::vector<Truth> truths;
-    for_each_declaration<ast::Truth>(c.spec, [&](const ast::Truth& declaration, Index) {
-        const Index predicate = predicate_of(c, declaration, first);
-        const Index formula = check_formula(c, *declaration.formula);
-        if (predicate != kNone && formula != kNone)
-            truths.push_back({predicate, formula, declaration.span});
-    });
-    MonitorCheck check(c);
-    for (const Truth& truth : truths) {
-        refuse_fitted(c, truth);
-        check.truth(truth, first.at(truth.predicate));
-        const Index calibrated = predicate_node(c.model, truth.formula, [&](Index predicate) {
-            return c.model.predicates[predicate].threshold.origin != ThresholdOrigin::literal;
-        });
-        if (calibrated == kNone) continue;
-        c.report(Code::calibrated_in_truth, c.model.formulas[calibrated].span,
-                 fmt::format("the truth of '{}' uses '{}', whose threshold is calibrated; a truth "
-                             "has to be exact",
-                             c.model.predicates[truth.predicate].name,
-                             c.model.predicates[c.model.formulas[calibrated].index].name));
-    }
-    c.model.truths = std::move(truths);
-}
-
-/// Checks the frames that something is fitted to: `where` in fitted(...).
-void check_fitted_frames(Context& c) {
-    for (Index i = 0; i < c.model.fitted.size(); ++i) {
-        const ast::Formula& written = *c.fitted_where[i];
-        if (written.kind == ast::Formula::Kind::constant_true) continue;
-        const Index where = check_formula(c, written);
-        c.model.fitted[i].where = where;
-        if (where == kNone) continue;
-        const std::vector<Reach> all = reaches(c.model);
-        if (const Index future = all[where].future; future != kNone)
-            c.report(Code::future_in_truth, c.operator_spans[future],
-                     fmt::format("{} looks ahead; frames are selected by the present and the past",
-                                 ast::operator_of(c.model.formulas[future].kind)->symbol))
-                .note(written.span, "the frames are selected here");
-        if (const Index compared = node_without_truth(c.model, where); compared != kNone)
-            c.report(Code::frames_without_truth, c.model.formulas[compared].span,
-                     fmt::format("frames are selected by truths, but '{}' has none",
-                                 c.model.predicates[c.model.formulas[compared].index].shown()))
-                .note(
-                    "use a named predicate with a truth: 'truth NAME = ...;' or an array "
-                    "truth.NAME in the episodes");
-    }
-}
-
-namespace {
 
 Restarts restarts(ast::Monitor::Kind kind) {
     if (kind == ast::Monitor::Kind::restartable) return Restarts::on_request;
@@ -286,6 +174,7 @@ void check_monitors(Context& c) {
         Monitor& monitor = c.model.monitors[i];
         const Span name = c.scope.entity(NameKind::monitor, i).span;
         if (monitor.formula == kNone) continue;
+        monitor.truth = with_truths_of_lets(c, monitor.formula);
         if (monitor.sliding)
             check.sliding(monitor, name);
         else

@@ -77,7 +77,7 @@ std::vector<Literal> conjuncts_of(const Model& model, Literal root) {
         const bool splits =
             kind == Kind::negation || (kind == Kind::conjunction && !at.negated) ||
             ((kind == Kind::disjunction || kind == Kind::implication) && at.negated);
-        if (!splits) return conjuncts.push_back(at);
+        if (!splits || let_with_truth(model, at.formula) != nullptr) return conjuncts.push_back(at);
         for (const Literal operand : operands_of(model, at)) self(self, operand);
     };
     collect(collect, root);
@@ -124,10 +124,23 @@ bool fails_at_zero(const Predicate& predicate, const Polarity& polarity) {
     return predicate.strict() ? polarity.positive : polarity.negative;
 }
 
+/// Returns a let with a truth of its own in the formula; otherwise null.
+const Let* judged_let(const Model& model, Index formula) {
+    const std::vector<Index> parts = parts_of(model, formula);
+    for (const Let& let : model.lets)
+        if (let.truth != kNone && std::binary_search(parts.rbegin(), parts.rend(), let.formula))
+            return &let;
+    return nullptr;
+}
+
 Claim claim(const Model& model, Literal part, Values values) {
     Claim result;
     result.formula = part.formula;
     result.negated = part.negated;
+    if (const Let* let = judged_let(model, part.formula)) {
+        result.why = fmt::format("'{}' has a truth of its own, not that of its parts", let->name);
+        return result;
+    }
     bool no_at_zero = false;
     Polarity all;
     std::vector<std::string> alphas;

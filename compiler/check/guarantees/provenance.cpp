@@ -150,6 +150,12 @@ std::vector<Index> predicates_of(const Model& model, Index formula) {
     return {found.begin(), found.end()};
 }
 
+std::vector<Index> predicates_of(const Model& model, const Monitor& monitor) {
+    std::set<Index> found = atoms_in(model, monitor.formula, Formula::Kind::predicate);
+    found.merge(atoms_in(model, monitor.true_formula(), Formula::Kind::predicate));
+    return {found.begin(), found.end()};
+}
+
 std::vector<Index> flags_of(const Model& model, Index formula) {
     const std::set<Index> found = atoms_in(model, formula, Formula::Kind::boolean_input);
     return {found.begin(), found.end()};
@@ -160,7 +166,11 @@ Provenance provenance(const Model& model, const Monitor& monitor, const Labellin
     result.reads = reads(model, monitor);
     result.predicate = text_with_definitions(model, monitor.formula);
     add_flags(model, monitor.formula, result.targets);
-    for (const Index predicate : predicates_of(model, monitor.formula)) {
+    if (monitor.truth != kNone) {
+        result.truth = print(model, monitor.truth);
+        add_flags(model, monitor.truth, result.targets);
+    }
+    for (const Index predicate : predicates_of(model, monitor)) {
         Provenance of = provenance(model, predicate);
         result.targets.merge(of.targets);
         result.targets.merge(of.truth_targets);

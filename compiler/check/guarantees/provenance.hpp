@@ -72,6 +72,8 @@ FittedProvenance provenance(const Model& model, const Fitted& fitted,
 
 /// Returns the predicates in a formula, ascending.
 std::vector<Index> predicates_of(const Model& model, Index formula);
+/// Returns those in the monitor's formula or in that of its truth.
+std::vector<Index> predicates_of(const Model& model, const Monitor& monitor);
 /// Returns the boolean inputs in a formula, ascending.
 std::vector<Index> flags_of(const Model& model, Index formula);
 

@@ -58,12 +58,13 @@ public:
 
     void add_monitor(const Monitor& monitor) {
         // The entry has method, alpha and `against`; the shift is the result.
-        const auto& [name, formula, sliding, restarts, horizon, calibration, span] = monitor;
+        const auto& [name, formula, sliding, restarts, horizon, calibration, span, truth] = monitor;
         add("monitor " + name,
             fmt::format("{}{}", word(restarts),
                         sliding ? fmt::format("sliding, horizon {}", horizon) : "monitor"));
         add("formula " + name, hash_of(formula, Atoms::compared));
-        hash_of(formula, Atoms::truths);
+        const std::string over_truths = hash_of(monitor.true_formula(), Atoms::truths);
+        if (truth != kNone) add("truth of the formula " + name, over_truths);
     }
 
     void add_fitted(const Fitted& fitted) {

@@ -287,6 +287,11 @@ struct Monitor {
     std::uint32_t horizon = 0;  ///< delay of a sliding monitor in steps; otherwise 0
     std::optional<MonitorCalibration> calibration{};
     Span span;
+    /// The formula with the truths of lets in place of these lets; kNone: the formula itself.
+    Index truth = kNone;
+
+    /// Returns the formula of the ground-truth monitor, in which predicates stand for their truths.
+    Index true_formula() const { return truth == kNone ? formula : truth; }
 };
 
 struct Truth {
@@ -300,6 +305,8 @@ struct Let {
     Index formula = 0;
     Span span;
     bool telemetry = false;  ///< its verdict at the present step is recorded: --lets
+    /// Its truth, in which predicates stand for theirs; kNone: its formula over these.
+    Index truth = kNone;
 };
 
 struct Constant {
@@ -343,6 +350,9 @@ struct Model {
     /// episodes with reasons, and labels that did not come from a truth.
     std::vector<std::string> reservations;
 };
+
+/// Returns the let of that formula that has a truth of its own; otherwise null.
+const Let* let_with_truth(const Model& model, Index formula);
 
 /// Returns the formulas that a formula consists of, from itself down to its operands: descending.
 std::vector<Index> parts_of(const Model& model, Index formula);

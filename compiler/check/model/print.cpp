@@ -77,6 +77,12 @@ private:
 
 }  // namespace
 
+const Let* let_with_truth(const Model& model, Index formula) {
+    for (const Let& let : model.lets)
+        if (let.truth != kNone && let.formula == formula) return &let;
+    return nullptr;
+}
+
 std::vector<Index> parts_of(const Model& model, Index formula) {
     std::vector<bool> seen(formula + 1);
     seen[formula] = true;

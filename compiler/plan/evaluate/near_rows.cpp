@@ -67,12 +67,13 @@ void add_squares(const float* __restrict from, float x, float* __restrict to, st
 
 NearRows::NearRows(const check::Distance& distance, const check::Target& target)
     : target_(target),
-      spread_(spread_of(distance.weights, target.dimension)),
       whitened_(target.values.size()),
       point_(target.dimension),
       distances_(target.rows),
       errors_(target.rows),
       near_(target.rows) {
+    if (target.rows == 1) return;  // there is nothing to choose
+    spread_ = spread_of(distance.weights, target.dimension);
     decompose(distance.weights);
     whiten_rows();
 }
@@ -139,6 +140,7 @@ double NearRows::error(std::uint32_t row, double apart, double margin) const {
 
 /// Selects rows first by a free bound of |z - g|, then by the distance itself.
 const std::vector<std::uint32_t>& NearRows::of(const float* z, double margin) {
+    if (target_.rows == 1) return near_;
     measure(z);
     near_.resize(target_.rows);
     std::iota(near_.begin(), near_.end(), 0);

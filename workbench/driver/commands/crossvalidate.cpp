@@ -10,6 +10,7 @@
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
 #include "fit/fit.hpp"
+#include "library/version.hpp"
 #include "parse/parse.hpp"
 
 namespace etlc::driver {
@@ -138,6 +139,7 @@ private:
 
     std::optional<check::Model> check(const Lacks& lacks) {
         check::Options options = request_.check;
+        options.judged_lets = true;
         options.allow_unfitted = lacks.fitted;
         options.allow_uncalibrated = lacks.predicates;
         options.allow_uncalibrated_monitors = lacks.monitors;
@@ -157,6 +159,14 @@ private:
     diag::Sink& sink_;
     thresholds::File thresholds_;
 };
+
+/// Returns the episodes of a fold in order.
+std::vector<std::size_t> episodes_of(const Folds& folds, std::uint32_t fold) {
+    std::vector<std::size_t> episodes;
+    for (std::size_t e = 0; e < folds.of.size(); ++e)
+        if (folds.of[e] == fold) episodes.push_back(e);
+    return episodes;
+}
 
 }  // namespace
 
@@ -196,6 +206,33 @@ std::optional<std::vector<Trained>> train(const source::File& file, const Reques
         all.push_back(std::move(*trained));
     }
     return all;
+}
+
+std::optional<evaluate::Judgement> judge_in_folds(const source::File& file,
+                                                  const check::Model& model, const Request& request,
+                                                  const evaluate::Request& asked,
+                                                  std::optional<Folds>& folds, diag::Sink& sink) {
+    calibrate::Request calibration;
+    calibration.episodes = asked.episodes;
+    calibration.reading = asked.reading;
+    calibration.allow_overlap = asked.allow_overlap;
+    calibration.jobs = asked.jobs;
+    calibration.version = library::kVersion;
+    calibration.progress = asked.progress;
+    if (!folds) folds = deal(model, calibration, request.folds, sink);
+    if (!folds) return std::nullopt;
+    const auto trained = train(file, request, calibration, *folds, sink);
+    if (!trained) return std::nullopt;
+    std::vector<evaluate::Trial> trials;
+    for (std::uint32_t fold = 0; fold < folds->count; ++fold) {
+        const Trained& others = (*trained)[fold];
+        trials.push_back(
+            {others.spec, others.thresholds, episodes_of(*folds, fold), others.fitted});
+    }
+    auto result = evaluate::judge(trials, asked, sink);
+    if (result && folds->allowance.overlapping > 0)
+        result->reservations.push_back(thresholds::text(folds->allowance));
+    return result;
 }
 
 }  // namespace etlc::driver

@@ -14,6 +14,7 @@
 #include "calibrate/calibrate.hpp"
 #include "diag/diag.hpp"
 #include "driver/commands/request.hpp"
+#include "evaluate/evaluate.hpp"
 
 namespace etlc::driver {
 
@@ -40,5 +41,12 @@ std::optional<Folds> deal(const check::Model& model, const calibrate::Request& r
 std::optional<std::vector<Trained>> train(const source::File& file, const Request& request,
                                           const calibrate::Request& calibration, const Folds& folds,
                                           diag::Sink& sink);
+
+/// Judges every fold by monitors trained on the others. `folds` are dealt where there are none
+/// yet, request.folds of them.
+std::optional<evaluate::Judgement> judge_in_folds(const source::File& file,
+                                                  const check::Model& model, const Request& request,
+                                                  const evaluate::Request& asked,
+                                                  std::optional<Folds>& folds, diag::Sink& sink);
 
 }  // namespace etlc::driver

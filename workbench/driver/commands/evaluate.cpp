@@ -9,6 +9,7 @@
 #include "driver/commands/crossvalidate.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
+#include "library/open.hpp"
 #include "library/version.hpp"
 #include "parse/parse.hpp"
 #include "source/escape.hpp"
@@ -28,15 +29,16 @@ struct Candidate {
 
 std::optional<Candidate> candidate(const SpecToJudge& spec, const Request& request, bool trains) {
     Candidate result{spec, {}, {}};
+    check::Options options = request.check;
+    options.judged_lets = true;
     if (trains) {
-        check::Options options = request.check;
         options.allow_uncalibrated = true;
         options.allow_uncalibrated_monitors = true;
         options.allow_unfitted = true;
         result.untrained =
             check::check(parse::parse(spec.file, spec.sink), spec.file, options, spec.sink);
     } else {
-        result.compiled = compile(spec.file, request, spec.sink);
+        result.compiled = library::compile(spec.file, options, request, spec.sink);
     }
     if (spec.sink.refused() || (!result.compiled && !result.untrained)) return std::nullopt;
     return result;
@@ -55,63 +57,18 @@ std::vector<std::string> inputs(const std::vector<Candidate>& candidates,
     return paths;
 }
 
-/// Returns the episodes of a fold in order.
-std::vector<std::size_t> episodes_of(const Folds& folds, std::uint32_t fold) {
-    std::vector<std::size_t> episodes;
-    for (std::size_t e = 0; e < folds.of.size(); ++e)
-        if (folds.of[e] == fold) episodes.push_back(e);
-    return episodes;
-}
-
-class Judging {
-public:
-    Judging(const Request& request, const evaluate::Request& asked)
-        : request_(request), asked_(asked) {
-        calibration_.episodes = asked.episodes;
-        calibration_.reading = asked.reading;
-        calibration_.allow_overlap = asked.allow_overlap;
-        calibration_.jobs = asked.jobs;
-        calibration_.version = library::kVersion;
-        calibration_.progress = asked.progress;
-    }
-
-    /// Judges every fold by monitors trained on the others. All specs use the folds of the first.
-    std::optional<evaluate::Judgement> in_folds(const Candidate& one, std::uint32_t count,
-                                                diag::Sink& sink) {
-        if (!folds_) folds_ = deal(one.model(), calibration_, count, sink);
-        if (!folds_) return std::nullopt;
-        const auto trained = train(one.spec.file, request_, calibration_, *folds_, sink);
-        if (!trained) return std::nullopt;
-        std::vector<evaluate::Trial> trials;
-        for (std::uint32_t fold = 0; fold < count; ++fold) {
-            const Trained& others = (*trained)[fold];
-            trials.push_back(
-                {others.spec, others.thresholds, episodes_of(*folds_, fold), others.fitted});
-        }
-        auto result = evaluate::judge(trials, asked_, sink);
-        if (result && folds_->allowance.overlapping > 0)
-            result->reservations.push_back(thresholds::text(folds_->allowance));
-        return result;
-    }
-
-private:
-    const Request& request_;
-    const evaluate::Request& asked_;
-    calibrate::Request calibration_;
-    std::optional<Folds> folds_;
-};
-
 std::optional<evaluate::SideBySide> judged(const std::vector<Candidate>& candidates,
                                            const Request& request, const evaluate::Request& asked) {
-    Judging judging(request, asked);
+    std::optional<Folds> folds;  // all specs use those of the first
     evaluate::SideBySide result;
     std::optional<evaluate::Judgement> first;
     for (const Candidate& one : candidates) {
         const std::string& path = one.spec.file.path();
         diag::Sink found;  // also about episodes, with the spec in a note
-        auto judgement = request.folds > 0
-                             ? judging.in_folds(one, request.folds, found)
-                             : judge_as_it_is(*one.compiled, path, request, asked, found);
+        auto judgement =
+            request.folds > 0
+                ? judge_in_folds(one.spec.file, one.model(), request, asked, folds, found)
+                : judge_as_it_is(*one.compiled, path, request, asked, found);
         std::optional<evaluate::Evaluation> summary;
         if (judgement) summary = evaluate::summarise(*judgement);
         if (summary) evaluate::warn_of_doubts(one.model(), *summary, found);

@@ -2,6 +2,7 @@
 #include "data/recordings/episodes.hpp"
 #include "data/recordings/open.hpp"
 #include "driver/commands/commands.hpp"
+#include "driver/commands/suggest_in_time.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
 #include "fit/suggest/suggest.hpp"
@@ -25,10 +26,11 @@ std::optional<check::Model> check_text(const source::File& file, const check::Op
 
 bool suggest(const source::File& file, const check::Model& model, const check::Options& options,
              const Request& request, const fit::Request& asked, diag::Sink& sink) {
-    const auto result = fit::suggest(
+    auto result = fit::suggest(
         model, [&](const std::string& text) { return check_text(file, options, text); },
         request.fit.predicates, asked, sink);
     if (!result || sink.refused()) return false;
+    result->in_time = suggest_in_time(file, model, *result, request, asked);
     OutputFiles files(sink);
     return files.add(std::string(kStandardOutput),
                      request.fit.json ? fit::json(*result)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "data/recordings/open.hpp"
+#include "driver/commands/commands.hpp"
 #include "driver/options/mistakes.hpp"
 #include "driver/options/option.hpp"
 

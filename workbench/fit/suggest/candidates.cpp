@@ -11,6 +11,9 @@ namespace {
 
 constexpr std::uint32_t kFew = 16;
 constexpr std::uint32_t kMany = 64;
+/// The largest point for a full metric: a step would compare the square of its elements, and a
+/// discriminant separates as well for far less.
+constexpr std::uint32_t kLargestMetric = 512;
 
 // map, r, discriminant, targets, k, distance, contrast
 constexpr Candidate kCandidates[] = {
@@ -86,7 +89,9 @@ std::string Declarations::name(const std::string& kind, const std::string& role,
 std::vector<Candidate> candidates(std::uint32_t dimension) {
     std::vector<Candidate> result;
     for (const Candidate& candidate : kCandidates)
-        if (candidate.r < dimension) result.push_back(candidate);
+        if (candidate.r < dimension &&
+            (candidate.distance != "mahalanobis" || dimension <= kLargestMetric))
+            result.push_back(candidate);
     return result;
 }
 

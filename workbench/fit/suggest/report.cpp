@@ -85,7 +85,7 @@ std::string report(const Suggested& suggested) {
         counted(suggested.episodes, "episode"), counted(suggested.frames, "frame"),
         counted(suggested.folds, "fold"));
     for (const Suggestions& one : suggested.of) text += report(one);
-    return text;
+    return text + report(suggested.in_time);
 }
 
 std::string json(const Suggested& suggested) {
@@ -93,8 +93,9 @@ std::string json(const Suggested& suggested) {
     for (const Suggestions& one : suggested.of) all.push_back(json(one));
     return fmt::format(
         "{{\n  \"episodes\": {}, \"frames\": {}, \"folds\": {},\n  \"predicates\": [\n    "
-        "{}]\n}}\n",
-        suggested.episodes, suggested.frames, suggested.folds, fmt::join(all, ",\n    "));
+        "{}],\n  \"in_time\": {}\n}}\n",
+        suggested.episodes, suggested.frames, suggested.folds, fmt::join(all, ",\n    "),
+        json(suggested.in_time));
 }
 
 }  // namespace etlc::fit

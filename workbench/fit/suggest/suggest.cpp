@@ -258,6 +258,8 @@ std::optional<Suggested> suggest(const check::Model& model, const CheckText& che
     const auto predicates = asked_for(model, names, *labelled, sink);
     if (!predicates) return std::nullopt;
     Suggested result;
+    result.predicates = *predicates;
+    result.labelled = *labelled;
     Trials trials(model, check_text);
     for (const Index predicate : *predicates) result.of.push_back(trials.add(predicate));
     const auto spec = trials.spec();

@@ -12,6 +12,7 @@
 #include "diag/diag.hpp"
 #include "episodes/ranking/auroc.hpp"
 #include "fit/readings.hpp"
+#include "fit/suggest/in_time.hpp"
 
 namespace etlc::fit {
 
@@ -35,6 +36,9 @@ struct Suggestions {
 
 struct Suggested {
     std::vector<Suggestions> of;
+    std::vector<Index> predicates;  ///< parallel to `of`
+    std::vector<Index> labelled;    ///< predicates with a truth
+    SuggestedInTime in_time;        ///< filled in by the caller, who judges the trials
     std::size_t episodes = 0;
     std::uint64_t frames = 0;
     std::size_t folds = 0;

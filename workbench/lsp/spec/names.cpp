@@ -144,7 +144,7 @@ public:
     }
 
     void visit(const ast::Truth& truth) {
-        use(truth.predicate);
+        use(truth.subject);
         visit(truth.formula);
     }
     void visit(const ast::Let& let) { visit(let.formula); }

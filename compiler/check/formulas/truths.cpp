@@ -1,0 +1,285 @@
+// Checks truths of predicates and of lets, and `where` in fitted(...). The truth of a predicate is
+// a formula over recorded inputs. In the truth of a let, in `where` and in the ground truth of a
+// monitor, what has a truth stands for it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "check/context/context.hpp"
+#include "check/formulas/formulas.hpp"
+#include "check/formulas/horizons.hpp"
+#include "check/guarantees/guarantees.hpp"
+#include "check/points/project.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+
+/// Returns the node of a predicate for which `is` holds, at or below `root`; otherwise kNone.
+template <class Is>
+Index predicate_node(const Model& model, Index root, Is is) {
+    for (const Index at : parts_of(model, root)) {
+        const Formula& formula = model.formulas[at];
+        if (formula.kind == Formula::Kind::predicate && is(formula.index)) return at;
+    }
+    return kNone;
+}
+
+/// Returns the lets that have a truth by their formulas.
+std::map<Index, const Let*> lets_with_truth(const Model& model) {
+    std::map<Index, const Let*> found;
+    for (const Let& let : model.lets)
+        if (let.truth != kNone) found.try_emplace(let.formula, &let);
+    return found;
+}
+
+class TruthCheck {
+public:
+    explicit TruthCheck(Context& context) : c_(context) {}
+
+    void run() {
+        for_each_declaration<ast::Truth>(
+            c_.spec, [&](const ast::Truth& declaration, Index) { add(declaration); });
+        reaches_ = reaches(c_.model);
+        for (const Written& written : written_) {
+            if (look_ahead(written)) continue;
+            if (written.of.kind == NameKind::predicate)
+                of_predicate(written);
+            else
+                of_let(written);
+        }
+        refuse_nested();
+    }
+
+private:
+    struct Written {
+        const ast::Truth& declaration;
+        Reference of;
+        Index formula;
+
+        const std::string& name() const { return declaration.subject.text; }
+        Span span() const { return declaration.subject.span; }
+    };
+
+    void add(const ast::Truth& declaration) {
+        const Index formula = check_formula(c_, *declaration.formula);
+        const auto of = subject(declaration.subject);
+        if (!of) return;
+        const auto [first, is_new] =
+            first_.try_emplace({of->kind, of->index}, declaration.subject.span);
+        if (!is_new)
+            c_.report(Code::duplicate_truth, declaration.subject.span,
+                      fmt::format("a second truth of '{}'", declaration.subject.text))
+                .note(first->second, "the first is here");
+        else if (formula != kNone && !c_.scope.entity(*of).broken)
+            written_.push_back({declaration, *of, formula});
+    }
+
+    /// Returns the predicate or let; nothing after an error. A truth is no use of it.
+    std::optional<Reference> subject(const ast::Name& name) {
+        const Reference* before = c_.scope.find(name.text);
+        const bool used = before != nullptr && c_.scope.entity(*before).used;
+        const Reference* found = find(c_, name, {NameKind::predicate, NameKind::let}, kWanted);
+        if (before != nullptr) c_.scope.entity(*before).used = used;
+        if (found == nullptr || found->kind == NameKind::unreadable) return std::nullopt;
+        if (found->kind == NameKind::predicate || found->kind == NameKind::let) return *found;
+        c_.report(Code::wrong_kind, name.span,
+                  fmt::format("'{}' is {}; expected {}", name.text, word_with_article(found->kind),
+                              kWanted))
+            .note(c_.scope.entity(*found).span, fmt::format("'{}' is declared here", name.text));
+        return std::nullopt;
+    }
+
+    /// Refuses operators that look ahead.
+    bool look_ahead(const Written& written) {
+        const Index future = reaches_[written.formula].future;
+        if (future == kNone) return false;
+        auto& error = c_.report(
+            Code::future_in_truth, c_.operator_spans[future],
+            fmt::format("{} looks ahead; the truth of '{}' may only look at the present and the "
+                        "past",
+                        word(future), written.name()));
+        note_place(error, written, future);
+        return true;
+    }
+
+    std::string_view word(Index formula) const {
+        return ast::operator_of(c_.model.formulas[formula].kind)->symbol;
+    }
+
+    /// Where the part is in a let, notes where the truth is.
+    void note_place(diag::Diagnostic& error, const Written& written, Index part) const {
+        const Span place = c_.operator_spans[part];
+        const Span truth = written.declaration.span;
+        if (truth.begin <= place.begin && place.end <= truth.end) return;
+        error.note(written.span(), fmt::format("the truth of '{}' is here", written.name()));
+    }
+
+    void of_predicate(const Written& written) {
+        refuse_fitted(written);
+        refuse_calibrated(written);
+        c_.model.truths.push_back({written.of.index, written.formula, written.declaration.span});
+    }
+
+    /// Fitted elements are fitted to truths, so truths cannot use them.
+    void refuse_fitted(const Written& written) {
+        const Index at = predicate_node(c_.model, written.formula, [&](Index predicate) {
+            bool found = false;
+            for_each_distance(c_.model.predicates[predicate].expression, [&](Index distance) {
+                found = found || rests_on_fitted(c_.model, c_.model.distances[distance]);
+            });
+            return found;
+        });
+        if (at == kNone) return;
+        c_.report(Code::truth_of_fitted, c_.model.formulas[at].span,
+                  fmt::format("the truth of '{}' uses '{}', which depends on fitted values; a "
+                              "truth cannot",
+                              written.name(), shown_predicate(at)));
+    }
+
+    void refuse_calibrated(const Written& written) {
+        const Index at = predicate_node(c_.model, written.formula, [&](Index predicate) {
+            return c_.model.predicates[predicate].threshold.origin != ThresholdOrigin::literal;
+        });
+        if (at == kNone) return;
+        c_.report(Code::calibrated_in_truth, c_.model.formulas[at].span,
+                  fmt::format("the truth of '{}' uses '{}', whose threshold is calibrated; a "
+                              "truth has to be exact",
+                              written.name(), shown_predicate(at)));
+    }
+
+    std::string shown_predicate(Index at) const {
+        return c_.model.predicates[c_.model.formulas[at].index].shown();
+    }
+
+    void of_let(const Written& written) {
+        Let& let = c_.model.lets[written.of.index];
+        if (const Index future = reaches_[let.formula].future; future != kNone) {
+            c_.report(Code::truth_of_let, written.span(),
+                      fmt::format("'{}' looks ahead, so it has no value at its own step that a "
+                                  "truth could judge",
+                                  let.name))
+                .note(c_.operator_spans[future], fmt::format("{} looks ahead here", word(future)));
+            return;
+        }
+        if (const Let* other = let_with_truth(c_.model, let.formula); other != nullptr) {
+            c_.report(Code::truth_of_let, written.span(),
+                      fmt::format("'{}' is another name of '{}', which has a truth", let.name,
+                                  other->name))
+                .note(other->span, fmt::format("'{}' is declared here", other->name));
+            return;
+        }
+        if (const Index at = node_without_truth(c_.model, written.formula); at != kNone) {
+            c_.report(Code::frames_without_truth, c_.model.formulas[at].span,
+                      fmt::format("in the truth of a let, predicates stand for their truths, but "
+                                  "'{}' has none",
+                                  shown_predicate(at)));
+            return;
+        }
+        let.truth = written.formula;
+        of_lets_.push_back(&written);
+    }
+
+    /// Refuses truths that use a let with a truth, since it might use itself.
+    void refuse_nested() {
+        const auto lets = lets_with_truth(c_.model);
+        for (const Written* written : of_lets_) {
+            for (const Index part : parts_of(c_.model, written->formula)) {
+                const auto used = lets.find(part);
+                if (used == lets.end()) continue;
+                c_.report(Code::truth_of_let, written->span(),
+                          fmt::format("the truth of '{}' uses '{}', which has a truth itself; "
+                                      "expected predicates, inputs and other lets",
+                                      written->name(), used->second->name));
+                break;
+            }
+        }
+    }
+
+    static constexpr std::string_view kWanted = "a predicate or a let";
+
+    Context& c_;
+    std::map<std::pair<NameKind, Index>, Span> first_;
+    std::vector<Written> written_;
+    std::vector<const Written*> of_lets_;
+    std::vector<Reach> reaches_;
+};
+
+}  // namespace
+
+void check_truths(Context& c) {
+    TruthCheck(c).run();
+}
+
+Index node_without_truth(const Model& model, Index root) {
+    return predicate_node(model, root, [&](Index predicate) {
+        return model.predicates[predicate].name.empty() && !is_own_truth(model, predicate);
+    });
+}
+
+Index with_truths_of_lets(Context& c, Index formula) {
+    const auto lets = lets_with_truth(c.model);
+    if (lets.empty()) return kNone;
+    std::map<Index, Index> truths;  // of the parts that differ from their truths
+    std::vector<Index> parts = parts_of(c.model, formula);
+    std::reverse(parts.begin(), parts.end());  // operands first
+    for (const Index part : parts) {
+        if (const auto let = lets.find(part); let != lets.end()) {
+            truths[part] = let->second->truth;
+            continue;
+        }
+        Formula copy = c.model.formulas[part];
+        std::uint32_t depth = 0;
+        for (Index& operand : copy.operands) {
+            if (const auto of = truths.find(operand); of != truths.end()) operand = of->second;
+            depth = std::max(depth, c.depths[operand]);
+        }
+        if (copy.operands == c.model.formulas[part].operands) continue;
+        if (depth >= kMaxDepth) {
+            c.report(Code::formula_too_deep, copy.span,
+                     fmt::format("a formula of more than {} levels with the truths of its lets "
+                                 "written out",
+                                 kMaxDepth));
+            return kNone;
+        }
+        truths[part] = add_formula(c, std::move(copy), c.operator_spans[part], depth + 1);
+    }
+    const auto found = truths.find(formula);
+    return found == truths.end() ? kNone : found->second;
+}
+
+/// Equal selections of frames are one formula, so that etlc fit collects them once.
+void check_fitted_frames(Context& c) {
+    std::map<std::string, Index> first;  // by text
+    for (Index i = 0; i < c.model.fitted.size(); ++i) {
+        const ast::Formula& written = *c.fitted_where[i];
+        if (written.kind == ast::Formula::Kind::constant_true) continue;
+        const Index where = check_formula(c, written);
+        c.model.fitted[i].where = where;
+        if (where == kNone) continue;
+        Index& selects = c.model.fitted[i].where;
+        if (const Index truth = with_truths_of_lets(c, where); truth != kNone) selects = truth;
+        if (lets_are_written_out(c.model, selects))
+            selects = first.try_emplace(print(c.model, selects), selects).first->second;
+        const std::vector<Reach> all = reaches(c.model);
+        if (const Index future = all[where].future; future != kNone)
+            c.report(Code::future_in_truth, c.operator_spans[future],
+                     fmt::format("{} looks ahead; frames are selected by the present and the past",
+                                 ast::operator_of(c.model.formulas[future].kind)->symbol))
+                .note(written.span, "the frames are selected here");
+        if (const Index at = node_without_truth(c.model, c.model.fitted[i].where); at != kNone)
+            c.report(Code::frames_without_truth, c.model.formulas[at].span,
+                     fmt::format("frames are selected by truths, but '{}' has none",
+                                 c.model.predicates[c.model.formulas[at].index].shown()))
+                .note(
+                    "use a named predicate with a truth: 'truth NAME = ...;' or an array "
+                    "truth.NAME in the episodes");
+    }
+}
+
+}  // namespace etlc::check
