@@ -108,8 +108,7 @@ Takes label_by() {
 
 Takes label_table() {
     return form("FILE", [](Call& call, const Takes::Words& words) {
-        call.labels.tables = words;
-        return std::string();
+        return call.labels.tables = words, std::string();
     });
 }
 
