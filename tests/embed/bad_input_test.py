@@ -257,6 +257,9 @@ def late_frames_are_those_of_all():
     part = video("late.mp4", "--first", 93, "--count", 9)
     assert len(part) == 9 and all((a == b).all() for a, b in zip(part, every[93:]))
     assert len(video("late.mp4", "--first", 120, "--rate", 5)) == 10
+    every_second = video("late.mp4", "--rate", 5)
+    part = video("late.mp4", "--rate", 5, "--skip", 47)
+    assert len(part) == 23 and all((a == b).all() for a, b in zip(part, every_second[47:]))
     refused(["video", "late.mp4", "--first", 135, "--count", 9], "there is no frame 143", 67)
     # Data before the key frame are not decoded, and may be damaged.
     packets = call("ffprobe", "-v", "error", "-select_streams", "v", "-show_entries",

@@ -44,11 +44,12 @@ const std::map<std::string, Names> kArrows = {
     {"calibrate", {"episodes", "pipeline"}},
     {"evaluate", {"episodes", "pipeline"}},
     {"report", {"explain", "fit", "evaluate"}},
+    {"label", {"calibrate", "report"}},
     {"library", {"parse", "explain", "pipeline"}},
     {"lsp", {"library"}},
     {"driver",
      {"library", "parse", "emit", "explain", "embed", "fit", "calibrate", "evaluate", "report",
-      "lsp"}},
+      "label", "lsp"}},
 };
 
 /// Stages after check, which must not include ast although the relation would allow it.
@@ -66,6 +67,7 @@ const std::map<std::string, Names> kOwners = {{"antlr4", {"parse"}},
                                               {"snappy", {"data"}},
                                               {"zstd", {"data"}},
                                               {"zlib", {"data", "report"}},
+                                              {"httplib", {"label"}},
                                               {"CLI", {"driver"}}};
 
 /// Everything that generated code may need of a C library.

@@ -15,12 +15,13 @@ depends=$(dpkg-deb -f "$deb" Depends)
 for library in libc6 libstdc++6 libfmt9 libhdf5-103 libzip4; do
     [[ $depends == *"$library"* ]] || fail "it does not depend on $library: $depends"
 done
-for library in avcodec libpng libjpeg openmpi; do
+for library in avcodec libpng libjpeg openmpi httplib libssl; do
     [[ $depends != *"$library"* ]] || fail "etlc itself depends on $library: $depends"
 done
 dpkg-deb -x "$deb" "$box/root"
 # Each helper that is built has its own package, with the libraries that it needs.
-for helper in "embed embed-video=libavcodec" mpi=libopenmpi; do
+for helper in "embed embed-video=libavcodec" mpi=libopenmpi \
+    serve=libcpp-httplib; do
     library=${helper#*=} programs=(${helper%=*})
     name=etlc-${programs[0]}
     [ ! -e "$box/root/usr/libexec/etlc/$name" ] || fail "etlc holds $name"

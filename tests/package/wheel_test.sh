@@ -40,3 +40,8 @@ SPEC
 "$native/libexec/etlc/etlc-embed" video any.mp4 2>said && fail "the wheel decodes video"
 grep -q "etlc-embed-video, which decodes video, cannot be run: .* package etlc-embed" said ||
     fail "who decodes video: $(cat said)"
+
+# It says what serves the page of labels.
+"$native/bin/etlc" label t.etl --data "$data/trace.h5" 2>said && fail "the wheel serves a page"
+grep -q "etlc-serve cannot be run, .* of the packages of etlc, etlc-serve has it" said ||
+    fail "who serves pages: $(cat said)"

@@ -45,6 +45,7 @@ class Browser:
         raise RuntimeError("chromium does not answer")
 
     def page(self, path, width=1280, height=720):
+        """Opens a file, or an address that begins with http."""
         address = f"http://127.0.0.1:{self.port}/json/new?about:blank"
         request = urllib.request.Request(address, method="PUT")
         target = json.load(urllib.request.urlopen(request, timeout=PATIENCE))
@@ -71,7 +72,8 @@ class Page:
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
         self.resize(width, height)
-        self.file = "file://" + os.path.abspath(path)
+        is_address = str(path).startswith("http")
+        self.file = path if is_address else "file://" + os.path.abspath(path)
         self.call("Page.navigate", url=self.file)
         self.wait("document.readyState === 'complete'")
 

@@ -18,6 +18,7 @@
 #include "driver/options/call.hpp"
 #include "driver/options/mistakes.hpp"
 #include "driver/process/process.hpp"
+#include "label/serve.hpp"
 #include "library/open.hpp"
 #include "lsp/lsp.hpp"
 #include "report/page.hpp"
@@ -107,6 +108,13 @@ int make_report(Call& call) {
     return can_make_pages() ? on_plan<report>(call) : kFailed;
 }
 
+int make_labels(Call& call) {
+    const std::string missing = call.label.proposals ? "" : label::what_serving_lacks();
+    if (!missing.empty()) print_error(fmt::format("etlc: {}\n", missing));
+    if (!missing.empty() || (!call.label.proposals && !can_make_pages())) return kFailed;
+    return on_spec<label>(call);
+}
+
 int evaluate_specs(Call& call) {
     return with_specs(call, [&](const auto& files, auto& sinks) {
         std::vector<SpecToJudge> specs;
@@ -122,10 +130,10 @@ int serve_editors(Call&) {
 int merge(Call& call);
 
 /// The function of each command, in the order of Command.
-constexpr int (*kFunctions[])(Call& call) = {compile_spec,     run_trace,          on_spec<embed>,
-                                             on_spec<fit>,     on_spec<calibrate>, evaluate_specs,
-                                             evaluate_specs,   serve_editors,      merge,
-                                             on_plan<explain>, on_plan<incident>,  make_report};
+constexpr int (*kFunctions[])(Call& call) = {
+    compile_spec,      run_trace,      on_spec<embed>, on_spec<fit>, on_spec<calibrate>,
+    evaluate_specs,    evaluate_specs, serve_editors,  merge,        on_plan<explain>,
+    on_plan<incident>, make_report,    make_labels};
 static_assert(std::size(kFunctions) == kCommandCount);
 
 int execute(Command command, int argc, char** argv, episodes::Sharing* merged = nullptr) {

@@ -1,5 +1,6 @@
-# Writes OUTPUT, a C++ source that holds the files of the page, with their hashes for the page's
-# Content-Security-Policy: those of FOLDER, its programs as one, and D3, the chart library.
+# Writes OUTPUT, a C++ source that holds the files of a page, with their hashes for the page's
+# Content-Security-Policy: FILES and SCRIPTS, which are relative to FOLDER; the scripts are one
+# program, page.js. With D3, also the chart library. NAMESPACE is that of the stage.
 function(add_file name text)
   string(SHA256 hash "${text}")
   string(APPEND files "        {\"${name}\", \"${hash}\",\n"
@@ -8,7 +9,7 @@ function(add_file name text)
 endfunction()
 
 set(files "")
-foreach(name page.html page.css d3_licence.txt)
+foreach(name IN LISTS FILES)
   file(READ "${FOLDER}/${name}" text)
   add_file(${name} "${text}")
 endforeach()
@@ -28,13 +29,13 @@ file(WRITE "${OUTPUT}" "#include \"report/page.hpp\"
 // C++ compilers need not support strings as long as these.
 #pragma GCC diagnostic ignored \"-Woverlength-strings\"
 
-namespace etlc::report {
+namespace etlc::${NAMESPACE} {
 
-const std::vector<PageFile>& page_files() {
-    static const std::vector<PageFile> files = {
+const std::vector<etlc::report::PageFile>& page_files() {
+    static const std::vector<etlc::report::PageFile> files = {
 ${files}    };
     return files;
 }
 
-}  // namespace etlc::report
+}  // namespace etlc::${NAMESPACE}
 ")

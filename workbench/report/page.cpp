@@ -1,19 +1,12 @@
 #include "report/page.hpp"
 
 #include <algorithm>
-#include <functional>
-#include <map>
-#include <string_view>
 
 #include "report/blob.hpp"
 
 namespace etlc::report {
 
-namespace {
-
-/// Returns the file of that name, which exists.
-const PageFile& page_file(std::string_view name) {
-    const auto& files = page_files();
+const PageFile& page_file(const std::vector<PageFile>& files, std::string_view name) {
     return *std::find_if(files.begin(), files.end(),
                          [&](const PageFile& file) { return file.name == name; });
 }
@@ -25,9 +18,8 @@ std::string hash_source(const PageFile& file) {
     return "'sha256-" + base64(bytes) + "'";
 }
 
-/// Fills the placeholders of page.html, such as {{style}}.
-std::string filled(const std::map<std::string, std::string, std::less<>>& parts) {
-    const std::string_view frame = page_file("page.html").text;
+std::string filled(std::string_view frame,
+                   const std::map<std::string, std::string, std::less<>>& parts) {
     std::string text;
     for (std::size_t at = 0;;) {
         const std::size_t open = frame.find("{{", at);
@@ -39,16 +31,16 @@ std::string filled(const std::map<std::string, std::string, std::less<>>& parts)
     }
 }
 
-}  // namespace
-
 std::string page_of(const std::string& data, const std::string& figures) {
-    const PageFile& d3 = page_file("d3.js");
-    const PageFile& script = page_file("page.js");
-    const PageFile& style = page_file("page.css");
-    return filled({{"style", std::string(style.text)},
+    const auto& files = page_files();
+    const PageFile& d3 = page_file(files, "d3.js");
+    const PageFile& script = page_file(files, "page.js");
+    const PageFile& style = page_file(files, "page.css");
+    return filled(page_file(files, "page.html").text,
+                  {{"style", std::string(style.text)},
                    {"style-hash", hash_source(style)},
                    {"d3", std::string(d3.text)},
-                   {"d3-licence", std::string(page_file("d3_licence.txt").text)},
+                   {"d3-licence", std::string(page_file(files, "d3_licence.txt").text)},
                    {"script", std::string(script.text)},
                    {"script-hashes", hash_source(d3) + " " + hash_source(script)},
                    {"figures", figures},

@@ -3,6 +3,8 @@
 // Content-Security-Policy lists their hashes, and no address.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +18,16 @@ struct PageFile {
     std::string_view text;
 };
 const std::vector<PageFile>& page_files();
+
+/// Returns the file of that name, which exists.
+const PageFile& page_file(const std::vector<PageFile>& files, std::string_view name);
+
+/// Returns the hash of a program or a style, as a Content-Security-Policy names it.
+std::string hash_source(const PageFile& file);
+
+/// Fills the placeholders of a page, such as {{style}}.
+std::string filled(std::string_view frame,
+                   const std::map<std::string, std::string, std::less<>>& parts);
 
 /// Returns the page. `figures` is the output of `etlc evaluate --json`, or null. Neither text may
 /// be able to end a script element.

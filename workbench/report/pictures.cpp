@@ -79,14 +79,6 @@ std::string name_of(const std::string& episode) {
     return std::filesystem::path(episode.substr(file.size() + 1)).filename().string();
 }
 
-std::vector<std::string> matching(std::string pattern, const std::string& episode) {
-    const std::string name = data::literal(name_of(episode));
-    for (std::size_t at = 0; (at = pattern.find(kEpisode, at)) != std::string::npos;
-         at += name.size())
-        pattern.replace(at, kEpisode.size(), name);
-    return data::paths_matching(pattern).value_or(std::vector<std::string>{});
-}
-
 std::string not_one_a_step(std::uint64_t found, std::uint64_t steps) {
     return fmt::format("found {}, expected {}, one per step", diag::counted(found, "picture"),
                        steps);
@@ -253,6 +245,26 @@ bool FramesOption::is_pattern() const {
            ends(".jpeg") || data::is_video(text);
 }
 
+bool check_pattern(const FramesOption& option, std::size_t episodes, diag::Sink& sink) {
+    if (!option.is_pattern() || episodes == 1 || option.text.find(kEpisode) != std::string::npos)
+        return true;
+    sink.report(data::in_file(
+        {Code::no_frames, fmt::format("names the same pictures for each of {}, expected {} in it, "
+                                      "which stands for an episode's name",
+                                      diag::counted(episodes, "episode"), kEpisode)},
+        "--frames " + option.text));
+    return false;
+}
+
+std::vector<std::string> files_of_frames(const FramesOption& option, const std::string& episode) {
+    std::string pattern = option.text;
+    const std::string name = data::literal(name_of(episode));
+    for (std::size_t at = 0; (at = pattern.find(kEpisode, at)) != std::string::npos;
+         at += name.size())
+        pattern.replace(at, kEpisode.size(), name);
+    return data::paths_matching(pattern).value_or(std::vector<std::string>{});
+}
+
 std::uint64_t Pictures::bytes() const {
     std::uint64_t sum = 0;
     for (const std::string& file : files) sum += file.size();
@@ -262,7 +274,7 @@ std::uint64_t Pictures::bytes() const {
 diag::Result<Pictures> pictures_of(const FramesOption& option, const std::string& episode,
                                    const Length& length, std::uint64_t most_bytes) {
     if (!option.is_pattern()) return from_array(option.text, episode, length.steps, most_bytes);
-    const std::vector<std::string> paths = matching(option.text, episode);
+    const std::vector<std::string> paths = files_of_frames(option, episode);
     if (paths.size() == 1 && data::is_video(paths[0]))
         return from_video(paths[0], length, most_bytes);
     return from_files(paths, length.steps, most_bytes);

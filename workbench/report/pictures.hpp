@@ -3,6 +3,7 @@
 // shown at its own step; an episode with other numbers of pictures and steps has none.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -38,6 +39,13 @@ struct Length {
     std::uint64_t steps = 0;
     double rate = 0;
 };
+
+/// Checks that a pattern names different pictures for each episode. Reports E0840 and returns false
+/// where it does not.
+bool check_pattern(const FramesOption& option, std::size_t episodes, diag::Sink& sink);
+
+/// Returns the files that a pattern names for an episode, in order.
+std::vector<std::string> files_of_frames(const FramesOption& option, const std::string& episode);
 
 /// Reads the pictures of an episode. Failures (a file or an array without pictures) do not name it.
 diag::Result<Pictures> pictures_of(const FramesOption& option, const std::string& episode,

@@ -189,25 +189,11 @@ bool report_unpictured(const Gathering& gathered, diag::Sink& sink) {
     return !none;
 }
 
-/// Checks that a pattern names different pictures for each episode.
-bool check_pattern(const Request& request, diag::Sink& sink) {
-    const FramesOption& frames = request.frames;
-    if (!frames.is_pattern() || request.episodes.size() == 1 ||
-        frames.text.find("{episode}") != std::string::npos)
-        return true;
-    sink.report(data::in_file(
-        {diag::Code::no_frames, fmt::format("names the same pictures for each of {}, expected "
-                                            "{{episode}} in it, which stands for an episode's name",
-                                            diag::counted(request.episodes.size(), "episode"))},
-        "--frames " + frames.text));
-    return false;
-}
-
 }  // namespace
 
 std::optional<std::string> page(const Material& material, const Request& request,
                                 diag::Sink& sink) {
-    if (!check_pattern(request, sink)) return std::nullopt;
+    if (!check_pattern(request.frames, request.episodes.size(), sink)) return std::nullopt;
     const plan::Plan& plan = material.spec.plan;
     std::optional<pipeline::Compiled> truth;
     if (material.truth != nullptr) {

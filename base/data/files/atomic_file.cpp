@@ -220,6 +220,11 @@ std::optional<diag::Failure> AtomicFile::finish() {
     return {};
 }
 
+std::optional<diag::Failure> AtomicFile::sync() {
+    if (uninterrupted([&] { return ::fsync(*file_); }) != 0) return failed(errno);
+    return {};
+}
+
 bool AtomicFile::link_as(const char* name) {
     const std::string nameless = fmt::format("/proc/self/fd/{}", *file_);
     return ::linkat(AT_FDCWD, nameless.c_str(), *folder_, name, AT_SYMLINK_FOLLOW) == 0;
@@ -303,6 +308,21 @@ std::optional<diag::Failure> write_file_atomically(const std::string& path, std:
     if (!file) return file.failure();
     if (auto failure = file->write(bytes)) return failure;
     return file->commit();
+}
+
+std::optional<diag::Failure> write_file_durably(const std::string& path, std::string_view bytes,
+                                                diag::Code code) {
+    auto file = AtomicFile::create(path, code);
+    if (!file) return file.failure();
+    if (auto failure = file->write(bytes)) return failure;
+    if (auto failure = file->sync()) return failure;
+    if (auto failure = file->commit()) return failure;
+    const fs::path parent = behind_links(path).parent_path();
+    const Descriptor folder(uninterrupted([&] {
+        return ::open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    }));
+    if (folder) static_cast<void>(::fsync(*folder));
+    return {};
 }
 
 }  // namespace etlc::data

@@ -5,8 +5,8 @@
 // until it is complete a file has no name, where the file system supports such files. Only during
 // the few system calls that exchange names, and on file systems without nameless files, a kill
 // leaves `.etlc-PROCESS-NUMBER.part`, until the next call that writes into that folder. A replaced
-// file keeps its permissions, and its owner and group where the system permits. Nothing waits for
-// the disk: a power failure loses what is not yet stored.
+// file keeps its permissions, and its owner and group where the system permits. Only
+// write_file_durably waits for the disk: elsewhere a power failure loses what is not yet stored.
 #pragma once
 
 #include <sys/stat.h>
@@ -40,6 +40,8 @@ public:
     ~AtomicFile();  ///< undoes what was not committed
 
     std::optional<diag::Failure> write(std::string_view bytes);
+    /// Waits until the disk has what was written.
+    std::optional<diag::Failure> sync();
     /// Calls commit_all() for this file alone.
     std::optional<diag::Failure> commit();
 
@@ -88,5 +90,9 @@ void remove_left_over(const std::string& folder);
 /// Writes `bytes` as the whole content of `path`.
 std::optional<diag::Failure> write_file_atomically(const std::string& path, std::string_view bytes,
                                                    diag::Code code);
+
+/// Does so, and returns when the disk has the bytes, and the name where its file system tells.
+std::optional<diag::Failure> write_file_durably(const std::string& path, std::string_view bytes,
+                                                diag::Code code);
 
 }  // namespace etlc::data

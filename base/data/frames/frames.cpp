@@ -121,6 +121,7 @@ diag::Result<std::unique_ptr<FrameSource>> open_video(const std::string& path,
     if (choice.first > 0) add("--first", std::to_string(choice.first));
     if (choice.count < UINT64_MAX) add("--count", std::to_string(choice.count));
     if (choice.rate > 0) add("--rate", fmt::format("{}", choice.rate));
+    if (choice.skipped > 0) add("--skip", std::to_string(choice.skipped));
     if (choice.total) add("--total", std::to_string(*choice.total));
     return start(arguments, {Code::unreadable_video, choice.total_of});
 }

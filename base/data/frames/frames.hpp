@@ -38,6 +38,7 @@ struct FrameChoice {
     /// One frame per step of 1 / rate seconds, from the first on; the frame rate has to be a whole
     /// multiple of this rate. 0: every frame.
     double rate = 0;
+    std::uint64_t skipped = 0;  ///< steps to leave out after `first`
     /// The number of frames that the video must have, and whose they are: "of 2 episodes".
     std::optional<std::uint64_t> total;
     std::string total_of;

@@ -65,6 +65,9 @@ bool embed(const source::File& file, const Request& request, diag::Sink& sink);
 bool fit(const source::File& file, const Request& request, diag::Sink& sink);
 /// `etlc calibrate`: writes the file of thresholds.
 bool calibrate(const source::File& file, const Request& request, diag::Sink& sink);
+/// `etlc label`: serves the page on which episodes are labelled until the process is stopped, or
+/// prints proposals for their labels.
+bool label(const source::File& file, const Request& request, diag::Sink& sink);
 
 // ---- evaluation ---------------------------------------------------------------------------------
 

@@ -105,6 +105,12 @@ struct Request : pipeline::Options {
         std::uint64_t megabytes = report::kUsualMegabytes;  ///< size of the page
         bool without_truths = false;                        ///< compare verdicts with nothing
     } report;
+
+    struct Label {
+        std::string camera;      ///< of a data set
+        std::uint32_t port = 0;  ///< 0: any free one
+        bool proposals = false;  ///< print proposals in place of serving the page
+    } label;
 };
 
 }  // namespace etlc::driver

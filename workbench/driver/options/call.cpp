@@ -43,7 +43,11 @@ constexpr Row kCommands[] = {
      "Prints what the flight recorder of a monitor wrote: the steps around an alarm."},
     {Command::report, "report", "SPEC.etl --data FILE... -o PAGE.html",
      "Writes a web page about recorded episodes: the verdicts of a spec's monitors, why, and where "
-     "they are wrong."}};
+     "they are wrong."},
+    {Command::label, "label", "SPEC.etl --data FILE...",
+     "Serves a page, on this machine alone, on which you label the predicates of a spec in "
+     "recorded "
+     "episodes."}};
 static_assert(std::size(kCommands) == kCommandCount);
 
 }  // namespace

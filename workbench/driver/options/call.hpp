@@ -28,8 +28,9 @@ enum class Command : std::uint8_t {
     explain,
     incident,
     report,
+    label,
 };
-inline constexpr std::size_t kCommandCount = 12;
+inline constexpr std::size_t kCommandCount = 13;
 
 /// The default of etlc crossvalidate.
 inline constexpr std::uint32_t kUsualFolds = 5;

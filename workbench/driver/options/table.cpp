@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "data/recordings/open.hpp"
+#include "driver/commands/commands.hpp"
 #include "driver/options/mistakes.hpp"
 #include "driver/options/option.hpp"
 
@@ -23,8 +24,9 @@ constexpr Commands kEvaluate = Commands(evaluate) | crossvalidate;
 constexpr Commands kPlan = kExecute | kEvaluate | compile | incident | report;
 constexpr Commands kLearn = Commands(fit) | calibrate;
 constexpr Commands kReadEpisodes = kLearn | kEvaluate | report;
-constexpr Commands kReadRecordings = kReadEpisodes | kExecute | embed;
-constexpr Commands kReadSpec = kPlan | kLearn | embed;
+constexpr Commands kFindEpisodes = kReadEpisodes | label;
+constexpr Commands kReadRecordings = kFindEpisodes | kExecute | embed;
+constexpr Commands kReadSpec = kPlan | kLearn | embed | label;
 
 constexpr auto kRequired = Option::Need::required;
 
@@ -104,6 +106,12 @@ Takes label_by() {
     return takes;
 }
 
+Takes label_table() {
+    return form("FILE", [](Call& call, const Takes::Words& words) {
+        return call.labels.tables = words, std::string();
+    });
+}
+
 Takes folds() {
     return number<std::uint32_t>(in(&Call::folds), 2, 1000);
 }
@@ -138,8 +146,8 @@ std::vector<Option> make_options() {
         {incident, "file", file(in(&Call::incident, &Call::Incident::file)),
          "file written by write_incident()", kRequired},
         {merge, "parts", texts("PART...", in(&Call::parts)), "the parts, in any order", kRequired},
-        {kExecute | kLearn | compile | embed | report, "spec", spec(), "the spec, a .etl file",
-         kRequired},
+        {kExecute | kLearn | compile | embed | report | label, "spec", spec(),
+         "the spec, a .etl file", kRequired},
         {incident, "--spec", spec(), "the spec, a .etl file", kRequired},
         {kEvaluate, "spec", texts("SPEC.etl", in(&Call::specs)),
          "the specs, .etl files; several are compared side by side", kRequired},
@@ -156,7 +164,8 @@ std::vector<Option> make_options() {
          "calibrated thresholds (default: SPEC.thresholds.json beside the spec, if it exists)"},
         {kPlan | calibrate, "--fitted", file(in(&Call::check, &check::Options::fitted_path)),
          "file written by 'etlc fit' (default: SPEC.fitted.npz beside the spec, if it exists)"},
-        {kPlan | kLearn, "--embedded", file(in(&Call::check, &check::Options::embedded_path)),
+        {kPlan | kLearn | label, "--embedded",
+         file(in(&Call::check, &check::Options::embedded_path)),
          "embeddings written by 'etlc embed' (default: SPEC.embedded.npz beside the spec)"},
         {kPlan, "--values",
          choice<check::Values>(
@@ -208,7 +217,7 @@ std::vector<Option> make_options() {
          "also write the dependencies of the output, for make and ninja"},
 
         // Recordings.
-        {kReadEpisodes, "--data", texts("FILE...", in(&Call::data)),
+        {kFindEpisodes, "--data", texts("FILE...", in(&Call::data)),
          "episodes: files (" + data::trace_endings() + "), folders, data sets, 'patterns'",
          kRequired},
         {embed, "--data", texts("FILE...", in(&Call::data)),
@@ -225,7 +234,7 @@ std::vector<Option> make_options() {
         {embed, "--camera", several(form("[INPUT=]NAME", read_cameras)),
          "the camera of a data set, or the array of images: observation.images.top; for one input "
          "only, z=observation.images.top"},
-        {kReadEpisodes, "--episodes", text("PATTERN", in(&Call::groups)),
+        {kFindEpisodes, "--episodes", text("PATTERN", in(&Call::groups)),
          "groups of .h5 files that are episodes: 'data/*'"},
         {embed, "--episodes", text("PATTERN", in(&Call::groups)),
          "groups of .h5 files that are recordings: 'data/*'"},
@@ -233,7 +242,7 @@ std::vector<Option> make_options() {
          checked(text("REASON", in(&Call::allow_overlap)), mistake_in_reason),
          "reason to accept episodes that share most of their content or contain targets; it is "
          "written into the result"},
-        {kReadEpisodes, "-j,--jobs", number<unsigned>(in(&Call::jobs), 1, 1024),
+        {kFindEpisodes, "-j,--jobs", number<unsigned>(in(&Call::jobs), 1, 1024),
          "threads (default: as many as the machine has)"},
         {kReadEpisodes, "--labels",
          texts("FILE...", in(&Call::labels, &episodes::LabelSources::tables)),
@@ -354,7 +363,7 @@ std::vector<Option> make_options() {
          "where to write the result, thresholds or JSON (default: the output of the call)"},
 
         // etlc report
-        {report, "--frames", frames(),
+        {Commands(report) | label, "--frames", frames(),
          "camera frames: an array of the episodes (T x H x W x 3 uint8), or a pattern of PNG or "
          "JPEG files, one a step, or of videos, in which {episode} stands for the episode's name: "
          "'camera/{episode}/*.png'"},
@@ -364,6 +373,16 @@ std::vector<Option> make_options() {
         {report, "--no-truths", flag(in(&Call::report, &Call::Report::without_truths)),
          "show the verdicts without comparing them with truths"},
         {report, "-o,--output", file(in(&Call::output)), "the page, an .html file", kRequired},
+
+        // etlc label
+        {label, "--labels", label_table(),
+         "table of labels to write, a .csv file (default: labels.csv beside the episodes)"},
+        {label, "--camera", text("NAME", in(&Call::label, &Call::Label::camera)),
+         "the camera of a data set whose folder --frames names, or that holds the episodes"},
+        {label, "--port", number<std::uint32_t>(in(&Call::label, &Call::Label::port), 1, 65535),
+         "port of the page (default: any free one)"},
+        {label, "--proposals", flag(in(&Call::label, &Call::Label::proposals)),
+         "print as JSON what the labelled episodes propose for the others, and serve no page"},
 
         {lsp, "--stdio", flag(in(&Call::on_standard_streams)),
          "accepted for clients that pass it; standard input and output are always used"},

@@ -104,6 +104,7 @@ struct Choice {
     std::vector<std::int64_t> only;
     std::int64_t first = 0;
     std::int64_t count = INT64_MAX;
+    std::int64_t skip = 0;  ///< steps to leave out after `first`
     double rate = 0;
     std::optional<std::int64_t> total;  ///< number of frames that the video must have
 
@@ -130,6 +131,7 @@ Choice choice_of(const Words& options) {
     for (const double frame : options.numbers("--only")) choice.only.push_back(whole(frame));
     for (const double frame : options.numbers("--first")) choice.first = whole(frame);
     for (const double frames : options.numbers("--count")) choice.count = whole(frames);
+    for (const double steps : options.numbers("--skip")) choice.skip = whole(steps);
     for (const double rate : options.numbers("--rate")) choice.rate = rate;
     for (const double frames : options.numbers("--total")) choice.total = whole(frames);
     return choice;
@@ -320,9 +322,10 @@ void check_count(const Decoder& decoder, const Choice& choice) {
 void send_video(const std::string& path, const Words& options) {
     av_log_set_level(AV_LOG_QUIET);
     if (const std::string why = why_cut(path); !why.empty()) refuse(kRefused, why);
-    const Choice choice = choice_of(options);
+    Choice choice = choice_of(options);
     Decoder decoder("file:" + path);
     Clock clock(decoder.stream(), choice.rate);
+    choice.first += choice.skip * clock.stride();
     Converter converter;
     const int turns = quarter_turns(decoder.stream());
     const Picture picture(av_frame_alloc());

@@ -1,5 +1,6 @@
 #include "episodes/labels/episode_names.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <string_view>
@@ -62,6 +63,14 @@ std::vector<std::string> traces_in(const std::string& folder) {
     return found;
 }
 
+/// Calls `take(name)` with each end of a whole name that names the episode too.
+template <class Take>
+void for_each_end(const EpisodePath& parts, const std::string& name, const Take& take) {
+    for (std::size_t at = name.find_first_of("/:"); at != std::string::npos;
+         at = name.find_first_of("/:", at + 1))
+        if (name[at] == '/' || at == parts.file.size()) take(name.substr(at + 1));
+}
+
 void add(std::size_t episode, const std::string& name, bool is_whole, std::set<std::string>& whole,
          Named& names) {
     const auto found = names.find(name);
@@ -101,12 +110,43 @@ void find_named(const std::vector<std::string>& episodes, Named& names) {
         for (const std::string& name : whole_names(parts)) {
             add(e, name, is_path, whole, names);
             is_path = false;
-            for (std::size_t at = name.find_first_of("/:"); at != std::string::npos;
-                 at = name.find_first_of("/:", at + 1))
-                if (name[at] == '/' || at == parts.file.size())
-                    add(e, name.substr(at + 1), false, whole, names);
+            for_each_end(parts, name,
+                         [&](const std::string& end) { add(e, end, false, whole, names); });
         }
     }
+}
+
+std::vector<std::string> shortest_names(const std::vector<std::string>& episodes) {
+    const auto normal = [](const std::string& path) {
+        return fs::path(path).lexically_normal().string();
+    };
+    const std::size_t count = episodes.size();
+    std::vector<std::string> all = episodes;
+    std::set<std::string> known;
+    for (const std::string& path : episodes) known.insert(normal(path));
+    for (const std::string& path : neighbours_of(episodes))
+        if (known.insert(normal(path)).second) all.push_back(path);
+    Named named;
+    std::vector<std::vector<std::string>> names(count);
+    for (std::size_t e = 0; e < count; ++e) {
+        const EpisodePath parts = parts_of(all[e]);
+        for (const std::string& name : whole_names(parts)) {
+            names[e].push_back(name);
+            for_each_end(parts, name, [&](const std::string& end) { names[e].push_back(end); });
+        }
+        std::stable_sort(names[e].begin(), names[e].end(),
+                         [](const auto& a, const auto& b) { return a.size() < b.size(); });
+        for (const std::string& name : names[e]) named[name];
+    }
+    find_named(all, named);
+    std::vector<std::string> shortest;
+    for (std::size_t e = 0; e < count; ++e) {
+        const auto found = std::find_if(names[e].begin(), names[e].end(), [&](const auto& name) {
+            return named.at(name) == std::vector<std::size_t>{e};
+        });
+        shortest.push_back(found == names[e].end() ? all[e] : *found);
+    }
+    return shortest;
 }
 
 std::vector<std::string> neighbours_of(const std::vector<std::string>& episodes) {

@@ -23,6 +23,10 @@ using Named = std::map<std::string, std::vector<std::size_t>>;
 /// out, and zeros before the number of an episode of a data set.
 void find_named(const std::vector<std::string>& episodes, Named& names);
 
+/// Returns the shortest name of each episode that no other one has, nor one that lies where these
+/// lie; the path where there is none.
+std::vector<std::string> shortest_names(const std::vector<std::string>& episodes);
+
 /// Lists the episodes that lie where these lie, and perhaps these too.
 std::vector<std::string> neighbours_of(const std::vector<std::string>& episodes);
 

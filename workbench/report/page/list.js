@@ -60,15 +60,6 @@ function drawMoreRows() {
   markSelected();
 }
 
-// Scrolls the list, not the page.
-function bringIntoSight(row) {
-  const box = row.parentElement;
-  const top = row.offsetTop;
-  if (top < box.scrollTop) box.scrollTop = top;
-  const bottom = top + row.offsetHeight;
-  if (bottom > box.scrollTop + box.clientHeight) box.scrollTop = bottom - box.clientHeight;
-}
-
 function markSelected() {
   for (const row of document.getElementById("rows").children) {
     const isSelected = row.dataset.place === String(list.selected?.place);

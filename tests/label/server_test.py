@@ -1,0 +1,227 @@
+#!/usr/bin/env python3
+"""server_test.py ETLC: what `etlc label` refuses, how fast a key is on disk, and what it proposes,
+without a browser."""
+import http.client
+import json
+import os
+import pathlib
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+from service import SPEC, STEPS, Service, make_episodes, rows
+
+ETLC = sys.argv[1]
+
+
+def request(service, path, method="GET", body=None, **headers):
+    connection = http.client.HTTPConnection("127.0.0.1", service.port, timeout=60)
+    connection.request(method, path, body, headers)
+    answer = connection.getresponse()
+    content = answer.read()
+    connection.close()
+    return answer.status, content
+
+
+def act(service, **what):
+    status, content = request(service, f"/{service.token}/act", "POST",
+                              json.dumps({"page": "test", **what}))
+    return status, json.loads(content)
+
+
+def only_with_the_token(service):
+    token = service.token
+    for path in ("/", "/act", "/frame/0/0", "/favicon.ico", f"/{token}", f"/{token[:-1]}/",
+                 f"/{token[:-1]}x/", f"/{token}x/", f"//{token}/", f"/x/{token}/", "/../etc/passwd",
+                 f"/{'0' * 32}/act"):
+        for method in ("GET", "POST", "HEAD", "PUT", "DELETE", "OPTIONS", "PATCH"):
+            status, _ = request(service, path, method)
+            assert status == 403, (method, path, status)
+    inside = f"/{token}/"
+    assert request(service, inside)[0] == 200
+    for wrong in ({"Host": "evil.example"}, {"Host": f"evil.example:{service.port}"},
+                  {"Host": "127.0.0.1:1"}, {"Origin": "http://evil.example"}, {"Origin": "null"},
+                  {"Origin": f"https://127.0.0.1:{service.port}"}):
+        status, _ = request(service, inside, **wrong)
+        assert status == 403, (wrong, status)
+    for right in ({"Host": f"localhost:{service.port}"},
+                  {"Origin": f"http://127.0.0.1:{service.port}"}):
+        assert request(service, inside, **right)[0] == 200, right
+    for path in ("etc/passwd", "../labels.csv", "frame/0/60", "frame/9/0", "frame/0", "frame/-1/0",
+                 "frame/0/x", "state", "labels.csv"):
+        status, _ = request(service, inside + path)
+        assert status in (400, 404), (path, status)
+
+
+def only_on_the_loopback(service):
+    """The port is one that other machines cannot reach."""
+    lines = pathlib.Path("/proc/net/tcp").read_text().splitlines()[1:]
+    listening = [line.split()[1] for line in lines if line.split()[3] == "0A"]
+    ours = [address for address in listening if int(address.split(":")[1], 16) == service.port]
+    assert ours == [f"0100007F:{service.port:04X}"], ours
+    six = pathlib.Path("/proc/net/tcp6")
+    lines = six.read_text().splitlines()[1:] if six.exists() else []
+    assert not [line for line in lines if line.split()[1].endswith(f":{service.port:04X}")]
+
+
+def nonsense(service):
+    """Requests that no page makes change nothing, and end nothing."""
+    for body in (b"", b"{", b"[]", b"null", b'{"page": 1}', b'{"page": "test", "action": "begin"}',
+                 b'{"page": "test", "action": "begin", "episode": 99}', b"\xff" * 100,
+                 b'{"page": "test", "action": "burn", "episode": 0, "predicate": 0, "step": 0}',
+                 b'{"page": "test", "action": "end", "episode": 0, "predicate": 7, "step": 0}',
+                 b'{"page": "test", "action": "end", "episode": 0, "predicate": 0, "step": 60}',
+                 b'{"page": "test", "action": "accept", "episode": 0}'):
+        for path in ("act", "state"):
+            status, _ = request(service, f"/{service.token}/{path}", "POST", body)
+            assert status in (200, 400) if path == "state" else status == 400, (body, status)
+    with socket.create_connection(("127.0.0.1", service.port)) as raw:
+        raw.sendall(b"\0\1\2 nonsense\r\n\r\n")
+        raw.recv(1000)
+    assert not service.table.exists()
+
+
+def refused(folder, message, *words):
+    done = subprocess.run([ETLC, "label", "stack.etl", "--data", "demos", *words], cwd=folder,
+                          capture_output=True, text=True, timeout=60)
+    assert done.returncode == 1 and message in done.stderr, done.stderr
+
+
+def wrong_tables(folder):
+    table = folder / "demos" / "labels.csv"
+    for row, message in (("ep77,near,1,2", "[E0861]"), ("ep1,neer,1,2", "did you mean 'near'"),
+                         ("ep1,near,2,1", "[E0860]"), ("ep1,near,5,61", "[E0861]"),
+                         ("ep1,near,5,9\nep1,near,8,", "[E0862]")):
+        table.write_text(f"episode,predicate,start,end\n{row}\n")
+        refused(folder, message)
+    table.write_text("episode,predicate,start_s,end_s\nep1,near,0.5,1.2\n")
+    with Service(ETLC, folder) as service:
+        status, _ = act(service, action="end", episode=1, predicate=0, step=9)
+        assert status == 200
+        # The hostile name is the first episode, so number 1 is ep0.
+        assert rows(table) == [["ep0", "near", "0", "1"],
+                               ["ep1", "near", "0.5", "1.2"]], rows(table)
+    table.unlink()
+    refused(folder, "expected {episode}", "--frames", "camera/*.png")
+    array = np.zeros(STEPS, bool)
+    np.savez(folder / "demos" / "ep7.npz", **{"truth.near": array}, z=np.zeros((STEPS, 2), "f4"))
+    with Service(ETLC, folder) as service:
+        status, said = act(service, action="begin", episode=6, predicate=0, step=0)
+        assert status == 400 and "array" in said["error"], said
+        assert act(service, action="begin", episode=6, predicate=1, step=0)[0] == 200
+        taken = subprocess.run([ETLC, "label", "stack.etl", "--data", "demos", "--port",
+                                str(service.port)], cwd=folder, capture_output=True, text=True)
+        assert taken.returncode == 1 and "another program listens" in taken.stderr, taken.stderr
+    table.unlink()
+    (folder / "demos" / "ep7.npz").unlink()
+
+
+def proposals(folder):
+    call = [ETLC, "label", "stack.etl", "--data", "demos", "--proposals"]
+
+    def proposed():
+        done = subprocess.run(call, cwd=folder, capture_output=True, text=True, check=True)
+        return json.loads(done.stdout)
+
+    table = folder / "demos" / "labels.csv"
+    table.write_text("episode,predicate,start,end\n" + "".join(
+        f"ep{number},near,50,\nep{number},passes,13,36\n" for number in range(2)))
+    assert proposed() == {"labelled": 2, "why_none": "", "proposals": []}
+    with table.open("a") as file:
+        file.write("ep2,near,49,\nep2,passes,13,35\n")
+    found = proposed()
+    assert found["labelled"] == 3 and len(found["proposals"]) == 3, found
+    doubts = [one["doubt"] for one in found["proposals"]]
+    assert doubts == sorted(doubts, reverse=True), doubts
+    for one in found["proposals"]:
+        z = np.load(folder / "demos" / f"{one['name']}.npz")["z"]
+        [[start, end, code]] = one["predicates"]["passes"]
+        true = np.flatnonzero(np.abs(z[:, 0] - 3) <= 1)
+        assert code == 1 and abs(start - true[0]) <= 1 and abs(end - 1 - true[-1]) <= 1, one
+    table.write_text("episode,predicate\n" + "".join(
+        f"ep{number},!near\nep{number},passes\n" for number in range(3)))
+    done = subprocess.run(call, cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0 and "no labelled step of 'near' is true" in done.stdout, done
+    for one in json.loads(done.stdout)["proposals"]:
+        assert list(one["predicates"]) == ["passes"], one
+    table.unlink()
+
+
+def another_table(folder):
+    with Service(ETLC, folder, "--labels", "mine.csv") as service:
+        assert act(service, action="never", episode=1, predicate=1, step=0)[0] == 200
+        assert rows(folder / "mine.csv") == [["ep0", "!passes", "", ""]]
+        assert not service.table.exists()
+    refused(folder, "[E0860]", "--labels", "stack.etl")
+
+
+def without_a_server(folder):
+    (folder / "bin").mkdir()
+    alone = folder / "bin" / "etlc"
+    shutil.copy(ETLC, alone)
+    done = subprocess.run([alone, "label", "stack.etl", "--data", "demos"], cwd=folder,
+                          capture_output=True, text=True)
+    assert done.returncode == 1 and "libcpp-httplib-dev" in done.stderr, done.stderr
+
+
+def ends_together(folder):
+    """Whichever of the two processes is killed, the other one ends, and etlc says why."""
+    with Service(ETLC, folder) as service:
+        [listener] = children(service.process.pid)
+        os.kill(listener, signal.SIGKILL)
+        assert service.process.wait(60) == 1
+        said = service.process.stderr.read()
+        assert "etlc-serve was stopped by signal 9" in said, said
+    with Service(ETLC, folder) as service:
+        [listener] = children(service.process.pid)
+        service.process.send_signal(signal.SIGINT)
+        service.process.wait(60)
+        end = time.monotonic() + 60
+        while pathlib.Path(f"/proc/{listener}/exe").exists():  # a zombie has no program
+            assert time.monotonic() < end, "etlc-serve goes on"
+            time.sleep(0.02)
+
+
+def children(process):
+    text = pathlib.Path(f"/proc/{process}/task/{process}/children").read_text()
+    return [int(word) for word in text.split()]
+
+
+def time_to_disk(service):
+    times = []
+    for step in range(60):
+        begun = time.monotonic()
+        assert act(service, action="begin", episode=0, predicate=0, step=step)[0] == 200
+        times.append(time.monotonic() - begun)
+        assert rows(service.table)[0][2] in (str(step), "") or step == 0
+    status = pathlib.Path(f"/proc/{service.process.pid}/status").read_text()
+    memory = [line.split()[1] for line in status.splitlines() if line.startswith("VmHWM")][0]
+    print(f"a key is on disk after {1000 * np.median(times):.1f} ms, at most "
+          f"{1000 * max(times):.1f} ms; memory {int(memory) / 1024:.0f} MiB")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        (folder / "stack.etl").write_text(SPEC)
+        make_episodes(folder / "demos")
+        with Service(ETLC, folder, "--frames", "camera") as service:
+            only_with_the_token(service)
+            only_on_the_loopback(service)
+            nonsense(service)
+            time_to_disk(service)
+            service.table.unlink()
+        wrong_tables(folder)
+        another_table(folder)
+        without_a_server(folder)
+        ends_together(folder)
+        proposals(folder)
+
+
+main()

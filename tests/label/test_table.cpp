@@ -1,0 +1,98 @@
+// Tests the tables that `etlc label` rewrites.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "label/table.hpp"
+#include "npy_bytes.hpp"
+
+namespace etlc::label {
+namespace {
+
+using diag::Code;
+using episodes::Label;
+using tests::file_bytes;
+using tests::TemporaryPath;
+
+const std::vector<std::string> kEpisodes{"demos/a.npz", "demos/b.npz"};
+
+LabelsOf near_in_a(Marks marks) {
+    return {"demos/a.npz", "a", "near", 20, std::move(marks)};
+}
+
+Table read(const std::string& path, double step_seconds = 0) {
+    auto table = Table::read(path, kEpisodes, step_seconds);
+    EXPECT_TRUE(table);
+    return std::move(*table);
+}
+
+TEST(Table, IsMadeWithTheFirstLabel) {
+    const TemporaryPath file("labels.csv");
+    Table table = read(file.path());
+    EXPECT_FALSE(table.write({near_in_a({{{2, 5}, {7, 20, Label::unknown}}})}));
+    EXPECT_EQ(file_bytes(file.path()), "episode,predicate,start,end\na,near,2,5\na,?near,7,\n");
+    EXPECT_FALSE(table.write({near_in_a(std::vector<Interval>())}));
+    EXPECT_EQ(file_bytes(file.path()), "episode,predicate,start,end\na,!near,,\n");
+    EXPECT_FALSE(table.write({near_in_a(std::nullopt)}));
+    EXPECT_EQ(file_bytes(file.path()), "episode,predicate,start,end\n");
+}
+
+TEST(Table, KeepsWhatIsAboutSomethingElse) {
+    const TemporaryPath file("labels.csv",
+                             "predicate,episode,end,start,group\n"
+                             "near,other,4,,\n,a,,,monday\nnear,a.npz,3,1,monday\nfar,a,,,\n"
+                             "near,\"b\",9,8,\n");
+    Table table = read(file.path());
+    EXPECT_FALSE(table.write({near_in_a({{{2, 5}}})}));
+    EXPECT_EQ(file_bytes(file.path()),
+              "episode,predicate,start,end,group\nother,near,0,4,\na,,,,monday\n"
+              "a.npz,near,2,5,monday\na,far,,,\nb,near,8,9,\n");
+}
+
+TEST(Table, KeepsTheGroupOfAnEpisodeWithoutLabels) {
+    const TemporaryPath file("labels.csv", "episode,predicate,group\na,near,monday\n");
+    Table table = read(file.path());
+    EXPECT_FALSE(table.write({near_in_a(std::nullopt)}));
+    EXPECT_EQ(file_bytes(file.path()), "episode,predicate,start,end,group\na,,,,monday\n");
+}
+
+TEST(Table, StaysInSeconds) {
+    const std::string bytes = "episode,predicate,start_s,end_s\nb,near,0.15,\n";
+    const TemporaryPath file("labels.csv", bytes);
+    const auto without_rate = Table::read(file.path(), kEpisodes, 0);
+    ASSERT_FALSE(without_rate);
+    EXPECT_EQ(without_rate.failure().code, Code::steps_without_time);
+    Table table = read(file.path(), 0.1);
+    EXPECT_FALSE(table.write({near_in_a({{{3, 7}}})}));
+    EXPECT_EQ(file_bytes(file.path()), bytes + "a,near,0.3,0.7\n");
+}
+
+TEST(Table, IsNotWrittenOverAnother) {
+    const TemporaryPath file("labels.csv");
+    Table table = read(file.path());
+    std::ofstream(file.path()) << "episode,predicate\nb,near\n";
+    EXPECT_TRUE(table.has_changed());
+    const auto failure = table.write({near_in_a({{{2, 5}}})});
+    ASSERT_TRUE(failure);
+    EXPECT_NE(failure->message.find("another program"), std::string::npos);
+    EXPECT_EQ(file_bytes(file.path()), "episode,predicate\nb,near\n");
+}
+
+TEST(Table, HoldsAnyNameOrRefusesIt) {
+    for (const std::string name : {"a,b", "a \"b\"", " a ", "<script>", "\xE6\x97\xA5", "?a"}) {
+        const TemporaryPath file("labels.csv");
+        const std::vector<std::string> episodes{"demos/" + name + ".npz"};
+        auto table = Table::read(file.path(), episodes, 0);
+        ASSERT_TRUE(table);
+        EXPECT_FALSE(table->write({{episodes[0], name, "near", 9, {{{2, 5}}}}})) << name;
+        auto again = Table::read(file.path(), episodes, 0);
+        ASSERT_TRUE(again);
+        EXPECT_FALSE(again->write({{episodes[0], name, "near", 9, std::nullopt}})) << name;
+        EXPECT_EQ(file_bytes(file.path()), "episode,predicate,start,end\n") << name;
+    }
+}
+
+}  // namespace
+}  // namespace etlc::label

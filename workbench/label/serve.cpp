@@ -1,0 +1,268 @@
+#include "label/serve.hpp"
+
+#include <fmt/format.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "data/files/child.hpp"
+#include "data/text/number.hpp"
+#include "label/server/protocol.hpp"
+
+namespace etlc::label {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using data::frames::number_at;
+using diag::Code;
+using diag::Failure;
+using episodes::Label;
+
+constexpr std::string_view kServer = "etlc-serve";
+/// Longer than anybody labels: etlc-serve is silent while nobody does.
+constexpr int kSilenceSeconds = 2'000'000;
+/// A page that has not asked for so long is closed.
+constexpr std::chrono::seconds kGone{6};
+
+struct Answer {
+    std::uint32_t status = 200;
+    std::string type = "application/json";
+    std::string content;
+};
+
+Answer answered(const Json& json, std::uint32_t status = 200) {
+    return {status, "application/json", json.dump(-1, ' ', false, Json::error_handler_t::replace)};
+}
+
+/// `kind`: "elsewhere", "changed", "disk" or "refused", which the page treats differently.
+Answer refused(const std::string& kind, const std::string& why, std::uint32_t status) {
+    return answered({{"kind", kind}, {"error", why}}, status);
+}
+
+Answer not_found(const std::string& why) {
+    return {404, "text/plain; charset=utf-8", why};
+}
+
+int code_of_label(Label label) {
+    return label == Label::yes ? 1 : label == Label::no ? 0 : 2;
+}
+
+Json json_of(const Marks& marks) {
+    if (!marks) return nullptr;
+    Json intervals = Json::array();
+    for (const Interval& one : *marks)
+        intervals.push_back({one.start, one.end, code_of_label(one.label)});
+    return intervals;
+}
+
+std::string random_token() {
+    std::string bytes(protocol::kTokenSize / 2, '\0');
+    std::string token;
+    if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) return "";
+    for (const char c : bytes) token += fmt::format("{:02x}", static_cast<unsigned char>(c));
+    return token;
+}
+
+/// Answers the requests of pages.
+class Clerk {
+public:
+    Clerk(Desk& desk, Frames& frames, Background& background, const std::string& page)
+        : desk_(desk), frames_(frames), background_(background), page_(page) {}
+
+    Answer answer(const std::string& path, const std::string& content) {
+        if (path == "/") return {200, "text/html; charset=utf-8", page_};
+        if (path.starts_with("/frame/")) return frame(path.substr(7));
+        if (path != "/state" && path != "/act") return not_found("there is nothing here");
+        try {
+            const Json asked = Json::parse(content);
+            background_.look_after(desk_);
+            return path == "/state" ? state(asked) : act(asked);
+        } catch (const nlohmann::json::exception& error) {
+            return refused("refused", error.what(), 400);
+        }
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    /// `place`: "12/250", the episode and the step.
+    Answer frame(const std::string& place) {
+        const std::size_t slash = place.find('/');
+        const auto episode = data::parse_whole<std::size_t>(place.substr(0, slash));
+        const auto step = data::parse_whole<std::uint64_t>(
+            slash == std::string::npos ? "" : place.substr(slash + 1));
+        if (!episode || !step || *episode >= desk_.episodes().size() ||
+            *step >= desk_.episodes()[*episode].steps)
+            return not_found("there is no such step");
+        auto image = frames_.at(desk_.episodes()[*episode], *step);
+        if (!image) return not_found(image.failure().message);
+        return {200, std::move(image->type), std::move(image->bytes)};
+    }
+
+    /// The page that asks may label if no other one does.
+    bool takes(const std::string& page) {
+        const auto now = Clock::now();
+        if (holder_.empty() || now - heard_ > kGone) holder_ = page;
+        if (holder_ != page) return false;
+        heard_ = now;
+        return true;
+    }
+
+    /// Returns what is newer than the versions that the page has.
+    Answer state(const Json& asked) {
+        Json result{{"holds", takes(asked.at("page"))},
+                    {"version", desk_.version()},
+                    {"proposed", background_.version()},
+                    {"busy", background_.is_busy()},
+                    {"changed", desk_.have_tables_changed()}};
+        if (asked.at("version") != desk_.version()) {
+            result["labels"] = Json::array();
+            for (std::size_t e = 0; e < desk_.episodes().size(); ++e)
+                result["labels"].push_back(labels_of(e));
+        }
+        if (asked.at("proposed") != background_.version()) {
+            const Proposals& proposals = background_.proposals();
+            result["why_none"] = proposals.why_none;
+            result["proposals"] = Json::array();
+            for (const Proposal& one : proposals.found) {
+                Json marks = Json::array();
+                for (const Marks& of : one.marks) marks.push_back(json_of(of));
+                result["proposals"].push_back(
+                    {{"episode", one.episode}, {"doubt", one.doubt}, {"marks", marks}});
+            }
+        }
+        return answered(result);
+    }
+
+    Json labels_of(std::size_t episode) const {
+        Json labels = Json::array();
+        for (std::size_t p = 0; p < desk_.predicates().size(); ++p)
+            labels.push_back(json_of(desk_.marks(episode, p)));
+        return labels;
+    }
+
+    Answer act(const Json& asked) {
+        const std::string page = asked.at("page");
+        const std::string action = asked.at("action");
+        if (action == "claim") holder_ = page;
+        if (action == "release" && holder_ == page) holder_.clear();
+        if (action == "release") return answered(Json::object());
+        if (!takes(page))
+            return refused("elsewhere", "this page is open elsewhere, too, and labels there", 409);
+        if (action == "claim") return answered({{"version", desk_.version()}});
+        if (action == "reload") {
+            if (auto failure = desk_.reload()) return refused("changed", failure->message, 409);
+            return answered({{"version", desk_.version()}});
+        }
+        if (action == "undo") {
+            const auto undone = desk_.undo();
+            if (!undone) return not_written(undone.failure());
+            return changed(*undone);
+        }
+        const std::size_t episode = asked.at("episode");
+        if (episode >= desk_.episodes().size())
+            return refused("refused", "there is no such episode", 400);
+        if (action == "accept") return accept(episode);
+        const std::size_t p = asked.at("predicate");
+        const std::uint64_t step = asked.at("step");
+        const auto key = key_named(action);
+        if (!key || p >= desk_.predicates().size() || step >= desk_.episodes()[episode].steps)
+            return refused("refused", "there is no such key, predicate or step", 400);
+        if (auto failure = desk_.press(episode, p, *key, step)) return not_written(*failure);
+        return changed(episode);
+    }
+
+    Answer accept(std::size_t episode) {
+        for (const Proposal& one : background_.proposals().found)
+            if (one.episode == episode) {
+                if (auto failure = desk_.accept(episode, one.marks)) return not_written(*failure);
+                return changed(episode);
+            }
+        return refused("refused", "there is no proposal for this episode", 400);
+    }
+
+    Answer changed(std::optional<std::size_t> episode) const {
+        Json result{{"version", desk_.version()}};
+        if (episode) result["episode"] = *episode;
+        if (episode) result["labels"] = labels_of(*episode);
+        return answered(result);
+    }
+
+    Answer not_written(const Failure& failure) const {
+        if (failure.code == Code::contradictory_labels || failure.code == Code::malformed_labels)
+            return refused("refused", failure.message, 400);
+        if (desk_.have_tables_changed()) return refused("changed", failure.message, 409);
+        return refused("disk", failure.message, 507);
+    }
+
+    Desk& desk_;
+    Frames& frames_;
+    Background& background_;
+    const std::string& page_;
+    std::string holder_;  ///< the page that labels
+    Clock::time_point heard_;
+};
+
+/// Reads a text of etlc-serve.
+std::optional<std::string> read_text(data::Child& child) {
+    char size[4];
+    if (!child.read(size, sizeof size)) return std::nullopt;
+    if (number_at(size) > 2 * protocol::kMostContent) return std::nullopt;
+    std::string text(number_at(size), '\0');
+    if (!child.read(text.data(), text.size())) return std::nullopt;
+    return text;
+}
+
+Failure ended(data::Child& child) {
+    const std::string said = child.last_words();
+    return {Code::unwritable_output,
+            said.empty() ? fmt::format("{} {}", kServer, child.ending()) : said};
+}
+
+}  // namespace
+
+std::string what_serving_lacks() {
+    const std::string path = data::helper_path(kServer);
+    if (::access(path.c_str(), X_OK) == 0) return "";
+    return fmt::format(
+        "{} cannot be run, which serves the page; etlc builds it where it finds cpp-httplib "
+        "(Debian: libcpp-httplib-dev); of the packages of etlc, etlc-serve has it",
+        kServer);
+}
+
+Failure serve(Desk& desk, Frames& frames, Background& background, const ServeRequest& request) {
+    const std::string token = random_token();
+    const auto child =
+        token.empty() ? nullptr
+                      : data::Child::start(
+                            data::helper_path(kServer), {},
+                            {.max_silence_seconds = kSilenceSeconds, .fed = true, .heard = true});
+    if (!child) return {Code::unwritable_output, fmt::format("{} cannot be run", kServer)};
+    std::string head;
+    data::frames::append(head, request.port);
+    protocol::append(head, token);
+    char port[4];
+    if (!child->give(head) || !child->read(port, sizeof port)) return ended(*child);
+    if (!request.ready(fmt::format("http://127.0.0.1:{}/{}/", number_at(port), token)))
+        return {Code::unwritable_output, "the address of the page cannot be printed"};
+    Clerk clerk(desk, frames, background, request.page);
+    for (;;) {
+        const auto path = read_text(*child);
+        const auto content = path ? read_text(*child) : std::nullopt;
+        if (!content) return ended(*child);
+        const Answer answer = clerk.answer(*path, *content);
+        std::string bytes;
+        data::frames::append(bytes, answer.status);
+        protocol::append(bytes, answer.type);
+        protocol::append(bytes, answer.content);
+        if (!child->give(bytes)) return ended(*child);
+    }
+}
+
+}  // namespace etlc::label
