@@ -164,7 +164,7 @@ def main(etlc):
         found = suggested(TWICE, "twice")
         own = next(one for one in found["again"]["ranked"] if not one["lines"])
         best = found["again"]["ranked"][0]
-        assert best["formula"].startswith("held[") and best["formula"].endswith("in place of hold")
+        assert re.fullmatch(r"hold: held\[\d+ steps\] hold", best["formula"])
         assert not own["ties"] and best["score"] > own["score"] + 0.2, (best, own)
         check_pasted(TWICE, found, "twice", True)
 

@@ -198,7 +198,7 @@ private:
             const std::string& p = model_.predicates[let->predicate].name;
             trial[p] = let->name;
             pasted[p] = let->pasted;
-            what.push_back(fmt::format("{} in place of {}", let->formula.text, p));
+            what.push_back(fmt::format("{}: {}", p, let->formula.text));
             declare(candidate.lines, let->pasted, *let);
         }
         candidate.formula = lets.empty() ? formula : fmt::format("{}", fmt::join(what, ", "));
