@@ -216,7 +216,7 @@ std::string word(const Predicate& d) {
 }
 
 std::string word(const Truth& d) {
-    return list("truth", {d.predicate.text, of(*d.formula)});
+    return list("truth", {d.subject.text, of(*d.formula)});
 }
 
 std::string word(const Let& d) {
