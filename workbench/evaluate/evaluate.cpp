@@ -137,9 +137,13 @@ constexpr std::uint64_t kFewEpisodes = 5;
 
 /// Warns where both labels occur, and nearly no resample is better than saying true at every frame,
 /// or all are worse than a rule that looks at the number of the frame alone. Only predicates: a
-/// monitor that must not miss an alarm raises many on purpose.
-void warn_of_no_gain(const std::string& name, const Score& score, source::Span span,
-                     diag::Sink& sink) {
+/// monitor that must not miss an alarm raises many on purpose. So does a predicate whose threshold
+/// has a guarantee, where time is the better judge of F1 only.
+void warn_of_no_gain(const check::Predicate& predicate, const Score& score, diag::Sink& sink) {
+    using enum check::ThresholdOrigin;
+    const std::string& name = predicate.name;
+    const source::Span span = predicate.threshold.span;
+    const bool for_f1 = predicate.threshold.origin == literal || predicate.threshold.origin == f1;
     const bool both = score.counts.positives() > 0 && score.counts.negatives() > 0;
     if (!both || !score.f1.interval) return;
     const auto warn = [&](double other, const std::string& of) -> diag::Diagnostic& {
@@ -149,14 +153,15 @@ void warn_of_no_gain(const std::string& name, const Score& score, source::Span s
                         *score.f1.value, other, of),
             span, sink);
     };
-    const auto clock = score.duration ? rates(*score.duration).f1 : std::nullopt;
+    const double clock = score.duration ? rates(*score.duration).f1.value_or(0) : 0;
     if (score.gain.interval && score.gain.interval->high <= 0)
         warn(*score.f1.value - *score.gain.value, "saying true at every frame")
             .note("check the threshold, which may be too wide, the targets and the labels");
-    else if (clock && score.f1.interval->high < *clock)
-        warn(*clock, "a rule over the number of the frame alone")
-            .note("time tells more than the distance: try formulas over time (etlc fit --suggest), "
-                  "and episodes whose timing differs");
+    else if (for_f1 && score.f1.interval->high < clock)
+        warn(clock, "a rule over the number of the frame alone")
+            .note(
+                "time tells more than the distance: try formulas over time (etlc fit --suggest), "
+                "and episodes whose timing differs");
 }
 
 }  // namespace
@@ -211,7 +216,7 @@ void warn_of_doubts(const check::Model& model, const Evaluation& evaluation, dia
         if (!episodes::warn_of_labels(*predicate, {counts.positives(), counts.negatives()}, auroc,
                                       sink) &&
             enough)
-            warn_of_no_gain(score.name, score.frames, predicate->threshold.span, sink);
+            warn_of_no_gain(*predicate, score.frames, sink);
     }
 }
 

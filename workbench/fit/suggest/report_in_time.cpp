@@ -32,11 +32,12 @@ std::string row(const InTime& one, bool of_monitor) {
 }
 
 std::string text_of_ranking(const RankedInTime& all) {
-    std::string text =
-        all.of_monitor
-            ? fmt::format("\nmonitor {}\n  mean                   episodes   variants  in place of a predicate\n",
-                          all.name)
-            : fmt::format("\n{}\n  F1 by frame           formula\n", all.name);
+    std::string text = all.of_monitor
+                           ? fmt::format(
+                                 "\nmonitor {}\n  mean                   episodes   variants  "
+                                 "in place of a predicate\n",
+                                 all.name)
+                           : fmt::format("\n{}\n  F1 by frame           formula\n", all.name);
     const auto own = std::find_if(all.ranked.begin(), all.ranked.end(),
                                   [](const InTime& one) { return one.lines.empty(); });
     for (auto one = all.ranked.begin(); one != all.ranked.end(); ++one)
