@@ -192,7 +192,8 @@ def lines_of(report):
             name = name.split(" / ")[0] + " / " + part[1]
         elif head:
             name = head[1] or head[2]
-        if "the other error" in line or line.strip().startswith("in all "):
+        if "the other error" in line or line.strip().startswith("in all ") or \
+                "broken variant" in line:
             if name:
                 found.setdefault(name, []).append(line.strip())
         if line == "guarantees":
@@ -200,16 +201,41 @@ def lines_of(report):
     return found
 
 
-def judged(spec, number, thresholds, *words):
-    """Returns the steps of the monitors in one demonstration, according to etlc evaluate."""
-    out, _ = run("evaluate", spec, "--data", f"demos/{number:03}.csv", "--thresholds", thresholds,
-                 "--json", "-", *words)
-    return {name: monitor["steps"] for name, monitor in json.loads(out)["monitors"].items()
-            if monitor["evaluable"]}
+def judged(spec, number, thresholds, folder="demos"):
+    """Returns what etlc evaluate says of one demonstration and of its variants."""
+    out, _ = run("evaluate", spec, "--data", f"{folder}/{number:03}.csv", "--thresholds", thresholds,
+                 "--variants", ",".join(VARIANTS), "--json", "-")
+    return json.loads(out)
 
 
-def pairs_of(steps):
-    """Steps as counted by etlc evaluate, as pairs of verdict and truth."""
+VARIANTS = ("cut", "swapped", "reversed", "frozen")
+
+
+def variant_line(evaluated, name, kind):
+    """`evaluated`: per demonstration what etlc evaluate says of it."""
+    made = {variant: sum(one["variants"][variant]["made"] for one in evaluated)
+            for variant in VARIANTS}
+    counts = []
+    for one in evaluated:
+        verdicts = one["monitors"][name]["variants"]["all"]
+        if kind == "success":
+            errors = verdicts["false_positives"]
+            counts.append((errors, errors + verdicts["true_negatives"] +
+                           verdicts["unsaid_negatives"]))
+        else:
+            errors = verdicts["false_negatives"]
+            counts.append((errors, errors + verdicts["true_positives"] +
+                           verdicts["unsaid_positives"]))
+    errors, cases, share = shown(counts)
+    words = ("satisfied", "violated") if kind == "success" else ("violated", "satisfied")
+    kinds = ", ".join(f"{variant} {number}" for variant, number in made.items() if number > 0)
+    return (f"on {sum(made.values())} broken variants ({kinds}): {words[0]} on {errors} of {cases} "
+            f"truly {words[1]}, {share}")
+
+
+def pairs_of(evaluated, name):
+    """Returns the steps as counted by etlc evaluate, as pairs of verdict and truth."""
+    steps = evaluated["monitors"][name]["steps"]
     return ([(True, True)] * steps["true_positives"] + [(True, False)] * steps["false_positives"] +
             [(False, True)] * steps["false_negatives"] +
             [(False, False)] * steps["true_negatives"] +
@@ -267,11 +293,14 @@ def test_thresholds():
     kinds = {"keeps": "alarm", "mixed / G !b": "alarm"}
     for name, pairs in said.items():
         expected = monitor_lines(pairs, kinds.get(name, "success"))
-        assert found[name] == expected, (name, found[name], expected)
+        assert found[name][:2] == expected, (name, found[name], expected)
     for name in ("arrives", "keeps", "slow", "ready", "soon", "again"):
-        expected = monitor_lines([pairs_of(of[name]) for of in evaluated],
-                                 kinds.get(name, "success"))
+        kind = kinds.get(name, "success")
+        expected = monitor_lines([pairs_of(of, name) for of in evaluated], kind)
+        expected.append(variant_line(evaluated, name, kind))
         assert found[name] == expected, (name, found[name], expected)
+    assert found["mixed / F a"] == found["arrives"]
+    assert found["mixed / G !b"] == found["keeps"]
     assert "none" not in found and "mixed" not in found
     for jobs in (1, 3):
         assert run("calibrate", "t.etl", "--data", "demos", "-j", jobs, "-o", "all.json")[0] == \
@@ -308,7 +337,8 @@ sliding monitor soon = F[0, 3] near calibrated(conformal, alpha = 0.2, against =
     evaluated = [judged("t.etl", n, file) for n, file in enumerate(files)]
     kinds = {"arrives": "alarm", "keeps": "success", "soon": "success"}
     for name, kind in kinds.items():
-        expected = monitor_lines([pairs_of(of[name]) for of in evaluated], kind)
+        expected = monitor_lines([pairs_of(of, name) for of in evaluated], kind)
+        expected.append(variant_line(evaluated, name, kind))
         assert found[name] == expected, (name, found[name], expected)
     pairs = []
     for demo, file in zip(demos, files):
@@ -319,7 +349,68 @@ sliding monitor soon = F[0, 3] near calibrated(conformal, alpha = 0.2, against =
         is_ = eventually([holds("<", s, 1) for s in demo["s"]])
         pairs.append(list(zip(says, is_)))
     expected = monitor_lines(pairs, "alarm")
-    assert found["arrives"] == expected, (found["arrives"], expected)
+    assert found["arrives"][:2] == expected, (found["arrives"], expected)
+
+
+DIVIDED = f"""spec t;
+input x, y, s, u : f32;
+predicate a = x <= {ALPHA};
+predicate unused = y > {ALPHA};
+predicate q = x <= 1;
+truth a = s < 1;
+truth unused = s > 3;
+truth q = u < 1;
+monitor arrives = F a;
+"""
+
+
+def test_dividing():
+    """Labels of predicates that no guarantee reads divide episodes into phases too, and whatever
+    would give other variants than etlc evaluate has is not judged."""
+    pathlib.Path("t.etl").write_text(DIVIDED)
+    demos = episodes(EPISODES, 7, missing=["x", "s"])
+    for number, demo in enumerate(demos):
+        steps = np.arange(len(demo["x"]))
+        demo["u"] = (steps + number) % 7 / 4
+        demo["truth.other"] = (steps + number) % 5 > 2
+    write("demos", demos)
+    files = left_out("t.etl", demos)
+    lines = {}
+    for name, spec in (("truth", DIVIDED), ("array", DIVIDED + "predicate other = y <= 2;"),
+                       ("fewer", DIVIDED.replace("truth q = u < 1;", ""))):
+        pathlib.Path("t.etl").write_text(spec)
+        lines[name] = lines_of(run("calibrate", "t.etl", "--data", "demos", "-o", "all.json")[0])
+        evaluated = [judged("t.etl", n, file) for n, file in enumerate(files)]
+        expected = variant_line(evaluated, "arrives", "success")
+        assert lines[name]["arrives"][2] == expected, (lines[name]["arrives"], expected)
+    assert len({one["arrives"][2] for one in lines.values()}) == 3
+    for one in lines.values():  # nothing else depends on them
+        assert one["arrives"][:2] == lines["truth"]["arrives"][:2]
+
+    def check_refusal(spec, why, folder="demos"):
+        pathlib.Path("t.etl").write_text(spec)
+        found = lines_of(run("calibrate", "t.etl", "--data", folder, "-o", "all.json")[0])
+        assert found["arrives"][2:] == ["broken variants not judged: " + why], found["arrives"]
+
+    whole = "input x, y, s, u : f32;"
+    for declared, why in (("hold 2", "hold"), ("stale after 3", "stale after")):
+        check_refusal(DIVIDED.replace(whole, f"input x, y, s : f32; input u : f32 {declared};"),
+                      f"'u' has {why}, so its samples depend on the order")
+    check_refusal(DIVIDED.replace("truth unused = s > 3;", "truth unused = O (s > 3);"),
+                  "the truth of 'unused' looks back, so its labels depend on the order")
+    del demos[3]["u"]
+    write("lacking", demos)
+    check_refusal(DIVIDED, "some demonstrations lack labels that tell where to cut them", "lacking")
+    write("whole", [{"x": x, "s": s} for x, s in [(demo["x"], demo["s"]) for demo in demos]])
+    pathlib.Path("t.etl").write_text(f"""spec t;
+input x, s : f32;
+input unread : f32 hold 3;
+predicate a = x <= {ALPHA};
+truth a = s < 1;
+monitor arrives = F a;
+""")  # what nothing reads may hold
+    found = lines_of(run("calibrate", "t.etl", "--data", "whole", "-o", "all.json")[0])
+    assert found["arrives"][2].startswith("on "), found["arrives"]
 
 
 def test_warnings():
@@ -332,21 +423,25 @@ monitor arrives = F p;
 monitor leaves  = G !p;
 """
     pathlib.Path("t.etl").write_text(spec)
-    for name, noise, count, empty in (("good", 0.05, EPISODES, False), ("bad", 50, EPISODES, True),
-                                      ("few", 50, 6, False)):
+    for name, noise, count, failing, empty in (
+            ("good", 0.05, EPISODES, EPISODES, None), ("bad", 50, EPISODES, EPISODES, "is empty"),
+            ("few", 50, 6, 4, "says little"), ("fewer", 50, 6, 2, None)):
         demos = episodes(count, 3, noise=noise, missing=())
         for demo in demos:  # every drive begins away from the goal, and reaches it
             demo["s"][:12] += 2
             demo["s"][-4:] = 0.5
             if noise < 1:
                 demo["x"] = (demo["s"] + 0.01).astype(np.float32)
-        if name == "few":  # too few in which the truth is violated at some step
-            for demo in demos[4:]:
-                demo["s"][:] = 0.25
+        for demo in demos[failing:]:  # too few in which the truth is violated at some step
+            demo["s"][:] = 0.25
         write(name, demos)
         report, said = run("calibrate", "t.etl", "--data", name)
         assert said.count("[W0678]") == (2 if empty else 0), (name, report, said)
-        assert ("'arrives' is satisfied at" in said) == empty == ("'leaves' is violated at" in said)
+        for monitor in ("'arrives' is satisfied", "'leaves' is violated"):
+            head = {None: "", "is empty": f"{monitor} at 100 % of the steps",
+                    "says little": f"{monitor} on 100 % of the broken variants"}[empty]
+            assert f"the guarantee holds, and {empty}: {head}" in said or not empty, said
+        assert said.count("note: of ") == (2 if empty else 0), said
     demos = episodes(EPISODES, 4, missing=())
     for demo in demos:
         demo["s"][:] = 0.5
@@ -355,8 +450,10 @@ monitor leaves  = G !p;
     assert "W0678" not in said
     assert lines_of(report) == {
         "p": ["the other error: nothing to judge it on: no measured frame is negative"],
-        "arrives": ["the other error: nothing to judge it on: no step is truly violated"],
-        "leaves": ["the other error: nothing to judge it on: no step is truly satisfied"]}
+        "arrives": ["the other error: nothing to judge it on: no step is truly violated",
+                    "on 14 broken variants (reversed 14): none is truly violated"],
+        "leaves": ["the other error: nothing to judge it on: no step is truly satisfied",
+                   "on 14 broken variants (reversed 14): none is truly satisfied"]}
     # Four demonstrations are enough for alpha = 0.2; three are not.
     demos = episodes(4, 5, missing=())
     for demo in demos:
@@ -380,7 +477,7 @@ monitor arrives = F p;
         assert lines_of(report)["p"][0].endswith("]" + words), report
 
 
-for test in (test_thresholds, test_shifts, test_warnings, test_groups):
+for test in (test_thresholds, test_shifts, test_dividing, test_warnings, test_groups):
     with tempfile.TemporaryDirectory() as place:
         os.chdir(place)
         test()
