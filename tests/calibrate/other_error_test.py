@@ -393,8 +393,8 @@ def test_dividing():
         assert found["arrives"][2:] == ["broken variants not judged: " + why], found["arrives"]
 
     whole = "input x, y, s, u : f32;"
-    for declared, why in (("hold 2", "hold"), ("stale after 3", "stale after")):
-        check_refusal(DIVIDED.replace(whole, f"input x, y, s : f32; input u : f32 {declared};"),
+    for declared, why in ((" hold 2", "hold"), (", stale after 3", "stale after")):
+        check_refusal(DIVIDED.replace(whole, f"input x, y, s : f32; input u : f32{declared};"),
                       f"'u' has {why}, so its samples depend on the order")
     check_refusal(DIVIDED.replace("truth unused = s > 3;", "truth unused = O (s > 3);"),
                   "the truth of 'unused' looks back, so its labels depend on the order")
@@ -428,7 +428,7 @@ monitor leaves  = G !p;
             ("few", 50, 6, 4, "says little"), ("fewer", 50, 6, 2, None)):
         demos = episodes(count, 3, noise=noise, missing=())
         for demo in demos:  # every drive begins away from the goal, and reaches it
-            demo["s"][:12] += 2
+            demo["s"][:-4] += 2
             demo["s"][-4:] = 0.5
             if noise < 1:
                 demo["x"] = (demo["s"] + 0.01).astype(np.float32)
