@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "calibrate/other_error.hpp"
 #include "episodes/data_warnings.hpp"
@@ -56,16 +57,18 @@ std::string describe(const OtherError& error) {
 
 namespace {
 
+std::uint64_t all_made(const VariantError& error) {
+    return std::accumulate(error.made.begin(), error.made.end(), std::uint64_t{0});
+}
+
 /// Returns "153 broken variants (cut 40, swapped 38, reversed 40, frozen 35)".
 std::string made(const VariantError& error) {
-    std::uint64_t all = 0;
     std::string kinds;
     for (const auto& [variant, name] : episodes::kVariants) {
         const std::uint64_t some = error.made[static_cast<std::size_t>(variant)];
-        all += some;
         if (some > 0) kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", name, some);
     }
-    return counted(all, "broken variant") + (all > 0 ? " (" + kinds + ")" : "");
+    return fmt::format("{} ({})", counted(all_made(error), "broken variant"), kinds);
 }
 
 /// Returns "satisfied on 12 of 140 truly violated".
@@ -77,6 +80,7 @@ std::string errors_of(const VariantError& error, const Guaranteed& of) {
 /// Returns the line about broken variants.
 std::string describe(const VariantError& error, const Guaranteed& of) {
     if (!error.why.empty()) return fmt::format("broken variants not judged: {}\n", error.why);
+    if (all_made(error) == 0) return "no broken variants: the episodes are too short\n";
     if (error.cases == 0)
         return fmt::format("on {}: none is truly {}\n", made(error), true_word(of));
     return fmt::format("on {}: {}, {}\n", made(error), errors_of(error, of), share_of(error));
