@@ -170,8 +170,8 @@ def lines_of(report):
 
 def judged(spec, number, thresholds, folder="demos"):
     """Returns what etlc evaluate says of one demonstration and of its variants."""
-    out, _ = run("evaluate", spec, "--data", f"{folder}/{number:03}.csv", "--thresholds", thresholds,
-                 "--variants", ",".join(VARIANTS), "--json", "-")
+    out, _ = run("evaluate", spec, "--data", f"{folder}/{number:03}.csv", "--thresholds",
+                 thresholds, "--variants", ",".join(VARIANTS), "--json", "-")
     return json.loads(out)
 
 
