@@ -59,12 +59,16 @@ void set_intervals(const std::vector<Counted>& counted) {
         resampled[i].error.interval = episodes::percentile_interval(values[i]);
 }
 
-/// Whether a formula depends on earlier frames.
-bool is_over_time(const check::Model& model, Index formula) {
-    const check::Formula& of = model.formulas[formula];
-    return check::looks_back(of.kind) ||
-           std::any_of(of.operands.begin(), of.operands.end(),
-                       [&](Index operand) { return is_over_time(model, operand); });
+/// Returns for each formula whether it depends on earlier frames.
+std::vector<bool> over_time(const check::Model& model) {
+    std::vector<bool> result(model.formulas.size());
+    for (Index f = 0; f < model.formulas.size(); ++f) {  // operands come first
+        const check::Formula& of = model.formulas[f];
+        result[f] = check::looks_back(of.kind) ||
+                    std::any_of(of.operands.begin(), of.operands.end(),
+                                [&](Index operand) { return result[operand]; });
+    }
+    return result;
 }
 
 /// Returns why a track with its steps in another order is not what the monitors see of the
@@ -79,9 +83,10 @@ std::string why_no_variants(const check::Model& model, const Tracked& recorded) 
     add_inputs(watched.predicates);
     std::set<Index> labelled(watched.labelled.begin(), watched.labelled.end());
     labelled.insert(watched.dividing.begin(), watched.dividing.end());
+    const std::vector<bool> looks_back = over_time(model);
     for (const check::Truth& truth : model.truths) {
-        if (!labelled.contains(truth.predicate)) continue;
-        if (is_over_time(model, truth.formula))
+        if (truth.formula == check::kNone || !labelled.contains(truth.predicate)) continue;
+        if (looks_back[truth.formula])
             return fmt::format("the truth of '{}' looks back, so its labels depend on the order",
                                model.predicates[truth.predicate].name);
         add_inputs(check::predicates_of(model, truth.formula));

@@ -72,7 +72,7 @@ struct Concluded {
 
 /// A broken variant of an episode.
 struct Broken {
-    episodes::Variant variant;
+    episodes::Variant variant = episodes::Variant::cut;
     std::vector<Concluded> concluded;  ///< per guarantee
 };
 
