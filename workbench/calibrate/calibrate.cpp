@@ -71,6 +71,13 @@ thresholds::Entry entry_of_predicate(const check::Model& model, Index predicate,
     return entry_of(threshold, check::method_name(threshold.origin), fitted, std::move(provenance));
 }
 
+/// Returns the predicates with labels in the first demonstration. Calibration needs only those of
+/// calibrated ones, so one that cannot be read is reported with the others, later.
+std::vector<Index> labelled_anywhere(const check::Model& model, const Request& request) {
+    diag::Sink sink;
+    return episodes::labelled_in_first(model, request, sink).value_or(std::vector<Index>{});
+}
+
 }  // namespace
 
 std::optional<Calibration> calibrate(const check::Model& model, const Request& request,
@@ -89,9 +96,11 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
         return std::nullopt;
     const episodes::Leaks leaks(model, predicates);
     const std::vector<Guaranteed> guarantees = guaranteed(model);
-    const Watched watched = watched_by(model, guarantees, predicates);
+    const Watched watched =
+        watched_by(model, guarantees, predicates, labelled_anywhere(model, request));
     Tracks tracks;
     bool is_complete = true;
+    bool is_divided = true;
     episodes::Identities demonstrations;
     std::vector<Evidence> evidence(predicates.size());
     std::uint64_t frames = 0;
@@ -105,6 +114,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
             frames += demonstration.frames;
             tracks.add(demonstration.track);
             is_complete &= demonstration.is_complete;
+            is_divided &= demonstration.is_divided;
             for (std::size_t i = 0; i < predicates.size(); ++i)
                 evidence[i].add(demonstration.scores[i]);
         });
@@ -154,9 +164,9 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     std::vector<LeftOut> out;
     for (std::size_t i = 0; i < predicates.size(); ++i)
         out.push_back(left_out(model.predicates[predicates[i]], evidence[i], demonstrations));
-    const Others others{
-        guarantees, other_errors(calibrated, predicates, evidence, out),
-        other_errors(calibrated, guarantees, predicates, out, {tracks, watched, is_complete})};
+    const Others others{guarantees, other_errors(calibrated, predicates, evidence, out),
+                        other_errors(calibrated, guarantees, predicates, out,
+                                     {tracks, watched, is_complete, is_divided})};
     for (std::size_t i = 0; i < guarantees.size(); ++i)
         warn_of_empty(model, guarantees[i], others.by_guarantee[i], sink);
     result.report = report(calibrated, predicates, evidence, frames, all, others) +

@@ -4,35 +4,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "check/guarantees/provenance.hpp"
-#include "episodes/data_warnings.hpp"
 
 namespace etlc::calibrate {
 
 namespace {
 
 using check::Claim;
-using diag::counted;
 using episodes::Fraction;
+using episodes::Label;
 
-/// Counts of an episode, for intervals.
+/// Counts per episode, for intervals.
 using Fractions = std::vector<Fraction>;
 
-bool misses_success(const Guaranteed& of) {
-    return of.claim.kind == Claim::Kind::missed_success;
-}
+struct Counted {
+    ErrorShare& error;
+    const Fractions& fractions;
+};
 
-/// Returns the verdict of the other error, and that of its truth.
-const char* said_word(const Guaranteed& of) {
-    return misses_success(of) ? "satisfied" : "violated";
-}
-const char* true_word(const Guaranteed& of) {
-    return misses_success(of) ? "violated" : "satisfied";
-}
-
-void add(OtherError& error, const Fraction& episode) {
+void add(ErrorShare& error, const Fraction& episode) {
     error.cases += episode.whole;
     error.errors += static_cast<std::uint64_t>(episode.part);
     error.episodes += episode.whole > 0 ? 1 : 0;
@@ -40,30 +33,92 @@ void add(OtherError& error, const Fraction& episode) {
 }
 
 /// Sets the intervals of all errors from the same resamples.
-void set_intervals(std::vector<OtherError>& errors, const std::vector<Fractions>& fractions) {
-    std::vector<std::size_t> resampled;
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-        OtherError& error = errors[i];
+void set_intervals(const std::vector<Counted>& counted) {
+    std::vector<Counted> resampled;
+    for (const Counted& one : counted) {
+        ErrorShare& error = one.error;
         if (!error.why.empty() || error.cases == 0) continue;
         const double bound = std::pow(0.025, 1 / static_cast<double>(error.episodes));
         if (error.errors == 0)
             error.interval = {0, 1 - bound};
         else if (error.errors == error.cases)
             error.interval = {bound, 1};
-        else if (error.episodes >= OtherError::kLeastEpisodes)
-            resampled.push_back(i);
+        else if (error.episodes >= ErrorShare::kLeastEpisodes)
+            resampled.push_back(one);
     }
     if (resampled.empty()) return;
-    std::vector<std::vector<std::optional<double>>> values(errors.size());
-    const episodes::Bootstrap bootstrap(fractions[resampled.front()].size());
+    std::vector<std::vector<std::optional<double>>> values(resampled.size());
+    const episodes::Bootstrap bootstrap(resampled.front().fractions.size());
     bootstrap.for_each_batch([&](const episodes::Weights& weights) {
-        for (const std::size_t i : resampled) {
-            const auto some = episodes::shares(fractions[i], weights);
+        for (std::size_t i = 0; i < resampled.size(); ++i) {
+            const auto some = episodes::shares(resampled[i].fractions, weights);
             values[i].insert(values[i].end(), some.begin(), some.end());
         }
     });
-    for (const std::size_t i : resampled)
-        errors[i].interval = episodes::percentile_interval(values[i]);
+    for (std::size_t i = 0; i < resampled.size(); ++i)
+        resampled[i].error.interval = episodes::percentile_interval(values[i]);
+}
+
+/// Returns for each formula whether it depends on earlier frames.
+std::vector<bool> over_time(const check::Model& model) {
+    std::vector<bool> result(model.formulas.size());
+    for (Index f = 0; f < model.formulas.size(); ++f) {  // operands come first
+        const check::Formula& of = model.formulas[f];
+        result[f] = check::looks_back(of.kind) ||
+                    std::any_of(of.operands.begin(), of.operands.end(),
+                                [&](Index operand) { return result[operand]; });
+    }
+    return result;
+}
+
+/// Returns why a track with its steps in another order is not what the monitors see of the
+/// reordered recording; empty if it is.
+std::string why_no_variants(const check::Model& model, const Tracked& recorded) {
+    const Watched& watched = recorded.watched;
+    std::set<Index> inputs(watched.flags.begin(), watched.flags.end());
+    const auto add_inputs = [&](const std::vector<Index>& predicates) {
+        for (const Index p : predicates)
+            inputs.insert(model.predicates[p].inputs.begin(), model.predicates[p].inputs.end());
+    };
+    add_inputs(watched.predicates);
+    std::set<Index> labelled(watched.labelled.begin(), watched.labelled.end());
+    labelled.insert(watched.dividing.begin(), watched.dividing.end());
+    const std::vector<bool> looks_back = over_time(model);
+    for (const check::Truth& truth : model.truths) {
+        if (truth.formula == check::kNone || !labelled.contains(truth.predicate)) continue;
+        if (looks_back[truth.formula])
+            return fmt::format("the truth of '{}' looks back, so its labels depend on the order",
+                               model.predicates[truth.predicate].name);
+        add_inputs(check::predicates_of(model, truth.formula));
+        const std::vector<Index> flags = check::flags_of(model, truth.formula);
+        inputs.insert(flags.begin(), flags.end());
+    }
+    for (const Index input : inputs)
+        if (model.inputs[input].has_state())
+            return fmt::format("'{}' has {}, so its samples depend on the order",
+                               model.inputs[input].name,
+                               model.inputs[input].hold > 0 ? "hold" : "stale after");
+    return recorded.is_divided ? "" : "some demonstrations lack labels that tell where to cut them";
+}
+
+/// Counts the errors in the verdicts on the variants of an episode.
+void add_variants(const std::vector<Broken>& variants, const std::vector<Guaranteed>& all,
+                  std::size_t episode, std::vector<Fractions>& fractions,
+                  std::vector<OtherError>& errors) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Label wrong = all[i].misses_success() ? Label::yes : Label::no;
+        const Label right = all[i].misses_success() ? Label::no : Label::yes;
+        VariantError& error = errors[i].variants;
+        Fraction& of = fractions[i][episode];
+        for (const Broken& broken : variants) {
+            ++error.made[static_cast<std::size_t>(broken.variant)];
+            const Concluded& verdicts = broken.concluded[i];
+            if (verdicts.is != right) continue;
+            ++of.whole;
+            of.part += verdicts.said == wrong ? 1 : 0;
+        }
+        add(error, of);
+    }
 }
 
 /// Counts the errors of guarantees. `thresholds_of(e)` returns those of an episode. An error with
@@ -79,13 +134,17 @@ void count(const check::Model& model, const std::vector<Guaranteed>& all, const 
             if (is_counted(error)) error.why = "the monitors exceed the limits";
         return;
     }
+    const std::string why_no = why_no_variants(model, recorded);
+    for (OtherError& error : errors) error.variants.why = error.why.empty() ? why_no : error.why;
     std::vector<Fractions> fractions(all.size(), Fractions(recorded.tracks.size()));
+    std::vector<Fractions> of_variants = fractions;
     recorded.tracks.for_each([&](std::size_t e, const std::string& track) {
-        const std::vector<Said> episode = replayer->replay(track, thresholds_of(e));
+        const Thresholds& thresholds = thresholds_of(e);
+        const std::vector<Said> episode = replayer->replay(track, thresholds);
         for (std::size_t i = 0; i < all.size(); ++i) {
             const Said& said = episode[i];
             const std::uint64_t truly_violated = said.steps - said.truly_satisfied;
-            const bool success = misses_success(all[i]);
+            const bool success = all[i].misses_success();
             errors[i].steps += said.steps;
             errors[i].said += success ? said.satisfied : said.violated;
             errors[i].truly += success ? said.truly_satisfied : truly_violated;
@@ -94,30 +153,15 @@ void count(const check::Model& model, const std::vector<Guaranteed>& all, const 
                 success ? truly_violated : said.truly_satisfied};
             add(errors[i], fractions[i][e]);
         }
+        if (why_no.empty())
+            add_variants(replayer->replay_variants(track, thresholds), all, e, of_variants, errors);
     });
-    set_intervals(errors, fractions);
-}
-
-std::string percent(double share) {
-    return fmt::format("{:.1f}", 100 * share);
-}
-
-/// Returns "54.9 % [51.0, 58.9]".
-std::string share_of(const OtherError& error) {
-    std::string text = percent(error.share()) + " %";
-    if (error.interval)
-        text +=
-            fmt::format(" [{}, {}]", percent(error.interval->low), percent(error.interval->high));
-    return text;
-}
-
-constexpr const char* kHead = "the other error: ";
-
-/// Returns the line where nothing was counted; otherwise nothing.
-std::optional<std::string> nothing_counted(const OtherError& error, const std::string& no_case) {
-    if (!error.why.empty()) return fmt::format("{}not counted: {}\n", kHead, error.why);
-    if (error.cases == 0) return fmt::format("{}nothing to judge it on: {}\n", kHead, no_case);
-    return std::nullopt;
+    std::vector<Counted> counted;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        counted.push_back({errors[i], fractions[i]});
+        counted.push_back({errors[i].variants, of_variants[i]});
+    }
+    set_intervals(counted);
 }
 
 }  // namespace
@@ -174,7 +218,9 @@ std::vector<OtherError> other_errors(const check::Model& model,
         });
         for (const Fraction& episode : fractions[i]) add(errors[i], episode);
     }
-    set_intervals(errors, fractions);
+    std::vector<Counted> counted;
+    for (std::size_t i = 0; i < errors.size(); ++i) counted.push_back({errors[i], fractions[i]});
+    set_intervals(counted);
     return errors;
 }
 
@@ -237,54 +283,6 @@ std::vector<OtherError> other_errors_of_shifts(const check::Model& model,
         },
         errors);
     return errors;
-}
-
-std::string describe(const OtherError& error) {
-    if (const auto nothing = nothing_counted(error, "no measured frame is negative"))
-        return *nothing;
-    std::string text = fmt::format("{}true at {} of {} negative frames, {}", kHead, error.errors,
-                                   error.cases, share_of(error));
-    if (error.groups > 0)
-        text += fmt::format("; demonstrations left out in {} groups", error.groups);
-    return text + "\n";
-}
-
-std::string describe(const OtherError& error, const Guaranteed& of, const std::string& indent) {
-    if (const auto nothing =
-            nothing_counted(error, fmt::format("no step is truly {}", true_word(of))))
-        return indent + *nothing;
-    return fmt::format(
-        "{}{}{} at {} of {} truly {} steps, {}; in {} of {} episodes\n"
-        "{}in all {} at {} of {} steps, truly at {}\n",
-        indent, kHead, said_word(of), error.errors, error.cases, true_word(of), share_of(error),
-        error.wrong, error.episodes, indent, said_word(of), error.said, error.steps, error.truly);
-}
-
-void warn_of_empty(const check::Model& model, const Guaranteed& of, const OtherError& error,
-                   diag::Sink& sink) {
-    constexpr double kNearlyAll = 0.9;
-    constexpr double kMost = 0.5;
-    if (!error.why.empty() || error.cases == 0 || error.share() < kNearlyAll) return;
-    if (!error.interval || error.interval->low <= kMost) return;
-    const check::Monitor& monitor = model.monitors[of.monitor];
-    const std::string part =
-        of.claim.part.empty() ? "" : fmt::format("the part {} of ", of.claim.part);
-    diag::Diagnostic& warning = episodes::warn_of_data(
-        diag::Code::empty_guarantee,
-        fmt::format("the guarantee holds, and is empty: {}'{}' is {} at {:.0f} % of the steps at "
-                    "which it is truly {}",
-                    part, monitor.name, said_word(of), std::floor(100 * error.share()),
-                    true_word(of)),
-        monitor.span, sink);
-    warning.note(
-        fmt::format("{} of {} in {}, each with the thresholds of the others; 95 % "
-                    "interval from {} to {} %",
-                    error.errors, counted(error.cases, "step"), counted(error.episodes, "episode"),
-                    percent(error.interval->low), percent(error.interval->high)));
-    warning.note(fmt::format(
-        "try a predicate that has to hold for some steps (held[5 steps] p), {}or a distance that "
-        "separates better (etlc fit --suggest)",
-        monitor.calibration ? "" : "a monitor that is calibrated as a whole, "));
 }
 
 }  // namespace etlc::calibrate

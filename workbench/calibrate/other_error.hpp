@@ -1,9 +1,11 @@
 // The error that a guarantee does not bound: a predicate that is true where its truth is not, and
 // the opposite wrong verdict of a monitor. It is counted in each demonstration with the thresholds
 // that the others give, since thresholds fit the demonstrations that they come from too well. A
-// guarantee holds and is empty where its monitor says the same whatever is true.
+// guarantee holds and is empty where its monitor says the same whatever is true. Demonstrations are
+// mostly successes, so the monitor is judged on broken variants of them too.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -16,16 +18,13 @@
 
 namespace etlc::calibrate {
 
-struct OtherError {
+/// How often an error happens where it can.
+struct ErrorShare {
     std::string why;             ///< why it was not counted; empty if it was
-    std::uint64_t cases = 0;     ///< frames or steps at which it can happen
+    std::uint64_t cases = 0;     ///< frames, steps or variants at which it can happen
     std::uint64_t errors = 0;    ///< those at which it happens
     std::uint64_t episodes = 0;  ///< episodes with a case
     std::uint64_t wrong = 0;     ///< episodes with an error
-    std::uint64_t steps = 0;     ///< monitors: all steps of known truth
-    std::uint64_t said = 0;      ///< those with the wrong verdict, as its cases have if wrong
-    std::uint64_t truly = 0;     ///< those at which the truth is that verdict
-    std::uint32_t groups = 0;    ///< episodes were left out in this many groups; 0: one by one
     /// The 95 % interval of errors / cases over the episodes, from resamples of them; if all or no
     /// cases are errors, that of Clopper and Pearson ("The use of confidence or fiducial limits",
     /// 1934) for as many episodes. Otherwise it takes kLeastEpisodes.
@@ -34,6 +33,19 @@ struct OtherError {
     static constexpr std::uint64_t kLeastEpisodes = 5;
 
     double share() const { return static_cast<double>(errors) / static_cast<double>(cases); }
+};
+
+/// The error in the verdicts on broken variants of the episodes.
+struct VariantError : ErrorShare {
+    std::array<std::uint64_t, std::size(episodes::kVariants)> made{};  ///< variants of each kind
+};
+
+struct OtherError : ErrorShare {
+    std::uint64_t steps = 0;   ///< monitors: all steps of known truth
+    std::uint64_t said = 0;    ///< those with the wrong verdict, as its cases have if wrong
+    std::uint64_t truly = 0;   ///< those at which the truth is that verdict
+    std::uint32_t groups = 0;  ///< episodes were left out in this many groups; 0: one by one
+    VariantError variants;     ///< of a monitor
 };
 
 /// The tracks of all episodes, in order.
@@ -46,6 +58,7 @@ struct Tracked {
     const Tracks& tracks;
     const Watched& watched;
     bool is_complete = true;  ///< every episode has the inputs of all watched predicates and flags
+    bool is_divided = true;   ///< every episode has all labels that divide it into phases
 };
 
 /// Returns the error of each predicate. `out`: per predicate.
@@ -76,7 +89,7 @@ inline constexpr const char* kOtherErrors =
     "    The other error is counted in each episode with the thresholds that the other episodes "
     "give; in brackets its 95 % interval over episodes.\n";
 
-/// Warns of a guarantee that holds and is empty.
+/// Warns of a guarantee that holds and is empty, or whose monitor is wrong on most variants.
 void warn_of_empty(const check::Model& model, const Guaranteed& of, const OtherError& error,
                    diag::Sink& sink);
 

@@ -71,7 +71,8 @@ check::Model replayed(const check::Model& model, const std::vector<Guaranteed>& 
 }  // namespace
 
 Watched watched_by(const check::Model& model, const std::vector<Guaranteed>& all,
-                   const std::vector<Index>& labelled) {
+                   const std::vector<Index>& labelled, const std::vector<Index>& in_all) {
+    if (all.empty()) return {};
     std::set<Index> predicates;
     std::set<Index> judging;  // the truth
     std::set<Index> flags;
@@ -85,14 +86,18 @@ Watched watched_by(const check::Model& model, const std::vector<Guaranteed>& all
         const auto truly = check::predicates_of(model, true_formula(model, one));
         judging.insert(truly.begin(), truly.end());
     }
-    Watched result{{predicates.begin(), predicates.end()}, {}, {flags.begin(), flags.end()}};
+    Watched result{{predicates.begin(), predicates.end()}, {}, {flags.begin(), flags.end()}, {}};
     for (const Index p : labelled)
         if (judging.contains(p)) result.labelled.push_back(p);
+    std::set<Index> dividing(in_all.begin(), in_all.end());
+    dividing.insert(labelled.begin(), labelled.end());
+    for (const Index p : result.labelled) dividing.erase(p);
+    result.dividing.assign(dividing.begin(), dividing.end());
     return result;
 }
 
 void add_step(const Watched& watched, const plan::Evaluator& measured,
-              const episodes::Frames& recording, std::string& track) {
+              const episodes::Frames& recording, bool is_divided, std::string& track) {
     for (const Index p : watched.predicates) {
         const float delta = measured.distance(p);
         char bytes[sizeof delta];
@@ -106,28 +111,56 @@ void add_step(const Watched& watched, const plan::Evaluator& measured,
         const bool holds = is_there && sample.values[0] != 0;
         track += static_cast<char>(!is_there ? Flag::missing : holds ? Flag::yes : Flag::no);
     }
+    for (const Index p : watched.dividing)
+        track += static_cast<char>(is_divided ? recording.label(p) : Label::unknown);
 }
 
-/// The steps of a track.
+namespace {
+
+Label label_of(const etlmon::Verdict& verdict) {
+    if (verdict.satisfied()) return Label::yes;
+    return verdict.violated() ? Label::no : Label::unknown;
+}
+
+/// Returns the labels of each labelled predicate over the steps of a track.
+std::vector<std::vector<Label>> labels_in(const Watched& watched, const std::string& track) {
+    std::vector<std::size_t> places;
+    std::size_t at = sizeof(float) * watched.predicates.size();
+    for (std::size_t i = 0; i < watched.labelled.size(); ++i) places.push_back(at++);
+    at += watched.flags.size();
+    for (std::size_t i = 0; i < watched.dividing.size(); ++i) places.push_back(at++);
+    std::vector<std::vector<Label>> labels(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+        for (std::size_t step = 0; step < track.size(); step += watched.step_size())
+            labels[i].push_back(static_cast<Label>(track[step + places[i]]));
+    return labels;
+}
+
+}  // namespace
+
+/// The steps of a track, in another order if one is given.
 class Replayer::Steps final : public episodes::Frames {
 public:
-    Steps(Replayer& of, const std::string& track)
+    Steps(Replayer& of, const std::string& track, const episodes::Order* order = nullptr)
         : of_(of),
           track_(track),
+          order_(order),
+          length_(order != nullptr ? order->size() : track.size() / of.watched_.step_size()),
           samples_(of.truth_.model.inputs.size()),
           labels_(of.model_.predicates.size(), Label::unknown) {}
 
     diag::Result<bool> next() override {
-        if (at_ == track_.size()) return false;
+        if (frames_ == length_) return false;
+        std::size_t at = (order_ != nullptr ? (*order_)[frames_] : frames_) * size_;
         std::size_t input = of_.model_.inputs.size();
         for (const Index p : of_.watched_.predicates) {
-            std::memcpy(&of_.measured_[p], track_.data() + at_, sizeof(float));
-            at_ += sizeof(float);
+            std::memcpy(&of_.measured_[p], track_.data() + at, sizeof(float));
+            at += sizeof(float);
             set(samples_[input++], !std::isnan(of_.measured_[p]), 0);
         }
-        for (const Index p : of_.watched_.labelled) labels_[p] = static_cast<Label>(track_[at_++]);
+        for (const Index p : of_.watched_.labelled) labels_[p] = static_cast<Label>(track_[at++]);
         for (const Index f : of_.watched_.flags) {
-            const auto flag = static_cast<Flag>(track_[at_++]);
+            const auto flag = static_cast<Flag>(track_[at++]);
             set(samples_[f], flag != Flag::missing, flag == Flag::yes ? 1.0F : 0.0F);
         }
         ++frames_;
@@ -140,7 +173,9 @@ public:
 private:
     Replayer& of_;
     const std::string& track_;
-    std::size_t at_ = 0;
+    const episodes::Order* order_;
+    std::uint64_t length_;
+    std::size_t size_ = of_.watched_.step_size();
     std::vector<plan::Sample> samples_;
     std::vector<Label> labels_;
     std::uint64_t frames_ = 0;
@@ -182,17 +217,47 @@ Replayer::Replayer(const check::Model& model, std::vector<Guaranteed> all, Watch
 }
 
 std::vector<Said> Replayer::replay(const std::string& track, const Thresholds& thresholds) {
+    std::vector<Said> said(all_.size());
+    Steps steps(*this, track);
+    run(steps, thresholds, [&] {
+        note(said);
+        return true;
+    });
+    return said;
+}
+
+std::vector<Broken> Replayer::replay_variants(const std::string& track,
+                                              const Thresholds& thresholds) {
+    const std::vector<std::vector<Label>> labels = labels_in(watched_, track);
+    std::vector<Broken> result;
+    for (const auto& [variant, name] : episodes::kVariants) {
+        for (const episodes::Order& order :
+             episodes::orders(variant, labels, track.size() / watched_.step_size())) {
+            Broken broken{variant, std::vector<Concluded>(all_.size())};
+            Steps steps(*this, track, &order);
+            run(steps, thresholds, [&] {
+                conclude(broken.concluded);
+                return true;
+            });
+            result.push_back(std::move(broken));
+        }
+    }
+    return result;
+}
+
+void Replayer::run(episodes::Frames& steps, const Thresholds& thresholds,
+                   const episodes::AfterStep& after_step) {
     thresholds_ = &thresholds;
     for (plan::Monitor& monitor : monitor_plan_.plan.monitors)
         if (monitor.shifted) monitor.shift = thresholds.shifts[monitor.index];
-    std::vector<Said> said(all_.size());
-    Steps steps(*this, track);
-    const auto note_step = [&] {
-        note(said);
-        return true;
-    };
-    episodes::replay(steps, {&monitors_, &truths_}, note_step, note_step);
-    return said;
+    episodes::replay(steps, {&monitors_, &truths_}, after_step, after_step);
+}
+
+/// Restarts the truth of a repeating monitor with it, so that both judge the same positions.
+void Replayer::follow(Index m) {
+    if (model_.monitors[all_[m].monitor].restarts == check::Restarts::when_final &&
+        monitors_.verdict(m).final())
+        truths_.restart(m);
 }
 
 void Replayer::note(std::vector<Said>& said) {
@@ -200,10 +265,7 @@ void Replayer::note(std::vector<Said>& said) {
         if (!monitors_.reports(m)) continue;
         const etlmon::Verdict& says = monitors_.verdict(m);
         const etlmon::Verdict& is = truths_.verdict(m);
-        // The truth of a repeating monitor restarts with it, so both judge the same positions.
-        if (model_.monitors[all_[m].monitor].restarts == check::Restarts::when_final &&
-            says.final())
-            truths_.restart(m);
+        follow(m);
         if (is.unknown()) continue;
         ++said[m].steps;
         said[m].satisfied += says.satisfied() ? 1 : 0;
@@ -211,6 +273,26 @@ void Replayer::note(std::vector<Said>& said) {
         said[m].truly_satisfied += is.satisfied() ? 1 : 0;
         said[m].falsely_satisfied += says.satisfied() && is.violated() ? 1 : 0;
         said[m].falsely_violated += says.violated() && is.satisfied() ? 1 : 0;
+    }
+}
+
+/// Adds the verdicts of a step of a variant.
+void Replayer::conclude(std::vector<Concluded>& concluded) {
+    for (Index m = 0; m < all_.size(); ++m) {
+        if (!monitors_.reports(m)) continue;
+        const check::Monitor& monitor = model_.monitors[all_[m].monitor];
+        Concluded& of = concluded[m];
+        const bool has_to_last = monitor.sliding && of.began;
+        const bool repeats = monitor.restarts == check::Restarts::when_final;
+        const auto add = [&](const etlmon::Verdict& verdict, bool& alarm, Label& so_far) {
+            alarm |= repeats && verdict.alarm();
+            const Label now = alarm ? Label::no : label_of(verdict);
+            so_far = has_to_last ? std::min(so_far, now) : now;
+        };
+        add(monitors_.verdict(m), of.said_alarm, of.said);
+        add(truths_.verdict(m), of.is_alarm, of.is);
+        of.began = true;
+        follow(m);
     }
 }
 

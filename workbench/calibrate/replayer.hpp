@@ -1,6 +1,7 @@
 // Replays recorded episodes against monitors with other thresholds, without reading them again. A
 // track holds what the formulas see of each step, so no distance is measured twice: 4 bytes for
-// each predicate, and one for each label and boolean input.
+// each predicate, and one for each label and boolean input. A broken variant of an episode is its
+// track with the steps in another order.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include "check/guarantees/guarantees.hpp"
 #include "episodes/replay.hpp"
 #include "episodes/truth.hpp"
+#include "episodes/variants/variants.hpp"
 #include "pipeline/compile.hpp"
 
 namespace etlc::calibrate {
@@ -22,6 +24,8 @@ using check::Index;
 struct Guaranteed {
     Index monitor = 0;
     check::Claim claim;  ///< missed_success or missed_alarm
+
+    bool misses_success() const { return claim.kind == check::Claim::Kind::missed_success; }
 };
 
 /// The parts of a step that a track holds.
@@ -29,15 +33,21 @@ struct Watched {
     std::vector<Index> predicates;  ///< what they measure
     std::vector<Index> labelled;    ///< their labels; the other predicates are their own truth
     std::vector<Index> flags;       ///< boolean inputs
+    std::vector<Index> dividing;    ///< other predicates whose labels divide episodes into phases
+
+    std::size_t step_size() const {
+        return sizeof(float) * predicates.size() + labelled.size() + dividing.size() + flags.size();
+    }
 };
 
 /// Returns what the formulas of these guarantees see. `labelled`: predicates with labels.
+/// `in_all`: those whose labels divide episodes into phases; see episodes::orders.
 Watched watched_by(const check::Model& model, const std::vector<Guaranteed>& all,
-                   const std::vector<Index>& labelled);
+                   const std::vector<Index>& labelled, const std::vector<Index>& in_all);
 
-/// Appends a step to the track.
+/// Appends a step to the track. `is_divided`: the episode has the labels that only divide it.
 void add_step(const Watched& watched, const plan::Evaluator& measured,
-              const episodes::Frames& recording, std::string& track);
+              const episodes::Frames& recording, bool is_divided, std::string& track);
 
 /// The verdicts of a monitor and of its truth over the steps of an episode whose truth is known.
 struct Said {
@@ -47,6 +57,23 @@ struct Said {
     std::uint64_t truly_satisfied = 0;
     std::uint64_t falsely_satisfied = 0;
     std::uint64_t falsely_violated = 0;
+};
+
+/// The verdict of a monitor on a whole episode and that of its truth: the last one, or that a
+/// sliding monitor always holds, or that a repeating one has not raised an alarm. Both are unknown
+/// where nothing was judged.
+struct Concluded {
+    episodes::Label said = episodes::Label::unknown;
+    episodes::Label is = episodes::Label::unknown;
+    bool began = false;       ///< at least one step was judged
+    bool said_alarm = false;  ///< a repeating monitor, or its truth, raised an alarm
+    bool is_alarm = false;
+};
+
+/// A broken variant of an episode.
+struct Broken {
+    episodes::Variant variant = episodes::Variant::cut;
+    std::vector<Concluded> concluded;  ///< per guarantee
 };
 
 /// The thresholds of an episode.
@@ -67,6 +94,9 @@ public:
 
     /// Returns the verdicts per guarantee.
     std::vector<Said> replay(const std::string& track, const Thresholds& thresholds);
+    /// Returns the verdicts on all broken variants of the episode. They are those of the reordered
+    /// recording if no input has a state and no truth looks back.
+    std::vector<Broken> replay_variants(const std::string& track, const Thresholds& thresholds);
 
 private:
     class Steps;
@@ -74,7 +104,11 @@ private:
     Replayer(const check::Model& model, std::vector<Guaranteed> all, Watched watched,
              pipeline::Compiled monitors, episodes::GroundTruth truth, pipeline::Compiled truths);
 
+    void run(episodes::Frames& steps, const Thresholds& thresholds,
+             const episodes::AfterStep& after_step);
+    void follow(Index m);
     void note(std::vector<Said>& said);
+    void conclude(std::vector<Concluded>& concluded);
 
     const check::Model& model_;
     std::vector<Guaranteed> all_;

@@ -59,17 +59,26 @@ Scorer::Scorer(const check::Model& model, const episodes::Leaks& leaks,
         return std::find(wanted_.inputs.begin(), wanted_.inputs.end(), input) !=
                wanted_.inputs.end();
     });
+    divided_ = wanted_;
+    divided_.predicates = all_of(predicates_, watched_.dividing);
 }
 
 diag::Result<Demonstration> Scorer::score(const std::string& path) {
-    auto recording = episodes::Recording::open(wanted_, path, reading_);
+    auto divided = score(path, divided_);
+    if (divided || divided_.predicates.size() == wanted_.predicates.size()) return divided;
+    return score(path, wanted_);
+}
+
+diag::Result<Demonstration> Scorer::score(const std::string& path, const episodes::Wanted& wanted) {
+    auto recording = episodes::Recording::open(wanted, path, reading_);
     if (!recording) return recording.failure();
     std::vector<Scores> scores(predicates_.size());
     std::string track;
+    const bool is_divided = wanted.predicates.size() == divided_.predicates.size();
     const auto done = episodes::replay(*recording, {&measured_}, [&] {
         for (std::size_t i = 0; i < predicates_.size(); ++i)
             add(predicates_[i], recording->label(predicates_[i]), scores[i]);
-        add_step(watched_, measured_.evaluator(), *recording, track);
+        add_step(watched_, measured_.evaluator(), *recording, is_divided, track);
         return true;
     });
     if (!done) return done.failure();
@@ -78,7 +87,7 @@ diag::Result<Demonstration> Scorer::score(const std::string& path) {
         scores[i].labelled.shrink_to_fit();  // they are kept for all episodes
     }
     return Demonstration{recording->recorded(), std::move(scores), std::move(track),
-                         recording->is_complete()};
+                         recording->is_complete(), is_divided};
 }
 
 void Scorer::add(Index predicate, Label label, Scores& scores) const {

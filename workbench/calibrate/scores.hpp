@@ -36,6 +36,7 @@ struct Demonstration : episodes::Recorded {
     std::vector<Scores> scores;  ///< per calibrated predicate
     std::string track;           ///< of what the guarantees watch
     bool is_complete = true;     ///< it has all inputs that are watched
+    bool is_divided = true;      ///< it has all labels that divide it into phases
 };
 
 template <class Archive>
@@ -53,7 +54,7 @@ void fields(Archive& archive, Scores& scores) {
 template <class Archive>
 void fields(Archive& archive, Demonstration& demonstration) {
     archive(static_cast<episodes::Recorded&>(demonstration), demonstration.scores,
-            demonstration.track, demonstration.is_complete);
+            demonstration.track, demonstration.is_complete, demonstration.is_divided);
 }
 
 /// Scores of a predicate in all demonstrations. Memory is 16 bytes per demonstration and that of
@@ -89,7 +90,8 @@ std::vector<Index> calibrated_predicates(const check::Model& model);
 /// Scores one demonstration after the other, on one thread.
 class Scorer {
 public:
-    /// Inputs that only the watched predicates and flags read may be absent.
+    /// Inputs that only the watched predicates and flags read may be absent, and labels that only
+    /// divide episodes.
     Scorer(const check::Model& model, const episodes::Leaks& leaks, std::vector<Index> predicates,
            Watched watched, episodes::ReadOptions reading);
     Scorer(const Scorer&) = delete;
@@ -99,6 +101,7 @@ public:
     diag::Result<Demonstration> score(const std::string& path);
 
 private:
+    diag::Result<Demonstration> score(const std::string& path, const episodes::Wanted& wanted);
     void add(Index predicate, episodes::Label label, Scores& scores) const;
 
     const check::Model& model_;
@@ -107,6 +110,7 @@ private:
     plan::Plan plan_;
     episodes::Follower measured_;
     episodes::Wanted wanted_;
+    episodes::Wanted divided_;  ///< the same with the labels that divide episodes
     episodes::ReadOptions reading_;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <set>
 
@@ -66,6 +67,7 @@ public:
     diag::Result<MonitorEpisode> score(const std::string& path);
 
 private:
+    diag::Result<MonitorEpisode> score(const std::string& path, const episodes::Wanted& wanted);
     void note(std::vector<MonitorScore>& scores) const;
 
     const check::Model& model_;
@@ -76,6 +78,7 @@ private:
     episodes::Follower lowest_;
     episodes::Follower truths_;
     episodes::Wanted wanted_;
+    episodes::Wanted divided_;  ///< the same with the labels that divide episodes
 };
 
 MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plans,
@@ -89,7 +92,11 @@ MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plan
       lowest_(plans.monitors),
       truths_(plans.truths, &plans.ground_truth),
       wanted_(episodes::wanted(model, {&plans.monitors, &plans.truths},
-                               episodes::labelled_predicates(plans.ground_truth), leaks)) {
+                               episodes::labelled_predicates(plans.ground_truth), leaks)),
+      divided_(wanted_) {
+    divided_.predicates.clear();
+    std::set_union(wanted_.predicates.begin(), wanted_.predicates.end(), watched.dividing.begin(),
+                   watched.dividing.end(), std::back_inserter(divided_.predicates));
     plan::Evaluator& lowest = lowest_.evaluator();
     lowest.replace_predicate_values([&](Index p) { return spread(model_, p, lowest); });
     // A verdict reads the low end: the first end for a literal, the second for a negated one. With
@@ -103,21 +110,30 @@ MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plan
 }
 
 diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path) {
-    auto recording = episodes::Recording::open(wanted_, path, reading_);
+    auto divided = score(path, divided_);
+    if (divided || divided_.predicates.size() == wanted_.predicates.size()) return divided;
+    return score(path, wanted_);
+}
+
+diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path,
+                                                  const episodes::Wanted& wanted) {
+    auto recording = episodes::Recording::open(wanted, path, reading_);
     if (!recording) return recording.failure();
     std::vector<MonitorScore> scores(monitors_.size());
     std::string track;
+    const bool is_divided = wanted.predicates.size() == divided_.predicates.size();
     const auto rest = [&] {
         note(scores);
         return true;
     };
     const auto frame = [&] {
-        add_step(watched_, highest_.evaluator(), *recording, track);
+        add_step(watched_, highest_.evaluator(), *recording, is_divided, track);
         return rest();
     };
     const auto done = episodes::replay(*recording, {&truths_, &highest_, &lowest_}, frame, rest);
     if (!done) return done.failure();
-    MonitorEpisode result{recording->recorded(), std::move(scores), {}, std::move(track)};
+    MonitorEpisode result{
+        recording->recorded(), std::move(scores), {}, std::move(track), is_divided};
     for (const Index predicate : wanted_.predicates)
         if (recording->from_array(predicate)) result.from_arrays.push_back(predicate);
     return result;
@@ -228,18 +244,15 @@ LeftOut shifts_without_each(const check::Monitor& monitor, const std::vector<Mon
 }
 
 /// Returns the predicates that are not their own truth or have labels in the first episode.
-std::optional<std::vector<Index>> find_labelled(const check::Model& model,
-                                                const std::vector<Index>& monitors,
-                                                const Request& request, diag::Sink& sink) {
-    const auto labelled = episodes::labelled_in_first(model, request, sink);
-    if (!labelled) return std::nullopt;
+std::vector<Index> find_labelled(const check::Model& model, const std::vector<Index>& monitors,
+                                 const std::vector<Index>& in_first) {
     std::set<Index> found;
     for (const Index monitor : monitors)
         for (const Index predicate : check::predicates_of(model, model.monitors[monitor]))
             if (!check::is_own_truth(model, predicate) ||
-                std::binary_search(labelled->begin(), labelled->end(), predicate))
+                std::binary_search(in_first.begin(), in_first.end(), predicate))
                 found.insert(predicate);
-    return std::vector<Index>(found.begin(), found.end());
+    return {found.begin(), found.end()};
 }
 
 }  // namespace
@@ -261,22 +274,24 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     const std::vector<Index> monitors = calibrated_monitors(model);
     if (!episodes::can_be_dealt(request.episodes, request.reading, request.folds, model, sink))
         return std::nullopt;
-    const auto labelled = find_labelled(model, monitors, request, sink);
-    if (!labelled) return std::nullopt;
+    const auto in_first = episodes::labelled_in_first(model, request, sink);
+    if (!in_first) return std::nullopt;
+    const std::vector<Index> labelled = find_labelled(model, monitors, *in_first);
     const check::Model plain = unshifted(model);
-    const episodes::GroundTruth truth = episodes::ground_truth(plain, *labelled);
+    const episodes::GroundTruth truth = episodes::ground_truth(plain, labelled);
     const auto compiled = pipeline::compile(plain, {}, sink);
     // The truth does not depend on rho.
     const auto truths = pipeline::compile(truth.model, {{}, check::Values::boolean}, sink);
     if (!compiled || !truths) return std::nullopt;
     const MonitorPlans plans{compiled->plan, truths->plan, truth};
 
-    const episodes::Leaks leaks(model, *labelled);
+    const episodes::Leaks leaks(model, labelled);
     episodes::Identities recorded;
     std::vector<MonitorScores> scored;
     const std::vector<Guaranteed> guarantees = guaranteed_as_a_whole(model);
-    const Watched watched = watched_by(model, guarantees, *labelled);
+    const Watched watched = watched_by(model, guarantees, labelled, *in_first);
     Tracks tracks;
+    bool is_divided = true;
     std::uint64_t frames = 0;
     check::Labelling labelling;
     const bool all_scored = episodes::over_shared_episodes<MonitorEpisode>(
@@ -292,6 +307,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
             for (const Index predicate : episode.from_arrays) ++labelling.from_arrays[predicate];
             scored.push_back(std::move(episode.scores));
             tracks.add(episode.track);
+            is_divided &= episode.is_divided;
         });
     if (!all_scored) return std::nullopt;
     episodes::warn_of_unmarked(recorded, sink);
@@ -326,7 +342,8 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         out.push_back(shifts_without_each(monitor, scored, i));
     }
     if (sink.has_errors()) return std::nullopt;
-    const auto others = other_errors_of_shifts(shifted, guarantees, out, {tracks, watched});
+    const auto others =
+        other_errors_of_shifts(shifted, guarantees, out, {tracks, watched, true, is_divided});
     result.report =
         fmt::format("{}, {}\n", counted(scored.size(), "episode"), counted(frames, "frame"));
     for (std::size_t i = 0; i < monitors.size(); ++i) {

@@ -43,6 +43,7 @@ struct MonitorEpisode : episodes::Recorded {
     MonitorScores scores;
     std::vector<Index> from_arrays;  ///< predicates with an array of labels
     std::string track;               ///< of what the monitors see
+    bool is_divided = true;          ///< it has all labels that divide it into phases
 };
 
 template <class Archive>
@@ -53,7 +54,7 @@ void fields(Archive& archive, MonitorScore& score) {
 template <class Archive>
 void fields(Archive& archive, MonitorEpisode& episode) {
     archive(static_cast<episodes::Recorded&>(episode), episode.scores, episode.from_arrays,
-            episode.track);
+            episode.track, episode.is_divided);
 }
 
 /// Adds the shifts of the calibrated monitors to `before`, the file with the thresholds of the

@@ -1,5 +1,5 @@
 # Two strange demonstrations make a threshold so wide that the monitor is satisfied from the start.
-# The guarantee of the other monitor is worth something.
+# The other monitor is seldom wrong, but often a frame too early, which broken variants show.
 cat > t.etl <<'END'
 spec t;
 input wide, sound : f32;
