@@ -182,8 +182,7 @@ TEST(Shift, IsBeyondTheScoreAtTheRank) {
         EXPECT_EQ(plain.predicate, "F[0, 2] (a && F[0, 2] !a) where a = x <= 0.5");
         EXPECT_EQ(plain.truth, "a: px > 0.5");
         const thresholds::Entry of_let = shift_at_the_rank(kOverLet, against);
-        EXPECT_EQ(of_let.predicate,
-                  "F[0, 2] (O[0, 1] a && F[0, 2] !O[0, 1] a) where a = x <= 0.5");
+        EXPECT_EQ(of_let.predicate, "F[0, 2] (O[0, 1] a && F[0, 2] !O[0, 1] a) where a = x <= 0.5");
         EXPECT_EQ(of_let.truth, "F[0, 2] (a && F[0, 2] !a); a: px > 0.5");
     }
 }
