@@ -95,7 +95,8 @@ TEST(Claims, NothingWhereNothingIsKnown) {
 
 /// The predicates of the let keep to truths that are not those of the let.
 TEST(Claims, NothingOfALetWithATruth) {
-    const std::string why = "no guarantee: 'after' has a truth of its own, not that of its parts";
+    const std::string why =
+        "no guarantee: 'after' has a truth of its own, to which no threshold was calibrated";
     EXPECT_EQ(claims_of("F after"), why);
     EXPECT_EQ(claims_of("after"), why);
     EXPECT_EQ(claims_of("after && F b"),

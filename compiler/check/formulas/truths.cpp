@@ -264,21 +264,21 @@ void check_fitted_frames(Context& c) {
         if (where == kNone) continue;
         Index& selects = c.model.fitted[i].where;
         if (const Index truth = with_truths_of_lets(c, where); truth != kNone) selects = truth;
-        if (lets_are_written_out(c.model, selects))
-            selects = first.try_emplace(print(c.model, selects), selects).first->second;
         const std::vector<Reach> all = reaches(c.model);
         if (const Index future = all[where].future; future != kNone)
             c.report(Code::future_in_truth, c.operator_spans[future],
                      fmt::format("{} looks ahead; frames are selected by the present and the past",
                                  ast::operator_of(c.model.formulas[future].kind)->symbol))
                 .note(written.span, "the frames are selected here");
-        if (const Index at = node_without_truth(c.model, c.model.fitted[i].where); at != kNone)
+        if (const Index at = node_without_truth(c.model, selects); at != kNone)
             c.report(Code::frames_without_truth, c.model.formulas[at].span,
                      fmt::format("frames are selected by truths, but '{}' has none",
                                  c.model.predicates[c.model.formulas[at].index].shown()))
                 .note(
                     "use a named predicate with a truth: 'truth NAME = ...;' or an array "
                     "truth.NAME in the episodes");
+        if (lets_are_written_out(c.model, selects))
+            selects = first.try_emplace(print(c.model, selects), selects).first->second;
     }
 }
 

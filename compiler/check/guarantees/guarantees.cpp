@@ -138,7 +138,8 @@ Claim claim(const Model& model, Literal part, Values values) {
     result.formula = part.formula;
     result.negated = part.negated;
     if (const Let* let = judged_let(model, part.formula)) {
-        result.why = fmt::format("'{}' has a truth of its own, not that of its parts", let->name);
+        result.why = fmt::format(
+            "'{}' has a truth of its own, to which no threshold was calibrated", let->name);
         return result;
     }
     bool no_at_zero = false;

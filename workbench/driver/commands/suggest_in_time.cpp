@@ -1,6 +1,7 @@
 #include "driver/commands/suggest_in_time.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "calibrate/scores.hpp"
 #include "driver/commands/commands.hpp"
@@ -111,9 +112,11 @@ bool may_be_as_good(const evaluate::Figure& difference) {
 /// Looks up the figures of the candidates by the names of their trials, and ranks them.
 void fill_in(const evaluate::Judgement& judgement, fit::RankedInTime& ranking) {
     const evaluate::Bootstrap bootstrap(judgement.place.size());
+    std::map<std::string, evaluate::Statistic> scores;  // by trial
     for (fit::InTime& one : ranking.ranked) {
         const auto score = score_of(judgement, ranking.of_monitor, one.trial);
         if (!score) continue;
+        scores[one.trial] = *score;
         one.score = bootstrap.figure(*score);
         if (ranking.of_monitor)
             add_agreements(judgement, place_of(judgement.monitors, one.trial), one);
@@ -122,10 +125,11 @@ void fill_in(const evaluate::Judgement& judgement, fit::RankedInTime& ranking) {
                 evaluate::f1_of_duration(judgement, place_of(judgement.predicates, one.trial));
     }
     fit::rank(ranking);
-    const auto best = score_of(judgement, ranking.of_monitor, ranking.ranked.front().trial);
+    const auto best = scores.find(ranking.ranked.front().trial);
     for (fit::InTime& one : ranking.ranked) {
-        const auto score = score_of(judgement, ranking.of_monitor, one.trial);
-        one.ties = best && score && may_be_as_good(evaluate::less(bootstrap, *best, *score));
+        const auto score = scores.find(one.trial);
+        one.ties = best != scores.end() && score != scores.end() &&
+                   may_be_as_good(evaluate::less(bootstrap, best->second, score->second));
     }
 }
 

@@ -117,10 +117,11 @@ public:
         RankedInTime& ranking = result_.all.emplace_back();
         ranking.name = p;
         ranking.ranked.push_back({p, {}, p});
-        for (const Formula& formula : over_one(model_, p)) add_let(ranking, formula);
+        for (const Formula& formula : over_one(model_, p)) add_let(ranking, predicate, formula);
         for (const Index other : labelled)
             if (other != predicate)
-                for (const Formula& formula : over_two(model_, p, other)) add_let(ranking, formula);
+                for (const Formula& formula : over_two(model_, p, other))
+                    add_let(ranking, predicate, formula);
     }
 
     void add_monitor(const check::Monitor& monitor) {
@@ -167,14 +168,10 @@ private:
         bool is_steady() const { return formula.steps > 0 && formula.follows == check::kNone; }
     };
 
-    void add_let(RankedInTime& ranking, const Formula& formula) {
+    void add_let(RankedInTime& ranking, Index predicate, const Formula& formula) {
         const std::string& p = ranking.name;
-        const auto at =
-            std::find_if(model_.predicates.begin(), model_.predicates.end(),
-                         [&](const check::Predicate& predicate) { return predicate.name == p; });
         std::set<std::string> taken = words_;
-        Let let{static_cast<Index>(at - model_.predicates.begin()), formula,
-                names_.unused(p + "_trial"),
+        Let let{predicate, formula, names_.unused(p + "_trial"),
                 Declarations("", taken).unused(fmt::format("{}_{}", p, formula.role))};
         declare(lines_, let.name, let);
         ranking.ranked.push_back({formula.text, {}, let.name});
