@@ -118,6 +118,7 @@ MAX         : 'max' ;
 MEAN        : 'mean' ;
 KTH         : 'kth' ;
 ABS         : 'abs' ;
+COUNT       : 'count' ;
 SQRT        : 'sqrt' ;
 
 IDENTIFIER : [A-Za-z_] [A-Za-z_0-9]* ;
@@ -141,6 +142,7 @@ PLUS          : '+' ;
 MINUS         : '-' ;
 TIMES         : '*' ;
 DIVIDE        : '/' ;
+AT            : '@' ;
 LPAREN        : '(' ;
 RPAREN        : ')' ;
 LBRACKET      : '[' ;

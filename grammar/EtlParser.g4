@@ -82,8 +82,8 @@ product
     ;
 
 factor
-    : MINUS factor      # Negation
-    | primary           # Unsigned
+    : MINUS factor              # Negation
+    | primary (AT delay)*       # Unsigned
     ;
 
 primary
@@ -91,7 +91,9 @@ primary
     | op=(TRUE | FALSE)                                         # ConstantPrimary
     | distance                                                  # DistancePrimary
     | op=(ABS | SQRT) LPAREN formula RPAREN                     # UnaryFunctionPrimary
-    | op=(MIN | MAX) LPAREN formula (COMMA formula)+ RPAREN     # VariadicFunctionPrimary
+    | op=(MIN | MAX | MEAN) LPAREN formula (COMMA formula unit?)+ RPAREN
+                                                                # VariadicFunctionPrimary
+    | COUNT LPAREN formula COMMA bound RPAREN                   # CountPrimary
     | name                                                      # NamePrimary
     | LPAREN formula RPAREN                                     # BracketPrimary
     ;
@@ -116,7 +118,7 @@ bound
 // ---- distances
 
 distance
-    : aggregation? metric LPAREN point COMMA name RPAREN
+    : aggregation? metric LPAREN point COMMA point RPAREN
     ;
 
 aggregation
@@ -136,9 +138,16 @@ weights
     | name      # NamedWeights
     ;
 
+// As the second point of a distance, a name may be that of a target.
 point
-    : name (LPAREN point RPAREN)?                   # NamedPoint
-    | LBRACKET name (COMMA name)* RBRACKET          # VectorPoint
+    : ( name (LPAREN point RPAREN)?
+      | LBRACKET point (COMMA point)* RBRACKET
+      ) (AT delay)*
+    ;
+
+// How long ago: steps or a duration.
+delay
+    : amount unit?
     ;
 
 // ---- thresholds
@@ -281,5 +290,5 @@ name
     | DURATIONS | UP | DOWN | NEAREST
     | HERTZ | MICROSECONDS | MILLISECONDS | SECONDS | STEPS
     | DISTANCE | MAHALANOBIS
-    | MIN | MAX | MEAN | KTH | ABS | SQRT
+    | MIN | MAX | MEAN | KTH | COUNT | ABS | SQRT
     ;

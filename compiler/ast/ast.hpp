@@ -34,6 +34,9 @@ struct Number {
 
 // ---- expressions: EXPR --------------------------------------------------------------------------
 
+/// The unit of explicit numbers of steps: `2 steps`, `1 step`.
+inline constexpr std::string_view kStepsUnit = "steps";
+
 struct MatrixLiteral {
     std::vector<std::vector<Number>> rows;
     Span span;
@@ -74,12 +77,24 @@ struct Images {
     Span span;
 };
 
-/// z, [px, py], P(z) or P(Q([px, py])).
-struct Point {
-    std::vector<Name> projections;  ///< outermost first
-    std::vector<Name> inputs;       ///< one embedding input, or the scalars of a vector
-    bool is_vector = false;         ///< written with brackets
+/// One bound of an interval, or the time in `held`, `hold`, `stale after` or `@`: steps, a duration,
+/// or inf.
+struct Bound {
+    Number number;
+    std::string unit;  ///< "", "us", "ms", "s", "min", kStepsUnit
     Span span;
+};
+
+/// z, P(POINT), [px, py], [z, P(z)], each as it is or was: POINT@3s.
+struct Point {
+    Name name;                 ///< the input or projection; empty with brackets
+    std::vector<Point> parts;  ///< of P(POINT) its POINT; with brackets, their elements
+    bool is_vector = false;    ///< written with brackets
+    std::vector<Bound> delays;
+    Span span;
+
+    /// Whether it is only a name, which may be that of a target.
+    bool is_name() const { return !is_vector && parts.empty() && delays.empty(); }
 };
 
 /// Returns the span of the alternative that a variant holds.
@@ -112,14 +127,22 @@ struct Aggregation {
     Span span;
 };
 
-/// AGG DIST(point, target)
+/// AGG DIST(point, target), or DIST(point, point)
 struct Distance {
     std::optional<Aggregation> aggregation;
     Name metric;  ///< a word of distances.def
     std::optional<Weights> weights;
     Point point;
-    Name target;
+    Point other;  ///< the target, or another point
     Span span;
+};
+
+/// A number that earlier steps have a part in: EXPR@3s, mean(EXPR, 2s), count(FORMULA, 60s).
+struct Past {
+    using Kind = PastKind;
+    Kind kind = Kind::ago;
+    FormulaPtr formula;  ///< of a count
+    Bound time;
 };
 
 struct Expr;
@@ -131,23 +154,14 @@ struct Expr {
     std::string text;      ///< digits of a number, or name of an input or constant
     std::string constant;  ///< name of the constant that gave the number, as in Number
     std::unique_ptr<Distance> distance;  ///< only for kind distance
-    /// Operands in order; add, multiply etc. are binary and associate to the left.
+    std::unique_ptr<Past> past;          ///< only for kind past
+    /// Operands in order; add, multiply etc. are binary and associate to the left. The EXPR of a
+    /// past number.
     std::vector<ExprPtr> arguments;
     Span span;
 };
 
 // ---- formulas -----------------------------------------------------------------------------------
-
-/// The unit of explicit numbers of steps: `2 steps`, `1 step`.
-inline constexpr std::string_view kStepsUnit = "steps";
-
-/// One bound of an interval, or the time in `held`, `hold` or `stale after`: steps, a duration, or
-/// inf.
-struct Bound {
-    Number number;
-    std::string unit;  ///< "", "us", "ms", "s", "min", kStepsUnit
-    Span span;
-};
 
 struct Interval {
     Bound low;

@@ -64,11 +64,25 @@ std::string text_of(const std::unique_ptr<Node>& node) {
     return print(*node);
 }
 
+/// "1 step", "n steps".
+std::string unit_word(const Number& number, const std::string& unit) {
+    return unit == kStepsUnit && number.text == "1" ? "step" : unit;
+}
+
+std::string text_of(const Bound& bound) {
+    const bool apart =
+        !bound.unit.empty() && (!bound.number.constant.empty() || bound.unit == kStepsUnit);
+    return fmt::format("{}{}{}", bound.number.text, apart ? " " : "",
+                       unit_word(bound.number, bound.unit));
+}
+
 std::string text_of(const Point& point) {
-    std::string text = joined(point.inputs, ", ", [](const Name& n) { return n.text; });
-    if (point.is_vector) text = fmt::format("[{}]", text);
-    for (auto map = point.projections.rbegin(); map != point.projections.rend(); ++map)
-        text = fmt::format("{}({})", map->text, text);
+    std::string text = joined(point.parts, ", ", [](const Point& part) { return text_of(part); });
+    if (point.is_vector)
+        text = fmt::format("[{}]", text);
+    else
+        text = point.parts.empty() ? point.name.text : fmt::format("{}({})", point.name.text, text);
+    for (const Bound& delay : point.delays) text += '@' + text_of(delay);
     return text;
 }
 
@@ -88,7 +102,7 @@ std::string text_of(const Distance& distance) {
     const std::string weights =
         distance.weights ? fmt::format("({})", text_of(*distance.weights)) : "";
     return fmt::format("{}{}{}({}, {})", aggregation, distance.metric.text, weights,
-                       text_of(distance.point), distance.target.text);
+                       text_of(distance.point), text_of(distance.other));
 }
 
 /// "calibrated(f1)", "fitted(kmeans, k = 8, ...)".
@@ -109,18 +123,6 @@ std::string text_of(const Calibrated& calibrated) {
 }
 
 // ---- formulas -----------------------------------------------------------------------------------
-
-/// "1 step", "n steps".
-std::string unit_word(const Number& number, const std::string& unit) {
-    return unit == kStepsUnit && number.text == "1" ? "step" : unit;
-}
-
-std::string text_of(const Bound& bound) {
-    const bool apart =
-        !bound.unit.empty() && (!bound.number.constant.empty() || bound.unit == kStepsUnit);
-    return fmt::format("{}{}{}", bound.number.text, apart ? " " : "",
-                       unit_word(bound.number, bound.unit));
-}
 
 std::string text_of(const Interval& interval) {
     return fmt::format("[{}, {}]", text_of(interval.low), text_of(interval.high));
@@ -170,6 +172,18 @@ void append(std::string& text, const Formula& f, FormulaLevel needed) {
         }
     }
     if (level < needed) text += ')';
+}
+
+/// "x@3s", "(x + y)@10", "mean(x, 2s)", "count(f, 60s)"
+std::string text_of_past(const Expr& e) {
+    const std::string time = text_of(e.past->time);
+    if (e.past->kind == PastKind::count)
+        return fmt::format("count({}, {})", print(*e.past->formula), time);
+    const std::string of = print(*e.arguments[0]);
+    if (e.past->kind != PastKind::ago)
+        return fmt::format("{}({}, {})", word(e.past->kind), of, time);
+    const bool whole = operator_of(e.arguments[0]->kind).level == kPrimary;
+    return whole ? fmt::format("{}@{}", of, time) : fmt::format("({})@{}", of, time);
 }
 
 // ---- declarations -------------------------------------------------------------------------------
@@ -288,6 +302,7 @@ std::string print(const Formula& formula) {
 std::string print(const Expr& expression) {
     std::string text;
     const auto leaf = [](const Expr& e) {
+        if (e.kind == Expr::Kind::past) return text_of_past(e);
         return e.kind == Expr::Kind::distance ? text_of(*e.distance) : e.text;
     };
     const auto argument = [](const ExprPtr& e) -> const Expr& { return *e; };

@@ -74,6 +74,11 @@ private:
     Expression expression(Grammar::PrimaryContext& context) const;
     Expression call(const Token& function, const std::vector<Grammar::FormulaContext*>& arguments,
                     const ParserRuleContext& whole) const;
+    Expression variadic(Grammar::VariadicFunctionPrimaryContext& context) const;
+    Expression count(Grammar::CountPrimaryContext& context) const;
+    static Expression past(ast::Past how, source::Span span, source::Span op,
+                           std::vector<Expression> of);
+    ast::Bound delay(Grammar::DelayContext& context) const;
     static Expression combined(ast::ExprKind kind, source::Span span, source::Span op,
                                std::vector<Expression> arguments);
     /// Reads operands of one level of precedence, grouped to the left.

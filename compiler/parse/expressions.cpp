@@ -8,6 +8,7 @@
 namespace etlc::parse {
 
 using ast::ExprKind;
+using ast::PastKind;
 
 namespace {
 
@@ -95,8 +96,16 @@ Builder::Expression Builder::expression(Grammar::ProductContext& context) const 
 }
 
 Builder::Expression Builder::expression(Grammar::FactorContext& context) const {
-    if (auto* const plain = dynamic_cast<Grammar::UnsignedContext*>(&context))
-        return expression(*plain->primary());
+    if (auto* const plain = dynamic_cast<Grammar::UnsignedContext*>(&context)) {
+        Expression result = expression(*plain->primary());
+        for (Grammar::DelayContext* const ago : plain->delay()) {
+            std::vector<Expression> of;
+            of.push_back(std::move(result));
+            const source::Span span = source::join(span_of(context), span_of(*ago));
+            result = past({PastKind::ago, nullptr, delay(*ago)}, span, span_of(*ago), std::move(of));
+        }
+        return result;
+    }
     auto& negation = dynamic_cast<Grammar::NegationContext&>(context);
     std::vector<Expression> operand;
     operand.push_back(expression(*negation.factor()));
@@ -110,7 +119,9 @@ Builder::Expression Builder::expression(Grammar::PrimaryContext& context) const 
     if (auto* const unary = dynamic_cast<Grammar::UnaryFunctionPrimaryContext*>(&context))
         return call(*unary->op, {unary->formula()}, context);
     if (auto* const variadic = dynamic_cast<Grammar::VariadicFunctionPrimaryContext*>(&context))
-        return call(*variadic->op, variadic->formula(), context);
+        return this->variadic(*variadic);
+    if (auto* const counted = dynamic_cast<Grammar::CountPrimaryContext*>(&context))
+        return count(*counted);
     if (dynamic_cast<Grammar::ConstantPrimaryContext*>(&context) != nullptr)
         fail(diag::Code::mixed_up_kinds, span_of(context),
              fmt::format("expected an expression, found the formula '{}'", text(context)));
@@ -136,6 +147,55 @@ Builder::Expression Builder::call(const Token& function,
     return combined(expr_kind(function), span_of(whole), span_of(function), std::move(values));
 }
 
+Builder::Expression Builder::past(ast::Past how, source::Span span, source::Span op,
+                                  std::vector<Expression> of) {
+    Expression result = combined(ExprKind::past, span, op, std::move(of));
+    result.root->past = std::make_unique<ast::Past>(std::move(how));
+    return result;
+}
+
+/// min(x, y) is the smaller of two; min(x, 2 s), with a unit, is the least of a window.
+Builder::Expression Builder::variadic(Grammar::VariadicFunctionPrimaryContext& context) const {
+    const auto arguments = context.formula();
+    const auto units = context.unit();
+    const Token& op = *context.op;
+    const std::string word = text(op);
+    if (units.empty() && op.getType() != Grammar::MEAN) return call(op, arguments, context);
+    if (arguments.size() != 2 || units.size() > 1)
+        fail(diag::Code::past_form, span_of(context),
+             fmt::format("expected {0} of an expression and a time, as in '{0}(x, 2 s)'", word));
+    Expression time = expression(*arguments[1]);
+    const bool is_amount =
+        time.root->kind == ExprKind::number || time.root->kind == ExprKind::name;
+    if (!is_amount)
+        fail(diag::Code::past_form, span_of(*arguments[1]),
+             fmt::format("expected a time, as in '{}(x, 2 s)'", word));
+    const bool is_name = time.root->kind == ExprKind::name;
+    ast::Bound bound{{time.root->text, time.root->span, is_name ? time.root->text : ""},
+                     units.empty() ? "" : unit(*units[0]),
+                     units.empty() ? time.root->span
+                                   : source::join(time.root->span, span_of(*units[0]))};
+    const PastKind kind = op.getType() == Grammar::MEAN  ? PastKind::mean
+                          : op.getType() == Grammar::MIN ? PastKind::min
+                                                         : PastKind::max;
+    std::vector<Expression> of;
+    of.push_back(expression(*arguments[0]));
+    return past({kind, nullptr, std::move(bound)}, span_of(context), span_of(op), std::move(of));
+}
+
+Builder::Expression Builder::count(Grammar::CountPrimaryContext& context) const {
+    Formula counted = formula(*context.formula());
+    Expression result = past({PastKind::count, std::move(counted.root), bound(*context.bound())},
+                             span_of(context), span_of(*context.start), {});
+    result.height = counted.height + 1;
+    if (result.height > kMaxHeight) too_high(span_of(*context.start));
+    return result;
+}
+
+ast::Bound Builder::delay(Grammar::DelayContext& context) const {
+    return time(*context.amount(), context.unit());
+}
+
 std::unique_ptr<ast::Distance> Builder::distance(Grammar::DistanceContext& context) const {
     auto result = std::make_unique<ast::Distance>();
     result->span = span_of(context);
@@ -146,24 +206,18 @@ std::unique_ptr<ast::Distance> Builder::distance(Grammar::DistanceContext& conte
     if (auto* const weighted = dynamic_cast<Grammar::WeightedMetricContext*>(context.metric()))
         result->weights = weights(*weighted->weights());
 
-    result->point = point(*context.point());
-    result->target = name(*context.name());
+    result->point = point(*context.point(0));
+    result->other = point(*context.point(1));
     return result;
 }
 
 ast::Point Builder::point(Grammar::PointContext& context) const {
     ast::Point result;
     result.span = span_of(context);
-    Grammar::PointContext* at = &context;
-    while (auto* const named = dynamic_cast<Grammar::NamedPointContext*>(at)) {
-        at = named->point();
-        (at == nullptr ? result.inputs : result.projections).push_back(name(*named->name()));
-        if (at == nullptr) return result;
-    }
-    result.is_vector = true;
-    for (const Grammar::NameContext* const n :
-         dynamic_cast<Grammar::VectorPointContext&>(*at).name())
-        result.inputs.push_back(name(*n));
+    if (context.name() != nullptr) result.name = name(*context.name());
+    result.is_vector = context.name() == nullptr;
+    for (Grammar::PointContext* const part : context.point()) result.parts.push_back(point(*part));
+    for (Grammar::DelayContext* const ago : context.delay()) result.delays.push_back(delay(*ago));
     return result;
 }
 

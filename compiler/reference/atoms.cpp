@@ -51,6 +51,7 @@ double evaluate(const check::Model& model, const Expr& expr, const Samples& samp
             return samples[expr.index].empty() ? kUnknown : samples[expr.index][0];
         case Expr::Kind::distance:
             return distance(model, model.distances[expr.index], samples).delta.value_or(kUnknown);
+        case Expr::Kind::past: return kUnknown;
         case Expr::Kind::negate: return -a[0];
         case Expr::Kind::add: return a[0] + a[1];
         case Expr::Kind::subtract: return a[0] - a[1];

@@ -75,7 +75,7 @@ TEST(Declarations, SpansInsideDistances) {
     EXPECT_EQ(text(d.aggregation->span), "kth(2)");
     EXPECT_EQ(text(d.metric.span), "mahalanobis");
     EXPECT_EQ(text(d.point.span), "[x, y]");
-    EXPECT_EQ(text(d.target.span), "t");
+    EXPECT_EQ(text(d.other.span), "t");
     const auto& load = std::get<ast::Load>(*d.weights);
     EXPECT_EQ(text(load.span), "load(\"w.npz\", \"k\")");
     EXPECT_EQ(text(load.path_span), "\"w.npz\"");

@@ -153,18 +153,30 @@ private:
         d->metric.text = pick({"l2", "l2sq", "l1", "linf", "cosine", "angular", "mahalanobis"});
         if (d->metric.text == "mahalanobis") d->weights = weights();
         d->point = point();
-        d->target.text = name();
+        d->other = below(2) != 0 ? named_point() : point();
         return d;
     }
 
     ast::Point point() {
-        ast::Point point;
-        for (int i = below(3); i > 0; --i) point.projections.push_back({name(), {}});
-        point.is_vector = below(2) != 0;
-        for (int i = point.is_vector ? 1 + below(3) : 1; i > 0; --i)
-            point.inputs.push_back({name(), {}});
+        ast::Point point = named_point();
+        if (below(3) == 0) point.parts.push_back(this->point());
+        if (below(3) == 0) {
+            point = {};
+            point.is_vector = true;
+            for (int i = 1 + below(3); i > 0; --i)
+                point.parts.push_back(below(3) == 0 ? this->point() : named_point());
+        }
+        if (below(4) == 0) point.delays.push_back(time());
         return point;
     }
+
+    ast::Point named_point() {
+        ast::Point point;
+        point.name.text = name();
+        return point;
+    }
+
+    ast::Bound time() { return {{pick({"1", "2.5", "30"}), {}}, pick({"", "ms", "s", "min"}), {}}; }
 
     ast::Fitted fitted() {
         ast::Fitted fitted;

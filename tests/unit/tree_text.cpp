@@ -59,10 +59,13 @@ std::string word(const Images& images) {
 
 std::string word(const Point& point) {
     std::vector<std::string> items;
-    for (const Name& n : point.inputs) items.push_back(n.text);
-    std::string text = list(point.is_vector ? "vector" : "input", items);
-    for (auto map = point.projections.rbegin(); map != point.projections.rend(); ++map)
-        text = list(map->text, {text});
+    for (const Point& part : point.parts)
+        items.push_back(point.is_vector && part.is_name() ? part.name.text : word(part));
+    std::string text = point.is_vector       ? list("vector", items)
+                       : point.parts.empty() ? list("input", {point.name.text})
+                                             : list(point.name.text, items);
+    for (const Bound& delay : point.delays)
+        text = list("ago", {text, delay.number.text + delay.unit});
     return text;
 }
 
@@ -110,7 +113,7 @@ std::string word(const Distance& distance) {
         items.push_back(std::visit([](const auto& w) { return list("weights", {word(w)}); },
                                    *distance.weights));
     items.push_back(word(distance.point));
-    items.push_back(distance.target.text);
+    items.push_back(distance.other.is_name() ? distance.other.name.text : word(distance.other));
     return list("distance", items);
 }
 
@@ -119,6 +122,7 @@ std::string head(Expr::Kind kind) {
         case Expr::Kind::number: return "number";
         case Expr::Kind::name: return "name";
         case Expr::Kind::distance: return "distance";
+        case Expr::Kind::past: return "past";
         case Expr::Kind::negate: return "negate";
         case Expr::Kind::add: return "+";
         case Expr::Kind::subtract: return "-";

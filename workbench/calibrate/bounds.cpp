@@ -251,6 +251,7 @@ public:
             case Expr::Kind::number: return flushed(e.number32);
             case Expr::Kind::scalar: return flushed(*measured_.input(e.index));
             case Expr::Kind::distance: return distance(e.index);
+            case Expr::Kind::past: return {};
             case Expr::Kind::negate: return check::negate(a[0]);
             case Expr::Kind::add:
                 return binary([](float x, float y) { return etlmon::add(x, y); }, check::add);

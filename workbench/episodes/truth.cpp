@@ -194,6 +194,7 @@ double TruthEvaluator::expression(const Expr& e) const {
         case Expr::Kind::number: return e.number;
         case Expr::Kind::scalar: return values_[e.index][0];
         case Expr::Kind::distance: return measure(model_.distances[e.index]);
+        case Expr::Kind::past: return kUnknown;
         case Expr::Kind::negate: return -at(0);
         case Expr::Kind::add: return at(0) + at(1);
         case Expr::Kind::subtract: return at(0) - at(1);

@@ -39,8 +39,8 @@ public:
         // Constants and durations count as the numbers that replaced them; list elements are added
         // where they are used.
         const auto& [name, retargetable, constants, file, step_seconds, rounded, rounding, encoders,
-                     encoded, inputs, projections, points, targets, fitted, distances, predicates,
-                     formulas, lets, truths, monitors, dependencies, reservations] = model;
+                     encoded, inputs, projections, points, targets, fitted, distances, pasts,
+                     predicates, formulas, lets, truths, monitors, dependencies, reservations] = model;
         // Episodes at another rate have different frames.
         if (step_seconds > 0) add("rate", fmt::format("{:.9g} s a step", step_seconds));
     }
@@ -115,11 +115,13 @@ private:
     }
 
     std::string text_of(Index point) {
-        // The text has the names of inputs and projections, which are added.
-        const auto& [kind, inputs, dimension, projection, inner, text] = model_.points[point];
+        // The text has delays, and the names of inputs and projections, which are added.
+        const auto& [kind, inputs, dimension, projection, inner, steps, parts, text] =
+            model_.points[point];
         for (const Index input : inputs) add_input(input);
         if (projection != kNone) add_projection(projection);
         if (inner != kNone) text_of(inner);
+        for (const Index part : parts) text_of(part);
         return text;
     }
 
@@ -138,15 +140,23 @@ private:
 
     void add_distance(Index index) {
         // Expressions contain the text, which describes the distance in words.
-        const auto& [point, target, metric, aggregation, kth, weights, weights_diagonal,
+        const auto& [point, target, other, metric, aggregation, kth, weights, weights_diagonal,
                      weights_fitted, weights_path, text, span] = model_.distances[index];
         std::string all = fmt::format("{} {} {} from {} to {}", word(aggregation), kth,
                                       kMetrics[static_cast<std::size_t>(metric)].word,
-                                      text_of(point), add_target(target));
+                                      text_of(point),
+                                      target == kNone ? text_of(other) : add_target(target));
         if (metric == Metric::mahalanobis)
             all += fmt::format(", {}{}{}", weights_diagonal ? "diagonal " : "", kHashed,
                                weights_hash(model_.distances[index]));
         add("distance " + text, std::move(all));
+    }
+
+    void add_past(Index index) {
+        // Expressions contain the text, which describes it in words.
+        const auto& [kind, expression, formula, steps, text, range, span] = model_.pasts[index];
+        if (formula == kNone) return add_expression(expression);
+        add("count " + text, hash_of(formula, Atoms::compared));
     }
 
     void add_expression(const Expr& expression) {
@@ -154,6 +164,7 @@ private:
         const auto& [kind, text, number, number32, index, arguments, span] = expression;
         if (kind == Expr::Kind::scalar) add_input(index);
         if (kind == Expr::Kind::distance) add_distance(index);
+        if (kind == Expr::Kind::past) add_past(index);
         for (const Expr& argument : arguments) add_expression(argument);
     }
 

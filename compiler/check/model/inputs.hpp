@@ -16,6 +16,8 @@ namespace etlc::check {
 using source::Span;
 using Index = std::uint32_t;
 inline constexpr Index kNone = std::numeric_limits<Index>::max();
+/// Limit on the dimension of a point: 4 MiB in float32.
+inline constexpr std::uint32_t kMaxDimension = 1U << 20U;
 
 // ---- what the monitor sees ----------------------------------------------------------------------
 
@@ -91,18 +93,23 @@ struct Projection {
     Span span;
 };
 
-/// A point to measure from: an embedding, a vector of scalars [px, py], or P(POINT).
+/// A point to measure from: an embedding, a vector of scalars [px, py], P(POINT), POINT as it was
+/// `steps` ago, or several points put together, [z, z@5]. What is delayed is none of the last two.
 struct Point {
-    enum class Kind : std::uint8_t { embedding, scalars, projected };
+    enum class Kind : std::uint8_t { embedding, scalars, projected, delayed, joined };
     Kind kind = Kind::embedding;
-    std::vector<Index> inputs;  ///< the embedding or the scalars; for P(POINT) those of POINT
+    std::vector<Index> inputs;  ///< all that it is made of, in order
     std::uint32_t dimension = 0;
     Index projection = kNone;  ///< P
     Index inner = kNone;       ///< POINT, which precedes it in Model::points
-    std::string text;          ///< canonical text: "Q(z)", "[px, py]"
+    std::uint32_t steps = 0;   ///< delayed: at least 1
+    std::vector<Index> parts;  ///< joined: at least two, which precede it in Model::points
+    std::string text;          ///< canonical text: "Q(z)", "[px, py]", "z@90"
 
     bool is_vector() const { return kind == Kind::scalars; }
     bool is_projected() const { return kind == Kind::projected; }
+    bool is_delayed() const { return kind == Kind::delayed; }
+    bool is_joined() const { return kind == Kind::joined; }
 };
 
 /// Rows of a target that were made from images or from frames of a video.

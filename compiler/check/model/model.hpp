@@ -49,10 +49,11 @@ constexpr bool is_of_directions(Metric metric) {
 
 using Aggregation = ast::AggregationKind;
 
-/// Distances to a target set, aggregated: AGG DIST(point, target).
+/// Distances to a target set, aggregated: AGG DIST(point, target); or DIST(point, other).
 struct Distance {
-    Index point = 0;  ///< in Model::points
-    Index target = 0;
+    Index point = 0;       ///< in Model::points
+    Index target = kNone;  ///< kNone between two points
+    Index other = kNone;   ///< in Model::points; kNone for a target
     Metric metric = Metric::l2;
     Aggregation aggregation = Aggregation::min;
     std::uint32_t kth = 1;  ///< the n-th smallest, from 1, for Aggregation::kth
@@ -66,6 +67,7 @@ struct Distance {
     std::string text;  ///< canonical text, "min l2(z, goal_a)"
     Span span;
 
+    bool is_between_points() const { return other != kNone; }
     /// Whether it is mahalanobis with a full matrix.
     bool full_weights() const { return metric == Metric::mahalanobis && !weights_diagonal; }
 };
@@ -77,7 +79,7 @@ struct Expr {
     std::string text;    ///< decimal text of a number
     double number = 0;   ///< rounded to double, for truth formulas only
     float number32 = 0;  ///< rounded once to float32
-    Index index = 0;     ///< of the input or distance
+    Index index = 0;     ///< of the input, distance or past number
     std::vector<Expr> arguments;
     Span span;
 };
@@ -96,6 +98,19 @@ void for_each_distance(const Expr& expression, const Visit& visit) {
         if (e.kind == Expr::Kind::distance) visit(e.index);
     });
 }
+
+/// A number that earlier steps have a part in: EXPR@n, mean(EXPR, n), count(FORMULA, n), where n
+/// counts steps. In a predicate it is an Expr of kind `past`, whose argument is EXPR.
+struct Past {
+    using Kind = ast::PastKind;
+    Kind kind = Kind::ago;
+    Expr expression;        ///< EXPR; may contain earlier elements of Model::pasts
+    Index formula = kNone;  ///< of a count, without future
+    std::uint32_t steps = 1;
+    std::string text;  ///< canonical text: "mean(x, 60)"
+    Range range;       ///< of the number
+    Span span;
+};
 
 using ast::Comparison;
 
@@ -336,6 +351,7 @@ struct Model {
     /// Each depends only on projections before it.
     std::vector<Fitted> fitted;
     std::vector<Distance> distances;  ///< without duplicates
+    std::vector<Past> pasts;          ///< without duplicates, each after those that it contains
     /// named ones in order of declaration, then those in formulas
     std::vector<Predicate> predicates;
     std::vector<Formula> formulas;
@@ -344,6 +360,13 @@ struct Model {
     std::vector<Monitor> monitors;
     /// Returns the point of a distance.
     const Point& point_of(Index distance) const { return points[distances[distance].point]; }
+    /// Returns the dimension of the points of a distance.
+    std::uint32_t dimension_of(Index distance) const { return point_of(distance).dimension; }
+    /// Returns the number of rows that a distance is aggregated over: 1 between two points.
+    std::uint32_t rows_of(Index distance) const {
+        const Index target = distances[distance].target;
+        return target == kNone ? 1 : targets[target].rows;
+    }
 
     std::vector<std::string> dependencies;  ///< paths of all loaded files, sorted, for --depfile
     /// Conditions of the guarantees besides exchangeable episodes, in words: allowed overlaps of

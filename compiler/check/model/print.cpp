@@ -123,6 +123,7 @@ std::string print(const Model& model, const Expr& expression) {
     const auto leaf = [&](const Expr& e) {
         if (e.kind == Expr::Kind::scalar) return model.inputs[e.index].name;
         if (e.kind == Expr::Kind::distance) return model.distances[e.index].text;
+        if (e.kind == Expr::Kind::past) return model.pasts[e.index].text;
         return Decimal::parse(e.text).text();
     };
     std::string text;

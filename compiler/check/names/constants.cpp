@@ -144,14 +144,17 @@ private:
     void replace(ast::Load& /*load*/) {}
     void replace(ast::Constant& /*constant*/) {}
     void replace(ast::Images& /*images*/) {}
-    void replace(ast::Point& /*point*/) {}
+    void replace(ast::Point& point) { each(point.parts, point.delays); }
+    void replace(ast::Past& past) { each(past.formula, past.time); }
     void replace(ast::MatrixLiteral& matrix) { replace(matrix.rows); }
     void replace(ast::VectorLiteral& vector) { replace(vector.values); }
     void replace(ast::Frames& frames) { each(frames.frames, frames.stride); }
     void replace(ast::Fitted& fitted) { replace(fitted.arguments); }
     void replace(ast::Fitted::Argument& argument) { replace(argument.value); }
     void replace(ast::Aggregation& aggregation) { replace(aggregation.n); }
-    void replace(ast::Distance& distance) { each(distance.aggregation, distance.weights); }
+    void replace(ast::Distance& distance) {
+        each(distance.aggregation, distance.weights, distance.point, distance.other);
+    }
     void replace(ast::Bound& bound) { replace(bound.number, bound.unit); }
     void replace(ast::Interval& interval) { each(interval.low, interval.high); }
     void replace(ast::Formula& f) { each(f.operands, f.interval, f.left, f.right); }
@@ -168,7 +171,8 @@ private:
     void replace(ast::Monitor& monitor) { each(monitor.formula, monitor.calibrated); }
 
     void replace(ast::Expr& expression) {
-        each(expression.distance, expression.arguments);
+        take_window(expression);
+        each(expression.distance, expression.past, expression.arguments);
         const Reference* meant =
             expression.kind == ast::Expr::Kind::name ? c_.scope.find(expression.text) : nullptr;
         if (meant == nullptr || meant->kind != NameKind::constant) return;
@@ -177,6 +181,25 @@ private:
         expression.kind = ast::Expr::Kind::number;
         expression.text = number.text;
         expression.constant = number.constant;
+    }
+
+    /// min(x, k) is a window if k is the name of a time.
+    void take_window(ast::Expr& e) {
+        const bool is_call = e.kind == ast::ExprKind::min || e.kind == ast::ExprKind::max;
+        if (!is_call || e.arguments.size() != 2) return;
+        const ast::Expr& last = *e.arguments.back();
+        const Reference* const meant =
+            last.kind == ast::ExprKind::name ? c_.scope.find(last.text) : nullptr;
+        if (meant == nullptr || meant->kind != NameKind::constant ||
+            constants_[meant->index]->unit.empty())
+            return;
+        const auto kind =
+            e.kind == ast::ExprKind::min ? ast::PastKind::min : ast::PastKind::max;
+        const ast::Number number{last.text, last.span, last.text};
+        e.past = std::make_unique<ast::Past>(
+            ast::Past{kind, nullptr, ast::Bound{number, "", last.span}});
+        e.kind = ast::ExprKind::past;
+        e.arguments.pop_back();
     }
 
     void replace(ast::Calibrated& calibrated) {

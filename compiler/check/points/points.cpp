@@ -4,34 +4,15 @@
 
 #include <algorithm>
 
+#include "check/numbers/bounds.hpp"
 #include "check/points/project.hpp"
+#include "check/time/time.hpp"
 
 namespace etlc::check {
 
 namespace {
 
 using diag::Code;
-
-/// Returns one input of the point; kNone after an error.
-Index element(Context& c, const ast::Point& written, const ast::Name& name) {
-    const Index index = resolve(c, name, NameKind::input);
-    if (index == kNone) return kNone;
-    const Input& input = c.model.inputs[index];
-    const bool fits = written.is_vector ? input.type == InputType::scalar : input.is_embedding();
-    if (fits) return index;
-    const std::string_view found = input.is_embedding()              ? "an embedding"
-                                   : input.type == InputType::scalar ? "a scalar"
-                                                                     : "a bool";
-    auto& error = c.report(Code::point_form, name.span,
-                           fmt::format("'{}' is {}; expected {}", name.text, found,
-                                       written.is_vector ? "the scalars of a vector"
-                                                         : "an embedding, or a vector of scalars"));
-    if (input.is_embedding())
-        error.note(fmt::format("write an embedding without brackets: {}", name.text));
-    if (input.type == InputType::scalar)
-        error.note(fmt::format("for a point of one dimension write [{}]", name.text));
-    return kNone;
-}
 
 Index add(Context& c, Point point) {
     const auto [at, is_new] =
@@ -40,21 +21,96 @@ Index add(Context& c, Point point) {
     return at->second;
 }
 
-Index unprojected(Context& c, const ast::Point& written) {
+/// Returns the input of that name; kNone after an error. `in_brackets`: a scalar is expected too.
+Index input_of(Context& c, const ast::Name& name, bool in_brackets) {
+    const Index index = resolve(c, name, NameKind::input);
+    if (index == kNone) return kNone;
+    const Input& input = c.model.inputs[index];
+    const bool is_scalar = input.type == InputType::scalar;
+    if (input.is_embedding() || (in_brackets && is_scalar)) return index;
+    auto& error = c.report(Code::point_form, name.span,
+                           fmt::format("'{}' is {}; expected {}", name.text,
+                                       is_scalar ? "a scalar" : "a bool",
+                                       in_brackets ? "a scalar or an embedding"
+                                                   : "an embedding, or a vector of scalars"));
+    if (is_scalar) error.note(fmt::format("for a point of one dimension write [{}]", name.text));
+    return kNone;
+}
+
+Index embedding(Context& c, Index input) {
     Point point;
-    point.kind = written.is_vector ? Point::Kind::scalars : Point::Kind::embedding;
-    for (const ast::Name& name : written.inputs) point.inputs.push_back(element(c, written, name));
-    const auto broken = std::find(point.inputs.begin(), point.inputs.end(), kNone);
-    if (point.inputs.empty() || broken != point.inputs.end()) return kNone;
-    point.dimension = written.is_vector ? static_cast<std::uint32_t>(point.inputs.size())
-                                        : c.model.inputs[point.inputs[0]].dimension;
-    for (const Index input : point.inputs)
+    point.kind = Point::Kind::embedding;
+    point.inputs = {input};
+    point.dimension = c.model.inputs[input].dimension;
+    point.text = c.model.inputs[input].name;
+    return add(c, std::move(point));
+}
+
+Index vector(Context& c, const std::vector<Index>& scalars) {
+    Point point;
+    point.kind = Point::Kind::scalars;
+    point.inputs = scalars;
+    point.dimension = static_cast<std::uint32_t>(scalars.size());
+    for (const Index input : scalars)
         point.text += (point.text.empty() ? "" : ", ") + c.model.inputs[input].name;
-    if (written.is_vector) point.text = fmt::format("[{}]", point.text);
+    point.text = fmt::format("[{}]", point.text);
+    return add(c, std::move(point));
+}
+
+/// Returns several points as one, without nested ones; kNone if there is none.
+Index joined(Context& c, const std::vector<Index>& parts) {
+    Point point;
+    point.kind = Point::Kind::joined;
+    for (const Index part : parts) {
+        if (part == kNone) return kNone;
+        const Point& one = c.model.points[part];
+        point.inputs.insert(point.inputs.end(), one.inputs.begin(), one.inputs.end());
+        point.dimension += one.dimension;
+        if (one.is_joined())
+            point.parts.insert(point.parts.end(), one.parts.begin(), one.parts.end());
+        else
+            point.parts.push_back(part);
+    }
+    for (const Index part : point.parts)
+        point.text += (point.text.empty() ? "" : ", ") + c.model.points[part].text;
+    point.text = fmt::format("[{}]", point.text);
+    return add(c, std::move(point));
+}
+
+/// Returns the point as it was `steps` ago. A delay goes inside of what is put together, and is
+/// added to another one.
+Index ago(Context& c, Index index, std::uint32_t steps) {
+    if (index == kNone || steps == 0) return index;
+    const Point inner = c.model.points[index];  // a copy: `points` grows
+    if (inner.is_joined()) {
+        std::vector<Index> parts;
+        for (const Index part : inner.parts) parts.push_back(ago(c, part, steps));
+        return joined(c, parts);
+    }
+    if (inner.is_delayed()) return ago(c, inner.inner, inner.steps + steps);
+    Point point;
+    point.kind = Point::Kind::delayed;
+    point.inputs = inner.inputs;
+    point.dimension = inner.dimension;
+    point.inner = index;
+    point.steps = steps;
+    point.text = fmt::format("{}@{}", inner.text, steps);
     return add(c, std::move(point));
 }
 
 /// P(POINT)
+Index through(Context& c, Index projection, Index inner) {
+    const Projection& map = c.model.projections[projection];
+    Point point;
+    point.kind = Point::Kind::projected;
+    point.inputs = c.model.points[inner].inputs;
+    point.dimension = map.rows;
+    point.projection = projection;
+    point.inner = inner;
+    point.text = fmt::format("{}({})", map.name, c.model.points[inner].text);
+    return add(c, std::move(point));
+}
+
 Index projected(Context& c, const ast::Name& name, Index inner, Span span) {
     const Index index = resolve(c, name, NameKind::projection);
     if (index == kNone || inner == kNone) return kNone;
@@ -77,28 +133,100 @@ Index projected(Context& c, const ast::Name& name, Index inner, Span span) {
                   fmt::format("'{}' is {} x {}", name.text, projection.rows, projection.dimension));
         return kNone;
     }
-    Point point;
-    point.kind = Point::Kind::projected;
-    point.inputs = from.inputs;
-    point.dimension = projection.rows;
-    point.projection = index;
-    point.inner = inner;
-    point.text = fmt::format("{}({})", name.text, from.text);
-    return add(c, std::move(point));
+    return through(c, index, inner);
+}
+
+/// Returns what a scalar in brackets was, some steps ago, or a point.
+struct Element {
+    Index scalar = kNone;
+    Index point = kNone;
+    std::uint32_t steps = 0;
+};
+
+/// Returns the sum of the delays; nothing after an error.
+std::optional<std::uint32_t> sum_of(Context& c, const std::vector<ast::Bound>& delays) {
+    std::uint64_t sum = 0;
+    for (const ast::Bound& delay : delays) {
+        const auto steps = steps_ago(c, delay);
+        if (!steps) return std::nullopt;
+        sum += *steps;
+    }
+    if (sum <= kMaxBound) return static_cast<std::uint32_t>(sum);
+    return c.no_value(Code::bound_too_large, delays.back().span,
+                      fmt::format("{} steps ago in all; the largest time is {}", sum, kMaxBound));
+}
+
+/// Returns the elements of [a, b@3, z]; nothing after an error.
+std::optional<std::vector<Element>> elements_of(Context& c, const ast::Point& vector) {
+    std::vector<Element> elements;
+    bool good = true;
+    for (const ast::Point& part : vector.parts) {
+        Element element;
+        const bool is_input = !part.is_vector && part.parts.empty();
+        const Index input = is_input ? input_of(c, part.name, true) : kNone;
+        const auto steps = sum_of(c, part.delays);
+        if (input != kNone && c.model.inputs[input].type == InputType::scalar)
+            element = {input, kNone, steps.value_or(0)};
+        else if (!is_input)
+            element.point = check_point(c, part);
+        else if (input != kNone)
+            element.point = ago(c, embedding(c, input), steps.value_or(0));
+        good = good && steps && (element.scalar != kNone || element.point != kNone);
+        elements.push_back(element);
+    }
+    return good ? std::optional(std::move(elements)) : std::nullopt;
+}
+
+/// Returns the point, or kNone after reporting that its dimension is too large.
+Index limited(Context& c, Index index, Span span) {
+    const Point& point = c.model.points[index];
+    if (point.dimension <= kMaxDimension) return index;
+    c.report(Code::dimension_out_of_range, span,
+             fmt::format("{} has dimension {}, the largest is {}", point.text, point.dimension,
+                         kMaxDimension));
+    return kNone;
+}
+
+/// Scalars of the same time that follow each other are one vector.
+Index in_brackets(Context& c, const ast::Point& written) {
+    const auto elements = elements_of(c, written);
+    if (!elements) return kNone;
+    std::vector<Index> parts;
+    for (std::size_t i = 0; i < elements->size();) {
+        const Element& first = (*elements)[i];
+        std::vector<Index> scalars;
+        for (; i < elements->size() && (*elements)[i].scalar != kNone &&
+               (*elements)[i].steps == first.steps;
+             ++i)
+            scalars.push_back((*elements)[i].scalar);
+        if (!scalars.empty()) {
+            parts.push_back(ago(c, vector(c, scalars), first.steps));
+            continue;
+        }
+        parts.push_back(first.point);
+        ++i;
+    }
+    if (parts.size() > 1) return limited(c, joined(c, parts), written.span);
+    const Point& only = c.model.points[parts[0]];
+    if (only.kind != Point::Kind::embedding) return parts[0];
+    c.report(Code::point_form, written.span,
+             fmt::format("'{}' is an embedding; expected the scalars of a vector", only.text))
+        .note(fmt::format("write an embedding without brackets: {}", only.text));
+    return kNone;
 }
 
 /// "the vector", "'z'", "Q(z)"
-std::string words_of(const Context& c, const Point& point) {
+std::string words_of(const Point& point) {
     if (point.is_projected()) return point.text;
-    return point.is_vector() ? "the vector"
-                             : fmt::format("'{}'", c.model.inputs[point.inputs[0]].name);
+    if (point.is_vector() || point.is_joined()) return "the vector";
+    return fmt::format("'{}'", point.text);
 }
 
 void report_wrong_space(Context& c, const Target& target, const Point& point, Span span) {
     const std::string& space = c.model.points[target.space].text;
     c.report(Code::wrong_space, span,
              fmt::format("target '{}' is in the space of {}, but {} is not projected through it",
-                         target.name, space, words_of(c, point)))
+                         target.name, space, words_of(point)))
         .note(target.span, fmt::format("'{}' is declared here", target.name))
         .note(fmt::format("measure from {}, or from a projection of it", space));
 }
@@ -108,10 +236,10 @@ void report_dimensions(Context& c, const Target& target, const Point& point, con
     auto& error =
         c.report(Code::dimension_mismatch, span,
                  fmt::format("{} has dimension {}, target '{}' has dimension {}",
-                             words_of(c, point), point.dimension, target.name, target.dimension));
+                             words_of(point), point.dimension, target.name, target.dimension));
     if (point.kind == Point::Kind::embedding)
         error.note(c.model.inputs[point.inputs[0]].span,
-                   fmt::format("{} is declared here", words_of(c, point)));
+                   fmt::format("{} is declared here", words_of(point)));
     error.note(target.span, fmt::format("'{}' has {} of {}", target.name,
                                         diag::counted(target.rows, "row"), target.dimension));
     if (whole.is_projected() && !point.is_projected())
@@ -119,16 +247,78 @@ void report_dimensions(Context& c, const Target& target, const Point& point, con
                                target.name, whole.text));
 }
 
-}  // namespace
-
-Index check_point(Context& c, const ast::Point& written) {
-    Index point = unprojected(c, written);
-    for (auto name = written.projections.rbegin(); name != written.projections.rend(); ++name)
-        point = projected(c, *name, point, written.span);
-    return point;
+/// Returns the shortest delay of the inputs that a point is made of.
+std::uint32_t shortest_delay(const Model& model, Index index) {
+    const Point& point = model.points[index];
+    if (point.is_projected()) return shortest_delay(model, point.inner);
+    if (point.is_delayed()) return point.steps + shortest_delay(model, point.inner);
+    std::uint32_t shortest = point.is_joined() ? kMaxBound : 0;
+    for (const Index part : point.parts)
+        shortest = std::min(shortest, shortest_delay(model, part));
+    return shortest;
 }
 
-Index target_in_space(Context& c, Index index, Index point, Span span) {
+/// Returns what will be the point `steps` later, at most its shortest delay.
+Index later(Context& c, Index index, std::uint32_t steps) {
+    if (steps == 0) return index;
+    const Point point = c.model.points[index];  // a copy: `points` grows
+    if (point.is_projected()) return through(c, point.projection, later(c, point.inner, steps));
+    if (point.is_delayed()) {
+        const std::uint32_t own = std::min(steps, point.steps);
+        return ago(c, later(c, point.inner, steps - own), point.steps - own);
+    }
+    std::vector<Index> parts;
+    for (const Index part : point.parts) parts.push_back(later(c, part, steps));
+    return joined(c, parts);
+}
+
+}  // namespace
+
+std::optional<std::uint32_t> steps_ago(Context& c, const ast::Bound& time) {
+    const auto steps = bound_steps(c, time);
+    if (!steps) return std::nullopt;
+    if (*steps > 0 && *steps != kUnbounded) return steps;
+    const std::string written{c.file.text(time.span)};
+    c.report(Code::past_form, time.span,
+             fmt::format("{} is no time ago; expected at least one step, as in '@1' or '@0.5 s'",
+                         written.empty() ? shown(time.number) : written));
+    return std::nullopt;
+}
+
+Index check_point(Context& c, const ast::Point& written) {
+    Index point = kNone;
+    if (written.is_vector) {
+        point = in_brackets(c, written);
+    } else if (!written.parts.empty()) {
+        point = projected(c, written.name, check_point(c, written.parts[0]), written.span);
+    } else {
+        const Index input = input_of(c, written.name, false);
+        if (input != kNone) point = embedding(c, input);
+    }
+    const auto steps = sum_of(c, written.delays);
+    return steps ? ago(c, point, *steps) : kNone;
+}
+
+Index without_delay(Context& c, Index point) {
+    return later(c, point, shortest_delay(c.model, point));
+}
+
+bool is_same_space(const Model& model, Index a, Index b) {
+    while (model.points[a].is_delayed()) a = model.points[a].inner;
+    while (model.points[b].is_delayed()) b = model.points[b].inner;
+    const Point& left = model.points[a];
+    const Point& right = model.points[b];
+    if (left.dimension != right.dimension || left.projection != right.projection) return false;
+    if (left.is_projected()) return is_same_space(model, left.inner, right.inner);
+    if (!left.is_joined() && !right.is_joined()) return true;
+    return std::equal(left.parts.begin(), left.parts.end(), right.parts.begin(),
+                      right.parts.end(), [&](Index one, Index other) {
+                          return is_same_space(model, one, other);
+                      });
+}
+
+Index target_in_space(Context& c, Index index, Index measured, Span span) {
+    const Index point = without_delay(c, measured);
     const Target& target = c.model.targets[index];
     const auto is_there = [&](Index at) {
         return target.space == kNone ? !c.model.points[at].is_projected() : at == target.space;

@@ -96,13 +96,24 @@ std::optional<Index> fill(Model& model, Index index, const Filling& filling) {
     return std::nullopt;
 }
 
+namespace {
+
+bool rests_on_fitted(const Model& model, Index index) {
+    const Point& point = model.points[index];
+    if (point.is_projected() && model.projections[point.projection].fitted != kNone) return true;
+    if (point.inner != kNone) return rests_on_fitted(model, point.inner);
+    return std::any_of(point.parts.begin(), point.parts.end(),
+                       [&](Index part) { return rests_on_fitted(model, part); });
+}
+
+}  // namespace
+
 bool rests_on_fitted(const Model& model, const Distance& distance) {
-    const Target& target = model.targets[distance.target];
-    if (target.fitted != kNone || distance.weights_fitted != kNone) return true;
-    Index at = distance.point;
-    for (; model.points[at].is_projected(); at = model.points[at].inner)
-        if (model.projections[model.points[at].projection].fitted != kNone) return true;
-    return false;
+    if (distance.weights_fitted != kNone) return true;
+    if (!distance.is_between_points() && model.targets[distance.target].fitted != kNone)
+        return true;
+    return rests_on_fitted(model, distance.point) ||
+           (distance.is_between_points() && rests_on_fitted(model, distance.other));
 }
 
 std::string projection_hash(const Projection& projection) {

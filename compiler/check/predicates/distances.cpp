@@ -164,7 +164,7 @@ std::optional<Weights> fitted_weights(Context& c, const ast::Fitted& written, In
     const Index index = check_fitted(c, written, Fitted::Slot::metric);
     if (index == kNone) return std::nullopt;
     const Fitted& fitted = c.model.fitted[index];
-    if (fitted.point != point)
+    if (without_delay(c, fitted.point) != without_delay(c, point))
         return c.no_value(
             Code::wrong_space, written.span,
             fmt::format("the weights are fitted to {}, the distance is from {}",
@@ -215,7 +215,8 @@ public:
     Index run() {
         set_metric();
         distance_.point = check_point(c_, written_.point);
-        distance_.target = resolve(c_, written_.target, NameKind::target);
+        if (!is_to_target()) return between_points();
+        distance_.target = resolve(c_, written_.other.name, NameKind::target);
         const bool point = distance_.point != kNone;
         const bool target = distance_.target != kNone;
         bool fits = point && target && set_space();
@@ -226,6 +227,62 @@ public:
     }
 
 private:
+    /// A name is that of a target unless it is an input.
+    bool is_to_target() const {
+        if (!written_.other.is_name()) return false;
+        const Reference* const meant = c_.scope.find(written_.other.name.text);
+        return meant == nullptr || meant->kind != NameKind::input;
+    }
+
+    Index between_points() {
+        distance_.other = check_point(c_, written_.other);
+        if (distance_.point == kNone || distance_.other == kNone) return kNone;
+        const bool fits = has_no_aggregation() && points_fit() && encoders_fit() && set_weights();
+        return fits ? add() : kNone;
+    }
+
+    bool has_no_aggregation() {
+        if (!written_.aggregation) return true;
+        return c_.refuse(Code::point_form, written_.aggregation->span,
+                         fmt::format("the distance between two points is one number; expected {} "
+                                     "without {}, or a target",
+                                     written_.metric.text, word(written_.aggregation->kind)));
+    }
+
+    bool points_fit() {
+        const Point& one = c_.model.points[distance_.point];
+        const Point& other = c_.model.points[distance_.other];
+        if (one.dimension != other.dimension)
+            return c_.refuse(Code::dimension_mismatch, both_points(),
+                             fmt::format("{} has dimension {}, {} has dimension {}", one.text,
+                                         one.dimension, other.text, other.dimension));
+        if (is_same_space(c_.model, distance_.point, distance_.other)) return true;
+        return c_.refuse(Code::wrong_space, both_points(),
+                         fmt::format("{} and {} are in different spaces; expected two inputs, or "
+                                     "two points through the same projections",
+                                     one.text, other.text));
+    }
+
+    /// Embeddings by two encoders have nothing to do with each other.
+    bool encoders_fit() {
+        const std::vector<Index>& left = c_.model.points[distance_.point].inputs;
+        const std::vector<Index>& right = c_.model.points[distance_.other].inputs;
+        for (std::size_t i = 0; i < std::min(left.size(), right.size()); ++i) {
+            const Input& one = c_.model.inputs[left[i]];
+            const Input& other = c_.model.inputs[right[i]];
+            if (one.encoder == other.encoder || one.encoder == kNone || other.encoder == kNone)
+                continue;
+            return c_.refuse(Code::wrong_space, both_points(),
+                             fmt::format("'{}' is by {} and '{}' is by {}; a distance compares "
+                                         "embeddings by one encoder",
+                                         one.name, c_.model.encoders[one.encoder].name, other.name,
+                                         c_.model.encoders[other.encoder].name));
+        }
+        return true;
+    }
+
+    Span both_points() const { return source::join(written_.point.span, written_.other.span); }
+
     void set_metric() {
         const auto* const found =
             std::find_if(kMetrics.begin(), kMetrics.end(),
@@ -242,7 +299,7 @@ private:
     bool set_space() {
         const Index there =
             target_in_space(c_, distance_.target, distance_.point,
-                            source::join(written_.point.span, written_.target.span));
+                            both_points());
         if (there != kNone) distance_.target = there;
         return there != kNone;
     }
@@ -285,7 +342,7 @@ private:
                              [](float x) { return x == 0; }))
                 continue;
             c_.report(
-                  Code::zero_row, written_.target.span,
+                  Code::zero_row, written_.other.span,
                   fmt::format("row {} (from 0) of target '{}' is zero, and {} needs a direction",
                               row, target().name, written_.metric.text))
                 .note(target().span, fmt::format("'{}' is declared here", target().name));
@@ -309,7 +366,7 @@ private:
     /// With a single row every aggregation is the distance itself, so the text has none.
     std::string canonical_text() {
         std::string text;
-        if (target().rows == 1) {
+        if (distance_.is_between_points() || target().rows == 1) {
             distance_.aggregation = Aggregation::min;
             distance_.kth = 1;
         } else {
@@ -320,7 +377,10 @@ private:
         }
         text += written_.metric.text;
         if (written_.weights) text += fmt::format("({})", weights_text_);
-        return text + fmt::format("({}, {})", c_.model.points[distance_.point].text, target().name);
+        const std::string& other = distance_.is_between_points()
+                                       ? c_.model.points[distance_.other].text
+                                       : target().name;
+        return text + fmt::format("({}, {})", c_.model.points[distance_.point].text, other);
     }
 
     Index add() {

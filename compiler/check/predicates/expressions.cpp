@@ -54,6 +54,8 @@ std::optional<Expr> build(Context& c, const ast::Expr& written) {
         result.index = check_distance(c, *written.distance);
         good = result.index != kNone;
     }
+    if (result.kind == ExprKind::past)
+        return c.no_value(Code::past_form, written.span, "numbers of the past are not here yet");
     for (const ast::ExprPtr& argument : written.arguments) {
         auto built = build(c, *argument);
         if (built) result.arguments.push_back(std::move(*built));
@@ -97,6 +99,7 @@ Range range_of(const Model& model, const Expr& expression, const Expr*& undefine
         case ExprKind::number: return {expression.number32, expression.number32};
         case ExprKind::scalar: return model.inputs[expression.index].range;
         case ExprKind::distance: return range_of(model.distances[expression.index].metric);
+        case ExprKind::past: return model.pasts[expression.index].range;
         case ExprKind::negate: return negate(arguments[0]);
         case ExprKind::add: return add(arguments[0], arguments[1]);
         case ExprKind::subtract: return subtract(arguments[0], arguments[1]);
@@ -120,8 +123,12 @@ std::vector<Index> inputs_of(const Model& model, const Expr& expression) {
         if (e.kind == ExprKind::scalar) inputs.insert(e.index);
     });
     for_each_distance(expression, [&](Index distance) {
-        const std::vector<Index>& point = model.point_of(distance).inputs;
-        inputs.insert(point.begin(), point.end());
+        const Distance& measured = model.distances[distance];
+        for (const Index point : {measured.point, measured.other}) {
+            if (point == kNone) continue;
+            const std::vector<Index>& of = model.points[point].inputs;
+            inputs.insert(of.begin(), of.end());
+        }
     });
     return {inputs.begin(), inputs.end()};
 }

@@ -14,8 +14,6 @@ namespace {
 
 using diag::Code;
 
-/// An embedding of this dimension has 4 MiB in float32.
-constexpr std::uint32_t kMaxDimension = 1U << 20U;
 /// Limit on the steps for which a sample may replace later ones.
 constexpr std::uint32_t kMaxHold = kMaxBound;
 /// Limit on the equal samples in a row that may count.

@@ -81,8 +81,9 @@ bool set_rows(Context& c, const ast::Target& declaration, Target& target) {
 bool set_space(Context& c, const ast::Point& written, Target& target) {
     const Index index = check_point(c, written);
     if (index == kNone) return false;
-    const Point& point = c.model.points[index];
-    if (point.is_projected()) target.space = index;
+    const Index space = without_delay(c, index);
+    const Point& point = c.model.points[space];
+    if (point.is_projected()) target.space = space;
     if (point.dimension == target.dimension) return true;
     return c.refuse(Code::dimension_mismatch, written.span,
                     fmt::format("{} has dimension {}, the rows of '{}' have {}", point.text,
@@ -101,7 +102,8 @@ bool set_fitted(Context& c, const ast::Fitted& written, Target& target) {
         target.values = entry->matrix;
         target.hash = entry->hash;
     }
-    if (c.model.points[fitted.point].is_projected()) target.space = fitted.point;
+    const Index space = without_delay(c, fitted.point);
+    if (c.model.points[space].is_projected()) target.space = space;
     return true;
 }
 

@@ -34,6 +34,7 @@ std::string expression(const Context& context, const Expr& e) {
             return context.retargetable() ? context.parameter(e) : float_literal(e.number32);
         case Expr::Kind::scalar: return sample(context, e.index);
         case Expr::Kind::distance: return distance(context, e.index) + ".delta";
+        case Expr::Kind::past: return "";
         case Expr::Kind::negate: return apply("negate");
         case Expr::Kind::add: return apply("add");
         case Expr::Kind::subtract: return apply("subtract");

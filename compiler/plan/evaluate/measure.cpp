@@ -184,6 +184,7 @@ float Evaluator::expression(const Expr& e) const {
         case Expr::Kind::number: return e.number32;
         case Expr::Kind::scalar: return *inputs_[e.index];
         case Expr::Kind::distance: return distances_[e.index].delta;
+        case Expr::Kind::past: return etlmon::kMissing;
         case Expr::Kind::negate: return etlmon::negate(at(0));
         case Expr::Kind::add: return etlmon::add(at(0), at(1));
         case Expr::Kind::subtract: return etlmon::subtract(at(0), at(1));

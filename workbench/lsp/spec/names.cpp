@@ -65,8 +65,9 @@ public:
     }
 
     void visit(const ast::Point& point) {
-        visit(point.projections);
-        visit(point.inputs);
+        if (!point.name.text.empty()) visit(point.name);
+        visit(point.parts);
+        visit(point.delays);
     }
 
     void visit(const ast::Fitted& fitted) {
@@ -77,13 +78,16 @@ public:
         if (distance.aggregation) visit(distance.aggregation->n);
         visit(distance.weights);
         visit(distance.point);
-        use(distance.target);
+        visit(distance.other);
     }
 
     void visit(const ast::Expr& expression) {
         if (expression.kind == ast::Expr::Kind::name) use(expression.text, expression.span);
         visit(expression.distance);
         visit(expression.arguments);
+        if (!expression.past) return;
+        visit(expression.past->formula);
+        visit(expression.past->time);
     }
 
     void visit(const ast::Bound& bound) { visit(bound.number); }
