@@ -42,6 +42,8 @@ std::vector<Member> sample_members(const Context& context) {
 std::vector<Member> own_members(const Context& context) {
     const plan::Plan& plan = context.plan;
     std::vector<Member> result = sample_members(context);
+    const std::vector<Member> earlier = earlier_members(context);
+    result.insert(result.end(), earlier.begin(), earlier.end());
     for (const auto& [d, name] : context.names.search_member) {
         const check::Target& target = context.model.targets[context.model.distances[d].target];
         result.push_back({fmt::format("etlmon::Search<{}, {}>", target.rows, target.dimension),

@@ -206,6 +206,11 @@ void print_references(Printer& out, const Context& context);
 /// Prints encoder_agrees() and encoder_difference().
 void print_reference_interface(Printer& out, const Context& context);
 
+// Points of earlier steps. These print nothing for a spec that reads none.
+/// Prints the statements that keep this step's points, after everything has been measured.
+void print_kept_points(Printer& out, const Context& context);
+std::vector<Member> earlier_members(const Context& context);
+
 // Telemetry of named predicates.
 std::vector<Member> telemetry_members(const Context& context);
 /// Prints distance_P(), threshold_P() and nearest_P().

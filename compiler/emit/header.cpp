@@ -48,7 +48,12 @@ std::set<std::string> runtime_headers(const Context& context) {
         headers.insert(header_of(context, d));
         if (context.enclosed(d)) headers.insert("distance/enclosed");
     }
-    if (!context.names.point_local.empty()) headers.insert("distance/project");
+    for (const auto& [point, local] : context.names.point_local)
+        headers.insert(context.model.points[point].is_projected() ? "distance/project"
+                                                                  : "distance/between");
+    for (const Index d : plan.distances)
+        if (context.model.distances[d].is_between_points()) headers.insert("distance/between");
+    if (!context.names.earlier_member.empty()) headers.insert("temporal/earlier");
     for (const auto& [projection, name] : context.names.matrix_array)
         if (plan::stored_projection(plan, projection) != nullptr)
             headers.insert("distance/targets");

@@ -211,13 +211,14 @@ void print_constants(Printer& out, const Context& context) {
         const plan::NarrowSet* narrow = plan::narrow_set(context.plan, d);
         if (narrow != nullptr && done.insert(context.names.narrow_array.at(d)).second)
             print_narrow_rows(out, context, *narrow);
-        if (!context.lossless(d) && done.insert(context.names.target_array.at(d)).second)
+        const bool has_rows = !context.model.distances[d].is_between_points();
+        if (has_rows && !context.lossless(d) && done.insert(context.names.target_array.at(d)).second)
             print_rows(out, context, d);
         const auto weights = context.names.weight_array.find(d);
         if (weights == context.names.weight_array.end()) continue;
         const check::Distance& distance = context.model.distances[d];
         print_doc(out, fmt::format("weights of {}", distance.text));
-        const std::size_t dimension = context.model.targets[distance.target].dimension;
+        const std::size_t dimension = context.model.dimension_of(d);
         print_numbers(out, weights->second, fmt::format("{}", distance.weights.size()),
                       distance.weights, dimension);
     }

@@ -142,6 +142,7 @@ void print_advance(Printer& out, const Context& context) {
     out.gap();
     print_open_verdicts(out, context);
     print_lets(out, context);
+    print_kept_points(out, context);
     print_wrapped(out, "if (missing && incomplete_ != UINT32_MAX) ++incomplete_;");
     print_progress(out, context, "answers_");
     print_record(out, context, "answers_");

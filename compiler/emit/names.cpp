@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "emit/measure/uses.hpp"
 #include "emit/text/identifiers.hpp"
 #include "plan/program/sample_codes.hpp"
 #include "plan/program/value_type.hpp"
@@ -40,7 +41,7 @@ std::set<std::string> functions(const check::Model& model, const plan::Plan& pla
         for (const char* prefix : {"restart_", "alarms_", "fulfilled_"})
             if (monitor.restarts != check::Restarts::never) names.insert(prefix + monitor.name);
     for (check::Index p : plan.predicates)
-        for (check::Index d : model.predicates[p].distances())
+        for (check::Index d : check::measured_targets(model, model.predicates[p]))
             names.insert(fmt::format("nearest_{}_{}", model.predicates[p].name,
                                      model.targets[model.distances[d].target].name));
     for (const plan::Let& let : plan.lets)
@@ -58,18 +59,6 @@ bool is_atom(plan::StreamOp op) {
 std::string predicate_name(const check::Predicate& predicate) {
     if (!predicate.name.empty()) return predicate.name;
     return identifier(predicate.text + predicate.threshold.text, "comparison");
-}
-
-/// Counts how often measure() names a scalar. A point is checked before it is measured.
-std::map<check::Index, int> scalar_uses(const plan::Plan& plan) {
-    std::map<check::Index, int> uses;
-    for (check::Index p : plan.predicates)
-        check::for_each(plan.model->predicates[p].expression, [&](const check::Expr& e) {
-            if (e.kind == check::Expr::Kind::scalar) ++uses[e.index];
-        });
-    for (check::Index d : plan.distances)
-        for (check::Index i : plan.model->point_of(d).inputs) uses[i] += 2;
-    return uses;
 }
 
 class Naming {
@@ -144,11 +133,15 @@ private:
             names_.threshold_member[p] = member(members_, predicate.name + "_threshold");
             names_.adaptation_constant[p] = member(members_, predicate.name + "_adaptation");
         }
-        for (check::Index p : plan::projected_points(model_, plan_.distances)) {
-            const std::string name = identifier(model_.points[p].text, "projected");
-            names_.point_local[p] = local(measure_, name);
+        for (check::Index p : plan::built_points(model_, plan_.distances)) {
+            const std::string name = identifier(model_.points[p].text, "point");
+            const std::string ago = model_.points[p].is_delayed() ? "_ago" : "";
+            names_.point_local[p] = local(measure_, name + ago);
             names_.point_buffer[p] = local(measure_, name + "_values");
         }
+        for (const plan::EarlierPoint& earlier : plan::earlier_points(model_, plan_.distances))
+            names_.earlier_member[earlier.point] =
+                member(members_, identifier(model_.points[earlier.point].text, "point") + "_earlier");
         for (check::Index d : plan_.distances)
             names_.distance_local[d] = local(measure_, distance_name(model_.distances[d]));
     }
@@ -156,6 +149,7 @@ private:
     /// Returns "min_l2_z_goal"; "to_goal" if that is too long, or may change in a retargetable
     /// class.
     std::string distance_name(const check::Distance& distance) const {
+        if (distance.is_between_points()) return identifier(distance.text, "between_points");
         const std::string to_target = "to_" + model_.targets[distance.target].name;
         return model_.retargetable ? to_target : identifier(distance.text, to_target);
     }
@@ -168,7 +162,7 @@ private:
         for (check::Index p : plan_.predicates) {
             const check::Predicate& predicate = model_.predicates[p];
             if (predicate.name.empty() || predicate.plain_distance()) continue;
-            for (check::Index d : predicate.distances()) {
+            for (check::Index d : check::measured_targets(model_, predicate)) {
                 const std::string name = fmt::format(
                     "{}_{}", predicate.name, model_.targets[model_.distances[d].target].name);
                 names_.nearest[{p, d}] = {member(members_, name + "_nearest"),
@@ -340,6 +334,11 @@ private:
         std::map<std::string, std::string> narrow_arrays;
         for (check::Index d : plan_.distances) {
             const check::Distance& distance = model_.distances[d];
+            if (distance.is_between_points()) {
+                if (!distance.weights.empty())
+                    names_.weight_array[d] = constants_.claim("between_points_weights");
+                continue;
+            }
             const bool as_given = plan::rows_as_given(distance);
             const std::string target = array_name(model_.targets[distance.target]);
             auto [entry, added] = arrays.try_emplace({distance.target, as_given});

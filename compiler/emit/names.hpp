@@ -86,9 +86,11 @@ struct Names {
     /// Per distance: its rows in float16 or int8.
     std::map<check::Index, std::string> narrow_array;
     std::map<check::Index, std::string> weight_array;  ///< per distance
-    /// Per projected point: the pointer to its elements, and their array.
+    /// Per point that is computed or looked up: the pointer to its elements, and their array.
     std::map<check::Index, std::string> point_local;
     std::map<check::Index, std::string> point_buffer;
+    /// Per point that some point delays: its samples of earlier steps.
+    std::map<check::Index, std::string> earlier_member;
     /// Per number in an expression of a retargetable class.
     std::map<const check::Expr*, std::string> number_constant;
     /// Per projection of such a point; the offset if it has one.

@@ -110,6 +110,7 @@ std::vector<Row> storage_rows(const plan::Plan& plan) {
     for (Index d : plan.distances) {
         const plan::NarrowSet* set = plan::narrow_set(plan, d);
         const check::Distance& distance = plan.model->distances[d];
+        if (distance.is_between_points()) continue;
         const std::uint64_t wide =
             plan.model->targets[distance.target].values.size() * sizeof(float);
         if (set == nullptr)

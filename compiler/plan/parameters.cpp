@@ -52,19 +52,19 @@ private:
 
     void add_distance(Index d) {
         const check::Distance& distance = model_.distances[d];
-        const check::Target& target = model_.targets[distance.target];
+        const std::uint32_t dimension = model_.dimension_of(d);
         const bool as_given = rows_as_given(distance);
-        if (done_.emplace(distance.target, as_given).second)
+        if (!distance.is_between_points() && done_.emplace(distance.target, as_given).second)
             add_array({.kind = Kind::rows,
                        .index = d,
-                       .count = target.rows * target.dimension,
-                       .width = target.dimension,
+                       .count = model_.rows_of(d) * dimension,
+                       .width = dimension,
                        .rule = as_given ? ParamsPart::any : ParamsPart::unit_rows});
         if (distance.weights.empty()) return;
         add_array({.kind = Kind::weights,
                    .index = d,
                    .count = static_cast<std::uint32_t>(distance.weights.size()),
-                   .width = target.dimension,
+                   .width = dimension,
                    .rule = distance.full_weights() ? ParamsPart::symmetric : ParamsPart::positive});
     }
 

@@ -29,7 +29,8 @@ void need(Plan& plan, std::set<Index> inputs, const std::set<Index>& predicates)
                                  [&](Index distance) { distances.insert(distance); });
     }
     std::set<Index> targets;
-    for (Index d : distances) targets.insert(model.distances[d].target);
+    for (Index d : distances)
+        if (!model.distances[d].is_between_points()) targets.insert(model.distances[d].target);
     plan.inputs.assign(inputs.begin(), inputs.end());
     plan.predicates.assign(predicates.begin(), predicates.end());
     plan.distances.assign(distances.begin(), distances.end());

@@ -85,7 +85,8 @@ RecorderColumns recorder_columns(const Plan& plan) {
     RecorderColumns columns;
     for (const Index p : plan.predicates) {
         const check::Predicate& predicate = model.predicates[p];
-        const RecorderColumns::OfPredicate column{p, columns.figures, predicate.distances(),
+        const RecorderColumns::OfPredicate column{p, columns.figures,
+                                                  check::measured_targets(model, predicate),
                                                   predicate.threshold.adaptation.has_value()};
         columns.predicates.push_back(column);
         columns.figures +=

@@ -374,6 +374,9 @@ struct Model {
     std::vector<std::string> reservations;
 };
 
+/// Returns the distances to target sets that a predicate reads, each once, in order.
+std::vector<Index> measured_targets(const Model& model, const Predicate& predicate);
+
 /// Returns the let of that formula that has a truth of its own; otherwise null.
 const Let* let_with_truth(const Model& model, Index formula);
 

@@ -77,6 +77,12 @@ private:
 
 }  // namespace
 
+std::vector<Index> measured_targets(const Model& model, const Predicate& predicate) {
+    std::vector<Index> distances = predicate.distances();
+    std::erase_if(distances, [&](Index d) { return model.distances[d].is_between_points(); });
+    return distances;
+}
+
 const Let* let_with_truth(const Model& model, Index formula) {
     for (const Let& let : model.lets)
         if (let.truth != kNone && let.formula == formula) return &let;

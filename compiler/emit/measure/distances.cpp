@@ -25,9 +25,8 @@ std::string aggregation(const check::Distance& distance) {
 /// Returns the template arguments of a kernel but for its rows: "etlmon::L2, etlmon::Min, 64, 384".
 std::string kernel_parameters(const Context& context, Index d) {
     const check::Distance& distance = context.model.distances[d];
-    const check::Target& target = context.model.targets[distance.target];
     return fmt::format("etlmon::{}, {}, {}, {}", plan::metric_name(distance), aggregation(distance),
-                       target.rows, target.dimension);
+                       context.model.rows_of(d), context.model.dimension_of(d));
 }
 
 std::string weights_argument(const Context& context, Index d) {
@@ -94,20 +93,6 @@ std::string all_present(const Context& context, const std::vector<Index>& scalar
     return text;
 }
 
-/// Returns the elements of a point that consists of scalars.
-std::string scalars_of(const Context& context, const check::Point& point) {
-    std::string text;
-    for (Index i : point.inputs) text += (text.empty() ? "" : ", ") + sample(context, i);
-    return text;
-}
-
-/// Returns the pointer to the elements of an embedding or a projected point.
-std::string elements_of(const Context& context, Index index) {
-    const check::Point& point = context.model.points[index];
-    if (!point.is_projected()) return sample(context, point.inputs[0]);
-    return context.names.point_local.at(index) + (context.on_demand ? "()" : "");
-}
-
 /// Prints `into = ...`, the distance from the point named `z`.
 void print_measurement(Printer& out, const Context& context, Index d, const std::string& z,
                        const std::string& into) {
@@ -128,6 +113,11 @@ void print_measurement(Printer& out, const Context& context, Index d, const std:
 std::optional<std::string> measured_at_once(const Context& context, Index d) {
     const check::Distance& distance = context.model.distances[d];
     const check::Point& point = context.model.point_of(d);
+    if (distance.is_between_points())
+        return fmt::format("etlmon::measure_between<etlmon::{}, {}>({}, {}{})",
+                           plan::metric_name(distance), point.dimension,
+                           elements_of(context, distance.point), elements_of(context, distance.other),
+                           weights_argument(context, d));
     if (point.is_vector() && plan::checks_point(context.plan, d))
         return wide_call(context, d, '{' + scalars_of(context, point) + '}');
     const Index embedding = point.inputs[0];
@@ -138,47 +128,6 @@ std::optional<std::string> measured_at_once(const Context& context, Index d) {
     const bool shared =
         direction != context.names.direction_local.end() && !plan::rows_as_given(distance);
     return wide_call(context, d, shared ? direction->second : sample(context, embedding));
-}
-
-namespace {
-
-/// Returns the matrix, and the offset if there is one.
-std::string numbers_of(const Context& context, Index projection, bool stored) {
-    const auto offset = context.names.offset_array.find(projection);
-    const bool has_offset = offset != context.names.offset_array.end();
-    if (context.retargetable())
-        return context.parameter(plan::Parameter::Kind::matrix, projection) +
-               (has_offset ? ", " + context.parameter(plan::Parameter::Kind::offset, projection)
-                           : "");
-    return fmt::format("{}projections::{}{}", stored ? "rows_ + " : "",
-                       context.names.matrix_array.at(projection),
-                       has_offset ? ", projections::" + offset->second : "");
-}
-
-}  // namespace
-
-void print_projected(Printer& out, const Context& context, Index index) {
-    const check::Point& point = context.model.points[index];
-    const check::Point& inner = context.model.points[point.inner];
-    const check::Projection& map = context.model.projections[point.projection];
-    const std::string& buffer = context.names.point_buffer.at(index);
-    const std::string& local = context.names.point_local.at(index);
-    const bool stored = plan::stored_projection(context.plan, point.projection) != nullptr;
-    const std::string numbers = numbers_of(context, point.projection, stored);
-    const std::string z = inner.is_vector()
-                              ? fmt::format("etlmon::Point<{}>{{{{{}}}}}", inner.dimension,
-                                            scalars_of(context, inner))
-                              : elements_of(context, point.inner);
-    const std::string call =
-        fmt::format("{}etlmon::project<{}, {}>({}, {}, {}){}", stored ? "ready() ? " : "", map.rows,
-                    map.dimension, z, numbers, buffer, stored ? " : nullptr" : "");
-    out.gap();
-    print_comment(out, "//", fmt::format("{}, shared by all distances from it", point.text), 4);
-    out.line("float {}[{}];", buffer, point.dimension);
-    print_wrapped(out, context.on_demand
-                           ? fmt::format("const etlmon::Lazy {}([&]() noexcept {{ return {}; }});",
-                                         local, call)
-                           : fmt::format("const float* const {} = {};", local, call));
 }
 
 namespace {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "emit/measure/measurements.hpp"
+#include "emit/measure/uses.hpp"
 #include "plan/program/predicate_values.hpp"
 #include "plan/targets/narrow_targets.hpp"
 #include "plan/targets/point_checks.hpp"
@@ -61,25 +62,15 @@ const char* robustness_name(const check::Predicate& predicate) {
 
 /// Prints the body of measure(). A distance that an expression or several predicates read gets a
 /// local; others are stored in telemetry directly.
-std::map<Index, int> uses_of_distances(const Context& context) {
-    std::map<Index, int> uses;
-    for (Index p : context.plan.predicates) {
-        const check::Predicate& predicate = context.model.predicates[p];
-        const int weight = predicate.plain_distance() ? 1 : 2;
-        check::for_each_distance(predicate.expression, [&](Index d) { uses[d] += weight; });
-    }
-    return uses;
-}
-
 class MeasurePrinter {
 public:
     MeasurePrinter(Printer& out, const Context& context)
-        : out_(out), context_(context), uses_(uses_of_distances(context)) {}
+        : out_(out), context_(context), uses_(distance_uses(context.plan)) {}
 
     void print() {
         for (Index i : context_.plan.inputs) print_input(out_, context_, i);
-        for (Index p : plan::projected_points(context_.model, context_.plan.distances))
-            print_projected(out_, context_, p);
+        for (Index p : plan::built_points(context_.model, context_.plan.distances))
+            print_point(out_, context_, p);
         for (Index d : context_.plan.distances)
             if (has_local(d)) print_shared(d);
         for (Index p : context_.plan.predicates) print_predicate(p);
@@ -199,9 +190,7 @@ private:
         const check::Predicate& predicate = context_.model.predicates[p];
         print_wrapped(out_, fmt::format("{}{} = {};", kept ? "" : "const float ", variable,
                                         expression(context_, predicate.expression)));
-        for (const Index d : kept ? predicate.distances() : std::vector<Index>{})
-            out_.line("{} = {}.nearest;", context_.names.nearest.at({p, d}).member,
-                      distance(context_, d));
+        print_nearest(p, [&](Index d) { return distance(context_, d) + ".nearest"; });
         return variable;
     }
 
@@ -227,10 +216,19 @@ private:
         out_.line("apart = etlmon::difference(left, right);");
         out_.close();
         out_.line("{} = apart.measured.delta;", variable);
-        for (const Index d : predicate.distances())
-            out_.line("{} = {}.measured.nearest;", context_.names.nearest.at({p, d}).member,
-                      d == both.first ? "left" : "right");
+        print_nearest(p, [&](Index d) {
+            return std::string(d == both.first ? "left" : "right") + ".measured.nearest";
+        });
         return variable;
+    }
+
+    /// Stores the nearest row of each target set that an expression reads.
+    template <class Row>
+    void print_nearest(Index p, const Row& row) {
+        for (const Index d : context_.model.predicates[p].distances())
+            if (const auto nearest = context_.names.nearest.find({p, d});
+                nearest != context_.names.nearest.end())
+                out_.line("{} = {};", nearest->second.member, row(d));
     }
 
     /// Returns whether some contrast depends on the exact distance.
@@ -249,16 +247,31 @@ private:
 
 }  // namespace
 
+namespace {
+
+/// Without parameters nothing is known, and nothing of it later.
+void print_unready(Printer& out, const Context& context) {
+    if (context.names.earlier_member.empty())
+        return print_wrapped(out, "if (!ready()) return unknown();");
+    out.open("if (!ready()) {");
+    for (const auto& [point, name] : context.names.earlier_member) out.line("{}.reset();", name);
+    out.line("return unknown();");
+    out.close();
+}
+
+}  // namespace
+
 void print_measure(Printer& out, const Context& context) {
     const bool reads_inputs = !context.plan.inputs.empty();
     open_half(out, context, "Monitor::Atoms",
               fmt::format("measure({}const Inputs& in)", reads_inputs ? "" : "[[maybe_unused]] "));
-    if (context.retargetable()) print_wrapped(out, "if (!ready()) return unknown();");
+    if (context.retargetable()) print_unready(out, context);
     out.line("Atoms now;");
     out.line("bool missing = false;");
     print_rank(out, context);
     MeasurePrinter(out, context).print();
     out.line();
+    print_kept_points(out, context);
     print_step_measured(out, context);
     print_wrapped(out, "if (missing && incomplete_ != UINT32_MAX) ++incomplete_;");
     out.line("return now;");

@@ -23,8 +23,14 @@ void print_input(Printer& out, const Context& context, check::Index input);
 /// the statements of print_distance.
 std::optional<std::string> measured_at_once(const Context& context, check::Index distance);
 
-/// Declares names.point_local, the pointer to a projected point; null if it is unknown.
-void print_projected(Printer& out, const Context& context, check::Index point);
+/// Returns the pointer to the elements of a point, null if it is missing; not for vectors of
+/// scalars that are measured in place.
+std::string elements_of(const Context& context, check::Index point);
+/// Returns the elements of a vector of scalars: "px, py".
+std::string scalars_of(const Context& context, const check::Point& point);
+/// Declares names.point_local, the pointer to a point that is no sample of the step; null if it is
+/// unknown.
+void print_point(Printer& out, const Context& context, check::Index point);
 /// Prints `into = ...` on float32 rows if the inputs are present: an exact Enclosed.
 void print_exact_distance(Printer& out, const Context& context, check::Index distance,
                           const std::string& into);

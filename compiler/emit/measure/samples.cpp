@@ -11,10 +11,20 @@ using check::InputType;
 
 namespace {
 
-/// Returns whether an input is read on demand. One with `hold` or `stale after` is read at every
-/// step.
+/// Returns whether later steps read this sample of an embedding.
+bool is_kept(const Context& context, Index i) {
+    return std::any_of(context.names.earlier_member.begin(), context.names.earlier_member.end(),
+                       [&](const auto& earlier) {
+                           const check::Point& point = context.model.points[earlier.first];
+                           return point.kind == check::Point::Kind::embedding &&
+                                  point.inputs[0] == i;
+                       });
+}
+
+/// Returns whether an input is read on demand. One with `hold` or `stale after`, or that later
+/// steps read, is read at every step.
 bool on_demand(const Context& context, Index i) {
-    return context.on_demand && !context.model.inputs[i].has_state();
+    return context.on_demand && !context.model.inputs[i].has_state() && !is_kept(context, i);
 }
 
 std::string accepted(const Context& context, Index i) {

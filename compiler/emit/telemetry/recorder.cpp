@@ -92,7 +92,8 @@ void print_recorded(Printer& out, const Context& context, Index predicate,
         std::find_if(context.recorded.predicates.begin(), context.recorded.predicates.end(),
                      [&](const auto& of) { return of.predicate == predicate; });
     constexpr std::string_view kDelta = ".delta";
-    if (context.model.predicates[predicate].plain_distance()) {
+    const bool is_measured = context.model.predicates[predicate].plain_distance();
+    if (is_measured && !column->nearest.empty()) {
         const std::string measured = delta.substr(0, delta.size() - kDelta.size());
         print_wrapped(out, fmt::format("{}.figures({}, {}, {}.nearest);", row_of(context),
                                        column->figure, delta, measured));

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "etlmon/hosted/footprint.hpp"
+#include "etlmon/temporal/earlier.hpp"
 #include "plan/program/sample_codes.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/targets/point_checks.hpp"
@@ -155,19 +156,37 @@ Cost keeping(Cost cost, const std::vector<Member>& members, Values kind) {
 }
 
 Cost distance_cost(const check::Model& model, const check::Distance& distance) {
-    const check::Target& target = model.targets[distance.target];
-    const std::uint64_t elements = std::uint64_t{target.rows} * target.dimension;
-    const bool full = distance.metric == check::Metric::mahalanobis && !distance.weights_diagonal;
-    return {.distance_operations = full ? elements * (1 + target.dimension) : elements};
+    const std::uint32_t dimension = model.points[distance.point].dimension;
+    const bool between = distance.is_between_points();
+    const std::uint64_t rows = between ? 1 : model.targets[distance.target].rows;
+    const std::uint64_t elements = rows * dimension;
+    // Between points, cosine and angular scale the second one to length 1.
+    const bool scales = between && check::is_of_directions(distance.metric);
+    return {.stack_bytes = scales ? dimension * kWord : 0,
+            .distance_operations = distance.full_weights() ? elements * (1 + dimension) : elements};
 }
 
-/// Returns the cost of a projected point: its array, and with an offset one for the centred point.
-Cost projection_cost(const check::Model& model, const check::Point& point) {
+/// Returns the cost of a point that a step computes: its array, if it needs one; of a projected
+/// point with an offset also one for the centred point.
+Cost point_cost(const check::Model& model, const check::Point& point) {
+    if (!point.is_projected()) {
+        const bool in_place =
+            point.is_delayed() && earlier_element_bytes(model, point.inner) == sizeof(float);
+        return {.stack_bytes = in_place ? 0 : point.dimension * kWord, .code_bytes = kCodePerRing};
+    }
     const check::Projection& map = model.projections[point.projection];
     const std::uint64_t centred = map.offset.empty() ? 0 : map.dimension;
     return {.stack_bytes = (map.rows + centred) * kWord,
             .code_bytes = kCodePerRing,
             .distance_operations = std::uint64_t{map.rows} * map.dimension};
+}
+
+/// Returns the cost of the samples that are kept for a point.
+Cost earlier_cost(const check::Model& model, const EarlierPoint& earlier) {
+    return {.state_bytes = etlmon::earlier_bytes(earlier_element_bytes(model, earlier.point),
+                                              model.points[earlier.point].dimension, earlier.steps),
+            .code_bytes = kCodePerRing,
+            .operations = 1};
 }
 
 std::uint64_t bytes_of_element(check::InputType type) {
@@ -223,8 +242,11 @@ public:
         for (std::uint32_t index : readings_)
             sum = sum + cost_of(plan_.readings[index], plan_.values);
         for (Index p : predicates_) sum = sum + telemetry(model.predicates[p]);
-        for (Index p : projected_points(model, {distances_.begin(), distances_.end()}))
-            sum = sum + projection_cost(model, model.points[p]);
+        const std::vector<Index> distances(distances_.begin(), distances_.end());
+        for (Index p : built_points(model, distances))
+            sum = sum + point_cost(model, model.points[p]);
+        for (const EarlierPoint& earlier : earlier_points(model, distances))
+            sum = sum + earlier_cost(model, earlier);
         for (Index d : distances_) {
             sum = sum + distance_cost(model, model.distances[d]);
             if (searches(plan_, d))
@@ -238,11 +260,12 @@ public:
     }
 
 private:
-    static Cost telemetry(const check::Predicate& predicate) {
+    Cost telemetry(const check::Predicate& predicate) const {
         if (predicate.name.empty()) return {.code_bytes = kCodePerRing};
         Cost cost{.state_bytes = predicate.plain_distance() ? 2 * kWord : kWord,
                   .code_bytes = kCodePerRing};
-        if (!predicate.plain_distance()) cost.state_bytes += kWord * predicate.distances().size();
+        if (!predicate.plain_distance())
+            cost.state_bytes += kWord * check::measured_targets(*plan_.model, predicate).size();
         if (predicate.threshold.adaptation)
             cost = cost + Cost{.state_bytes = kWord, .code_bytes = kCodePerAdaptation};
         return cost;
@@ -274,15 +297,9 @@ std::uint64_t measured_elements(const check::Model& model, Index predicate) {
 }
 
 std::uint64_t elements_of(const check::Model& model, Index predicate) {
-    std::set<Index> points;
-    check::for_each_distance(model.predicates[predicate].expression, [&](Index d) {
-        for (Index at = model.distances[d].point; model.points[at].is_projected();
-             at = model.points[at].inner)
-            points.insert(at);
-    });
     std::uint64_t sum = measured_elements(model, predicate);
-    for (const Index point : points)
-        sum += projection_cost(model, model.points[point]).distance_operations;
+    for (const Index p : projected_points(model, model.predicates[predicate].distances()))
+        sum += point_cost(model, model.points[p]).distance_operations;
     return sum;
 }
 

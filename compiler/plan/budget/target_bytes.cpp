@@ -34,6 +34,8 @@ public:
 
     void add(Index d) {
         const check::Distance& distance = plan_.model->distances[d];
+        bytes_ += distance.weights.size() * sizeof(float);
+        if (distance.is_between_points()) return;
         const NarrowSet* narrow = narrow_set(plan_, d);
         if (narrow != nullptr) add_rows(distance, narrow->storage);
         if (const StoredSet* stored = stored_set(plan_, d)) {
@@ -42,7 +44,6 @@ public:
         } else if (narrow == nullptr || !narrow->lossless) {
             add_rows(distance, Storage::f32);
         }
-        bytes_ += distance.weights.size() * sizeof(float);
     }
 
     void add_projection(Index index) {

@@ -64,6 +64,7 @@ void Evaluator::reset() {
         held.age = 0;
     }
     for (Freshness& freshness : freshness_) freshness.reset();
+    for (EarlierSamples& earlier : earlier_) earlier.reset();
     counts_.assign(model_.inputs.size(), {});
     for (StreamState& state : stream_states_) reset_stream(state);
     for (std::size_t i = 0; i < plan_.readings.size(); ++i)
@@ -86,6 +87,7 @@ const std::vector<etlmon::Verdict>& Evaluator::step(const std::vector<Sample>& s
     take_inputs(samples);
     measure_distances();
     measure_predicates();
+    keep_points();
     advance_streams();
     advance_readings();
     judge();
@@ -180,23 +182,26 @@ void Evaluator::take_inputs(const std::vector<Sample>& samples) {
     }
 }
 
+bool Evaluator::is_measured(const check::Predicate& predicate) const {
+    const std::vector<Index> distances = predicate.distances();
+    return std::none_of(distances.begin(), distances.end(),
+                        [&](Index d) { return std::isnan(distances_[d].delta); });
+}
+
 void Evaluator::measure_predicates() {
     bool missing = false;
     for (const Stream& stream : plan_.streams)
         if (stream.op == StreamOp::flag) missing |= inputs_[stream.index] == nullptr;
     for (Index p : plan_.predicates) {
         const check::Predicate& predicate = model_.predicates[p];
-        const bool present = std::all_of(predicate.inputs.begin(), predicate.inputs.end(),
-                                         [&](Index input) { return inputs_[input] != nullptr; });
         etlmon::Measured measured{etlmon::kMissing, 0};
-        if (present && predicate.plain_distance())
-            measured = distances_[predicate.expression.index];
-        const bool is_contrast = present && !contrast_cuts_[p].empty();
+        if (predicate.plain_distance()) measured = distances_[predicate.expression.index];
+        const bool is_contrast = !contrast_cuts_[p].empty() && is_measured(predicate);
         const etlmon::Enclosed contrast =
             is_contrast ? measure_contrast(predicate) : etlmon::Enclosed{};
         if (is_contrast)
             measured.delta = contrast.measured.delta;
-        else if (present && !predicate.plain_distance())
+        else if (!predicate.plain_distance())
             measured.delta = expression(predicate.expression);
         measured_[p] = measured;
         predicate_values_[p] = value_of(predicate, measured.delta, thresholds_[p], plan_.values);

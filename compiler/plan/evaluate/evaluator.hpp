@@ -16,6 +16,7 @@
 #include "etlmon/temporal/verdict.hpp"
 #include "plan/evaluate/inputs.hpp"
 #include "plan/evaluate/near_rows.hpp"
+#include "plan/evaluate/earlier_samples.hpp"
 #include "plan/program/program.hpp"
 
 namespace etlc::plan {
@@ -149,8 +150,13 @@ private:
     void take_inputs(const std::vector<Sample>& samples);
     void measure_points();
     const float* take_point(Index point);
+    const float* join(const check::Point& point, float* elements) const;
+    const EarlierSamples& earlier_of(Index point) const;
+    void keep_points();
     void measure_distances();
     void measure_predicates();
+    /// Returns whether all distances of a predicate are known.
+    bool is_measured(const check::Predicate& predicate) const;
     etlmon::Enclosed measure(Index distance, const float* z);
     etlmon::Measured measure_wide(Index distance, const float* z);
     etlmon::Enclosed measure_contrast(const check::Predicate& predicate);
@@ -178,6 +184,7 @@ private:
     std::vector<std::vector<float>> points_;  ///< per point: memory of vectors and projections
     std::vector<const float*> point_at_;      ///< per point: its elements; null: unknown
     std::vector<float> centred_;              ///< scratch of a projection
+    std::vector<EarlierSamples> earlier_;           ///< of the points that some point delays
     /// Per target and distance: prepared rows.
     std::vector<std::vector<float>> prepared_;
     /// For distances by full weights to the nearest row: candidate rows, and room for their values.

@@ -1,7 +1,6 @@
 // The part of Evaluator that measures distances and expressions, by the runtime's kernels.
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "etlmon/distance/contrast.hpp"
 #include "etlmon/hosted/dynamic.hpp"
@@ -10,6 +9,7 @@
 #include "plan/evaluate/evaluator.hpp"
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
+#include "plan/targets/point_checks.hpp"
 
 namespace etlc::plan {
 
@@ -24,15 +24,6 @@ bool doubtful(const etlmon::Enclosed& enclosed, const std::vector<Cut>& cuts) {
     });
 }
 
-/// Returns the points that distances are measured from, and those on the way, ascending.
-std::vector<Index> measured_points(const check::Model& model, const std::vector<Index>& distances) {
-    std::set<Index> points;
-    for (const Index d : distances)
-        for (Index at = model.distances[d].point; at != kNone; at = model.points[at].inner)
-            points.insert(at);
-    return {points.begin(), points.end()};
-}
-
 }  // namespace
 
 void Evaluator::prepare_distances() {
@@ -43,7 +34,9 @@ void Evaluator::prepare_distances() {
     for (Index p = 0; p < model_.points.size(); ++p)
         if (model_.points[p].kind != check::Point::Kind::embedding)
             points_[p].resize(model_.points[p].dimension);
-    measured_points_ = measured_points(model_, plan_.distances);
+    measured_points_ = points_of(model_, plan_.distances);
+    for (const EarlierPoint& earlier : earlier_points(model_, plan_.distances))
+        earlier_.push_back({earlier.point, earlier.steps, model_.points[earlier.point].dimension});
     for (Index p : measured_points_)
         if (model_.points[p].is_projected())
             centred_.resize(std::max<std::size_t>(
@@ -51,6 +44,11 @@ void Evaluator::prepare_distances() {
     std::size_t scratch = 0;
     for (Index d : plan_.distances) {
         const check::Distance& distance = model_.distances[d];
+        scratch = std::max<std::size_t>(scratch, distance.kth);
+        if (distance.is_between_points()) {
+            scratch = std::max<std::size_t>(scratch, model_.dimension_of(d));
+            continue;
+        }
         prepared_[d] = prepared_rows(model_, distance);
         if (distance.full_weights() && distance.aggregation == check::Aggregation::min) {
             near_.try_emplace(d, distance, model_.targets[distance.target]);
@@ -59,7 +57,6 @@ void Evaluator::prepare_distances() {
         if (const NarrowSet* set = narrow_set(plan_, d)) {
             widened_[d] = widened_rows(*set);
         }
-        scratch = std::max<std::size_t>(scratch, distance.kth);
     }
     scratch_.resize(scratch);
     for (const check::Predicate& predicate : model_.predicates)
@@ -83,12 +80,33 @@ const float* Evaluator::take_point(Index index) {
                                             centred_.data(), elements);
         return known ? elements : nullptr;
     }
+    if (point.is_delayed()) return earlier_of(point.inner).at(point.steps);
+    if (point.is_joined()) return join(point, elements);
     if (!point.is_vector()) return inputs_[point.inputs[0]];
     for (std::size_t i = 0; i < point.inputs.size(); ++i) {
         if (inputs_[point.inputs[i]] == nullptr) return nullptr;
         elements[i] = *inputs_[point.inputs[i]];
     }
     return elements;
+}
+
+const float* Evaluator::join(const check::Point& point, float* elements) const {
+    float* end = elements;
+    for (const Index part : point.parts) {
+        if (point_at_[part] == nullptr) return nullptr;
+        end = std::copy_n(point_at_[part], model_.points[part].dimension, end);
+    }
+    return elements;
+}
+
+const EarlierSamples& Evaluator::earlier_of(Index point) const {
+    return *std::find_if(earlier_.begin(), earlier_.end(),
+                         [&](const EarlierSamples& earlier) { return earlier.point() == point; });
+}
+
+/// Adds the points of this step to those of earlier steps, after all have been measured.
+void Evaluator::keep_points() {
+    for (EarlierSamples& earlier : earlier_) earlier.push(point_at_[earlier.point()]);
 }
 
 void Evaluator::measure_distances() {
@@ -98,6 +116,13 @@ void Evaluator::measure_distances() {
         distances_[d] = {etlmon::kMissing, 0};
         enclosed_[d] = {};
         if (z == nullptr) continue;
+        if (const Index other = model_.distances[d].other; other != kNone) {
+            if (point_at_[other] == nullptr) continue;
+            enclosed_[d] = etlmon::exactly(measure_between(
+                model_.distances[d], z, point_at_[other], model_.dimension_of(d), scratch_.data()));
+            distances_[d] = enclosed_[d].measured;
+            continue;
+        }
         enclosed_[d] = measure(d, z);
         distances_[d] = enclosed_[d].measured;
     }
@@ -182,7 +207,8 @@ float Evaluator::expression(const Expr& e) const {
     };
     switch (e.kind) {
         case Expr::Kind::number: return e.number32;
-        case Expr::Kind::scalar: return *inputs_[e.index];
+        case Expr::Kind::scalar:
+            return inputs_[e.index] == nullptr ? etlmon::kMissing : *inputs_[e.index];
         case Expr::Kind::distance: return distances_[e.index].delta;
         case Expr::Kind::past: return etlmon::kMissing;
         case Expr::Kind::negate: return etlmon::negate(at(0));

@@ -16,7 +16,8 @@ std::size_t declared_at(const check::Model& model, const Samples::Place& place) 
 std::uint32_t rows_of(const check::Model& model, Index predicate) {
     const check::Predicate& of = model.predicates[predicate];
     if (!of.plain_distance()) return 0;
-    return model.targets[model.distances[of.expression.index].target].rows;
+    const Index distance = of.expression.index;
+    return model.distances[distance].is_between_points() ? 0 : model.rows_of(distance);
 }
 
 std::uint64_t codes_of(const std::vector<Samples::Place>& places) {

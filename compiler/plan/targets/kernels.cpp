@@ -1,5 +1,6 @@
 #include "plan/targets/kernels.hpp"
 
+#include "etlmon/distance/between.hpp"
 #include "etlmon/hosted/dynamic.hpp"
 
 namespace etlc::plan {
@@ -47,6 +48,16 @@ etlmon::Measured measure(const check::Distance& distance, const float* z, const 
                          std::uint32_t rows, std::uint32_t dimension, float* scratch) {
     return etlmon::measure(metric_id(distance), aggregation_id(distance), distance.kth, z, targets,
                            rows, dimension, distance.weights.data(), scratch);
+}
+
+etlmon::Measured measure_between(const check::Distance& distance, const float* a, const float* b,
+                                 std::uint32_t dimension, float* scratch) {
+    if (!rows_as_given(distance)) {
+        if (!etlmon::detail::scale_to_unit(b, dimension, scratch)) return etlmon::kUnmeasured;
+        b = scratch;
+    }
+    return etlmon::measure(metric_id(distance), etlmon::AggregationId::min, 1, a, b, 1, dimension,
+                           distance.weights.data(), nullptr);
 }
 
 bool project(const check::Projection& map, const std::vector<float>& z, std::vector<float>& y) {

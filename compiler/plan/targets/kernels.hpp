@@ -24,6 +24,11 @@ std::string metric_name(const check::Distance& distance);
 
 /// Measures the distance from z to `rows` prepared rows, as generated code does. `scratch`: for
 /// kth, as many floats as it counts.
+/// Measures between two points of a model; `scratch`: the dimension of floats, for cosine and
+/// angular.
+etlmon::Measured measure_between(const check::Distance& distance, const float* a, const float* b,
+                                 std::uint32_t dimension, float* scratch);
+
 etlmon::Measured measure(const check::Distance& distance, const float* z, const float* targets,
                          std::uint32_t rows, std::uint32_t dimension, float* scratch);
 

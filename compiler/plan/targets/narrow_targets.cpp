@@ -203,6 +203,7 @@ bool can_be_enclosed(const Plan& plan, Index distance) {
 /// Returns why a distance is measured on float32 in any case; empty if it is not.
 std::string why_float32(const Plan& plan, Index d) {
     const check::Distance& distance = plan.model->distances[d];
+    if (distance.is_between_points()) return "the distance between two points has no target";
     const check::Target& target = plan.model->targets[distance.target];
     if (stored_set(plan, d) != nullptr)
         return fmt::format(

@@ -7,9 +7,24 @@
 
 namespace etlc::plan {
 
-/// Returns the projected points that distances are measured from, and those on the way, ascending:
-/// each after its inner one.
+/// Returns the points that distances are measured from, and those that these are made of,
+/// ascending: each after its parts.
+std::vector<Index> points_of(const check::Model& model, const std::vector<Index>& distances);
+/// Returns those that are projected.
 std::vector<Index> projected_points(const check::Model& model, const std::vector<Index>& distances);
+/// Returns those whose elements a step has to compute or to look up, before it measures anything:
+/// all but embeddings, and vectors of scalars that are only compared with target sets.
+std::vector<Index> built_points(const check::Model& model, const std::vector<Index>& distances);
+
+/// The samples of a point that are kept: of the last `steps` steps.
+struct EarlierPoint {
+    Index point = 0;
+    std::uint32_t steps = 0;
+};
+/// Returns what the delayed ones among the points need, by point.
+std::vector<EarlierPoint> earlier_points(const check::Model& model, const std::vector<Index>& distances);
+/// Returns the bytes of an element of a point as it is kept.
+std::uint64_t earlier_element_bytes(const check::Model& model, Index point);
 
 /// Returns whether the distance's kernel checks that all elements of the point are finite: one that
 /// measures every row in the header. Others are called only where they are.

@@ -42,6 +42,7 @@ std::vector<StoredSet> stored_sets(const Plan& plan, std::uint64_t inline_bytes)
     std::uint64_t offset = 0;
     for (Index d : plan.distances) {
         const check::Distance& distance = plan.model->distances[d];
+        if (distance.is_between_points()) continue;
         const check::Target& target = plan.model->targets[distance.target];
         const bool as_given = rows_as_given(distance);
         const bool known = std::any_of(sets.begin(), sets.end(), [&](const StoredSet& set) {
@@ -85,6 +86,7 @@ const StoredSet* stored_projection(const Plan& plan, Index projection) {
 
 const StoredSet* stored_set(const Plan& plan, Index d) {
     const check::Distance& distance = plan.model->distances[d];
+    if (distance.is_between_points()) return nullptr;
     const auto found =
         std::find_if(plan.stored.begin(), plan.stored.end(), [&](const StoredSet& set) {
             return set.target == distance.target && set.as_given == rows_as_given(distance);
