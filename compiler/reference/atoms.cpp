@@ -39,10 +39,12 @@ bool stale(const check::Input& input, const std::vector<std::vector<float>>& see
 }
 
 /// Evaluates in double; a NaN anywhere makes the whole expression NaN, also through min and max.
-double evaluate(const check::Model& model, const Expr& expr, const Samples& samples) {
+double evaluate(const check::Model& model, const Expr& expr, const std::vector<Samples>& trace,
+                std::size_t step) {
+    const Samples& samples = trace[step];
     std::vector<double> a;
     for (const Expr& argument : expr.arguments) {
-        a.push_back(evaluate(model, argument, samples));
+        a.push_back(evaluate(model, argument, trace, step));
         if (std::isnan(a.back())) return kUnknown;
     }
     switch (expr.kind) {
@@ -50,7 +52,8 @@ double evaluate(const check::Model& model, const Expr& expr, const Samples& samp
         case Expr::Kind::scalar:
             return samples[expr.index].empty() ? kUnknown : samples[expr.index][0];
         case Expr::Kind::distance:
-            return distance(model, model.distances[expr.index], samples).delta.value_or(kUnknown);
+            return distance(model, model.distances[expr.index], trace, step)
+                .delta.value_or(kUnknown);
         case Expr::Kind::past: return kUnknown;
         case Expr::Kind::negate: return -a[0];
         case Expr::Kind::add: return a[0] + a[1];
@@ -98,10 +101,10 @@ std::vector<Samples> accept(const check::Model& model, const Trace& trace) {
 }
 
 Measurement measure(const check::Model& model, const check::Predicate& predicate,
-                    const Samples& samples) {
+                    const std::vector<Samples>& trace, std::size_t step) {
     if (predicate.plain_distance())
-        return distance(model, model.distances[predicate.expression.index], samples);
-    const double delta = evaluate(model, predicate.expression, samples);
+        return distance(model, model.distances[predicate.expression.index], trace, step);
+    const double delta = evaluate(model, predicate.expression, trace, step);
     if (std::isnan(delta)) return {};
     return {delta, 0};
 }

@@ -111,11 +111,32 @@ Vector inputs_of(const check::Point& point, const Samples& samples) {
     return elements;
 }
 
-/// Returns P(z) = A (z - m), from the inside out; empty where an input is missing.
-Vector point_of(const check::Model& model, Index index, const Samples& samples) {
+Vector point_of(const check::Model& model, Index index, const std::vector<Samples>& trace,
+                std::size_t step);
+
+/// Returns the parts one behind the other; empty where one is missing.
+Vector joined(const check::Model& model, const check::Point& point,
+              const std::vector<Samples>& trace, std::size_t step) {
+    Vector all;
+    for (const Index index : point.parts) {
+        const Vector part = point_of(model, index, trace, step);
+        if (part.empty()) return {};
+        all.insert(all.end(), part.begin(), part.end());
+    }
+    return all;
+}
+
+/// Returns P(z) = A (z - m), from the inside out; z@n is z at the step n before, missing where
+/// there is none. Empty where an input is missing.
+Vector point_of(const check::Model& model, Index index, const std::vector<Samples>& trace,
+                std::size_t step) {
     const check::Point& point = model.points[index];
-    if (!point.is_projected()) return inputs_of(point, samples);
-    Vector z = point_of(model, point.inner, samples);
+    if (point.is_delayed())
+        return step < point.steps ? Vector{}
+                                  : point_of(model, point.inner, trace, step - point.steps);
+    if (point.is_joined()) return joined(model, point, trace, step);
+    if (!point.is_projected()) return inputs_of(point, trace[step]);
+    Vector z = point_of(model, point.inner, trace, step);
     if (z.empty()) return {};
     const check::Projection& projection = model.projections[point.projection];
     if (!projection.offset.empty())
@@ -135,13 +156,18 @@ bool is_zero(const Vector& point) {
 }  // namespace
 
 Measurement distance(const check::Model& model, const check::Distance& distance,
-                     const Samples& samples) {
-    const Vector point = point_of(model, distance.point, samples);
+                     const std::vector<Samples>& trace, std::size_t step) {
+    const Vector point = point_of(model, distance.point, trace, step);
     if (point.empty()) return {};
     const bool needs_direction =
         distance.metric == Metric::cosine || distance.metric == Metric::angular;
     if (needs_direction && is_zero(point)) return {};
 
+    if (distance.is_between_points()) {
+        const Vector other = point_of(model, distance.other, trace, step);
+        if (other.empty() || (needs_direction && is_zero(other))) return {};
+        return {between(distance, point, other), 0};
+    }
     const check::Target& target = model.targets[distance.target];
     Vector distances;
     for (std::uint32_t row = 0; row < target.rows; ++row) {

@@ -165,10 +165,11 @@ private:
     Run run_;
 
     void measure_all() {
-        for (const Samples& samples : samples_) {
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            const Samples& samples = samples_[i];
             std::vector<Telemetry> step;
             for (const check::Predicate& predicate : model_.predicates) {
-                const Measurement m = measure(model_, predicate, samples);
+                const Measurement m = measure(model_, predicate, samples_, i);
                 step.push_back(
                     {m.delta.value_or(std::numeric_limits<double>::quiet_NaN()), m.nearest});
             }
