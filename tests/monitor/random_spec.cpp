@@ -23,7 +23,8 @@ public:
         for (const char* name : {"x", "y"}) result += scalar(name);
         result += fmt::format("input on : bool{}{};\n", hold(), missing());
         dimension_ = random_.between(1, 5);
-        result += fmt::format("input v : {}{}{};\n", embedding(), hold(), stale());
+        for (const char* name : {"v", "w"})
+            result += fmt::format("input {} : {}{}{};\n", name, embedding(), hold(), stale());
         for (const char* name : {"near", "far"}) result += target(name, dimension_);
         result += target("spots", 2);
         result += projections();
@@ -169,6 +170,50 @@ private:
         return name == "mahalanobis" ? weights(columns) : name;
     }
 
+    std::string ago() { return fmt::format("@{}", random_.between(1, 4)); }
+
+    /// An embedding as it is or was, also before it was delayed again.
+    std::string embedded() {
+        const std::string name = random_.word({"v", "v", "w"});
+        if (random_.chance(0.5)) return name;
+        return random_.chance(0.2) ? name + ago() + ago() : name + ago();
+    }
+
+    /// Two points of the same space, now or a while ago.
+    std::string between_points() {
+        const std::string either = random_.chance(0.5) ? ago() : "";
+        switch (random_.between(0, 4)) {
+            case 0: return fmt::format("{}([x, y], [y, x]{})", metric(2), ago());
+            case 1: return fmt::format("{}([x, y@2]{}, [y, x{}])", metric(2), either, ago());
+            case 2:
+                return fmt::format("{}(P({}){}, P(w{}))", metric_of_any(projected_), embedded(),
+                                   either, ago());
+            case 3:
+                return fmt::format("{}([v, x, v{}]{}, [{}, y, w])", metric(2 * dimension_ + 1),
+                                   ago(), either, embedded());
+            default: return fmt::format("{}({}, {})", metric(dimension_), embedded(), embedded());
+        }
+    }
+
+    /// A target set as seen from a point of a while ago, or from several points.
+    std::string past_distance() {
+        const std::string target = random_.word({"near", "far"});
+        switch (random_.between(0, 3)) {
+            case 0:
+                return fmt::format("{} {}(P(v{}){}, own)", aggregation("own"),
+                                   metric_of_any(projected_), ago(), ago());
+            case 1:
+                return fmt::format("{} {}(Q(P(v){}), {})", aggregation(target), metric_of_any(2),
+                                   ago(), target);
+            case 2:
+                return fmt::format("{} {}([x, x{}], spots)", aggregation("spots"), metric(2),
+                                   ago());
+            default:
+                return fmt::format("{} {}({}, {})", aggregation(target), metric(dimension_),
+                                   embedded(), target);
+        }
+    }
+
     std::string projected_distance() {
         if (random_.chance(0.3))
             return fmt::format("{} {}(P(v), own)", aggregation("own"), metric(projected_));
@@ -182,6 +227,8 @@ private:
     }
 
     std::string distance() {
+        if (random_.chance(0.25)) return between_points();
+        if (random_.chance(0.15)) return past_distance();
         if (random_.chance(0.3)) return projected_distance();
         if (random_.chance(0.3))
             return fmt::format("{} {}([x, y], spots)", aggregation("spots"), metric(2));
