@@ -17,10 +17,10 @@ namespace detail {
 /// Computes A z. Returns nullptr if an element of it is not finite.
 ETLMON_INLINE const float* products(const float* z, const float* matrix, uint32_t Rows,
                                     uint32_t Dim, float* y) noexcept {
-  // With -ffast-math g++ warns of rows of 16 elements in a smaller matrix, in a branch that is not
-  // reached.
+  // With -ffast-math g++ warns of rows of 16 elements in a smaller matrix, and of more of them than
+  // there are, in branches that are not reached.
   best_row_values<Product>(unforeseen(z), unforeseen(matrix), nullptr, 0, Rows, Sizes{Rows, Dim},
-                           y);
+                           const_cast<float*>(unforeseen(y)));
   return finite(y, Rows) ? y : nullptr;
 }
 
