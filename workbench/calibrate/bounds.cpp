@@ -34,6 +34,8 @@ constexpr double kSlack = 1 + 1e-12;
 double error(const Distance& distance, std::uint32_t rows, std::uint32_t dimension, double exact,
              double magnitude) {
     double bound = etlmon::rounding_bound(plan::metric_id(distance), dimension, exact, magnitude);
+    if (distance.is_between_points() && check::is_of_directions(distance.metric))
+        bound *= 4;  // see etlmon/distance/between.hpp
     if (distance.aggregation == Aggregation::mean) bound += etlmon::mean_bound(rows, exact + bound);
     return bound * kSlack;
 }
@@ -87,15 +89,43 @@ Interval spread(const Distance& distance, std::uint32_t rows, std::uint32_t dime
     return {std::max(0.0, delta - 2 * below), std::min(ceiling, greatest + error_at(greatest))};
 }
 
+/// Returns the elements that a point had so many steps before.
+const float* elements_of(const check::Model& model, Index index, std::uint32_t ago,
+                         const plan::Evaluator& measured) {
+    const check::Point& point = model.points[index];
+    return point.is_delayed() ? elements_of(model, point.inner, ago + point.steps, measured)
+                              : measured.point(index, ago);
+}
+
 /// Bounds |a - b| for each element of a point, of which two builds compute a and b; empty for
 /// points that are not computed.
-std::vector<double> moves_of(const check::Model& model, Index index,
+std::vector<double> moves_of(const check::Model& model, Index index, std::uint32_t ago,
+                             const plan::Evaluator& measured);
+
+/// Bounds them for points put together.
+std::vector<double> joined_moves(const check::Model& model, const check::Point& point,
+                                 std::uint32_t ago, const plan::Evaluator& measured) {
+    std::vector<double> all;
+    bool computed = false;
+    for (const Index part : point.parts) {
+        std::vector<double> moves = moves_of(model, part, ago, measured);
+        computed = computed || !moves.empty();
+        moves.resize(model.points[part].dimension);
+        all.insert(all.end(), moves.begin(), moves.end());
+    }
+    return computed ? all : std::vector<double>{};
+}
+
+/// `ago`: of the point as it was so many steps before.
+std::vector<double> moves_of(const check::Model& model, Index index, std::uint32_t ago,
                              const plan::Evaluator& measured) {
     const check::Point& point = model.points[index];
+    if (point.is_delayed()) return moves_of(model, point.inner, ago + point.steps, measured);
+    if (point.is_joined()) return joined_moves(model, point, ago, measured);
     if (!point.is_projected()) return {};
     const check::Projection& map = model.projections[point.projection];
-    const std::vector<double> inner = moves_of(model, point.inner, measured);
-    const float* const z = measured.point(point.inner);
+    const std::vector<double> inner = moves_of(model, point.inner, ago, measured);
+    const float* const z = elements_of(model, point.inner, ago, measured);
     std::vector<double> moves;
     for (std::size_t i = 0; i < map.rows; ++i) {
         double magnitude = 0;
@@ -216,14 +246,33 @@ std::vector<std::uint32_t> rows_that_count(const Distance& distance, const check
     return all;
 }
 
+/// Bounds the distance between two points, both of which a build may compute.
+Interval between_points(const check::Model& model, Index index, const plan::Evaluator& measured) {
+    const Distance& distance = model.distances[index];
+    const std::uint32_t dimension = model.dimension_of(index);
+    const auto delta = static_cast<double>(measured.measured(index).delta);
+    if (std::isinf(delta)) return spread(distance, 1, dimension, delta, 0, 0);
+    const float* const z = measured.point(distance.point);
+    const float* const g = measured.point(distance.other);
+    std::vector<double> moves = moves_of(model, distance.point, 0, measured);
+    const std::vector<double> others = moves_of(model, distance.other, 0, measured);
+    const double moved = norm_of(distance, moves, z) + norm_of(distance, others, g);
+    if (!distance.full_weights()) return spread(distance, 1, dimension, delta, 0, moved);
+    moves.resize(dimension);
+    for (std::size_t i = 0; i < others.size(); ++i) moves[i] += others[i];
+    return spread(distance, 1, dimension, delta, Magnitude(distance).of(z, g, dimension, moves),
+                  moved);
+}
+
 Interval of_distance(const check::Model& model, Index index, const plan::Evaluator& measured) {
     const Distance& distance = model.distances[index];
+    if (distance.is_between_points()) return between_points(model, index, measured);
     const check::Target& target = model.targets[distance.target];
     const float delta = measured.measured(index).delta;
     const float* const z = measured.point(distance.point);
     if (std::isinf(delta))
         return spread(distance, target.rows, target.dimension, static_cast<double>(delta), 0, 0);
-    const std::vector<double> moves = moves_of(model, distance.point, measured);
+    const std::vector<double> moves = moves_of(model, distance.point, 0, measured);
     if (distance.full_weights())
         return of_full_weights(distance, target, z,
                                rows_that_count(distance, target, index, moves, measured), moves);

@@ -22,7 +22,8 @@ struct Directions {
     double along = 0;
 };
 
-Directions directions(const std::vector<double>& z, double z_length, const float* g) {
+template <class Number>
+Directions directions(const std::vector<double>& z, double z_length, const Number* g) {
     const std::vector<double> row(g, g + z.size());
     const double g_length = length(row.data(), row.size());
     Directions result;
@@ -36,8 +37,9 @@ Directions directions(const std::vector<double>& z, double z_length, const float
 }
 
 /// (z - g)^T W (z - g)
+template <class Number>
 double quadratic_form(const check::Distance& distance, const std::vector<double>& z,
-                      const float* g) {
+                      const Number* g) {
     const std::size_t n = z.size();
     double sum = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -53,8 +55,9 @@ double quadratic_form(const check::Distance& distance, const std::vector<double>
     return std::max(sum, 0.0);  // W is positive definite
 }
 
+template <class Number>
 double to_row(const check::Distance& distance, const std::vector<double>& z, double z_length,
-              const float* g) {
+              const Number* g) {
     double sum = 0;
     double squares = 0;
     double greatest = 0;
@@ -106,6 +109,15 @@ std::optional<double> exact_distance(const check::Model& model, const check::Dis
         rows.push_back(
             to_row(distance, point, z_length, target.values.data() + k * target.dimension));
     return aggregate(distance, std::move(rows));
+}
+
+std::optional<double> exact_distance(const check::Distance& distance,
+                                     const std::vector<double>& point,
+                                     const std::vector<double>& other) {
+    const bool directed = check::is_of_directions(distance.metric);
+    const double z_length = directed ? length(point.data(), point.size()) : 1;
+    if (z_length == 0 || (directed && length(other.data(), other.size()) == 0)) return std::nullopt;
+    return to_row(distance, point, z_length, other.data());
 }
 
 }  // namespace etlc::episodes

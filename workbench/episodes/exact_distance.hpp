@@ -15,6 +15,11 @@ namespace etlc::episodes {
 std::optional<double> exact_distance(const check::Model& model, const check::Distance& distance,
                                      const std::vector<double>& point);
 
+/// Returns d(point, other) likewise.
+std::optional<double> exact_distance(const check::Distance& distance,
+                                     const std::vector<double>& point,
+                                     const std::vector<double>& other);
+
 /// Aggregates the distances of the rows, of which there is at least one.
 double aggregate(const check::Distance& distance, std::vector<double> rows);
 

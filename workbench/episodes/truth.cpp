@@ -8,6 +8,7 @@
 
 #include "check/points/project.hpp"
 #include "episodes/exact_distance.hpp"
+#include "episodes/recent_frames.hpp"
 
 namespace etlc::episodes {
 
@@ -65,6 +66,11 @@ TruthEvaluator::TruthEvaluator(const check::Model& model, const std::vector<Inde
         if (formula.kind != Formula::Kind::predicate) continue;
         const std::vector<Index>& read = model.predicates[formula.index].inputs;
         inputs.insert(read.begin(), read.end());
+        check::for_each_distance(model.predicates[formula.index].expression, [&](Index d) {
+            for (const Index point : {model.distances[d].point, model.distances[d].other})
+                if (point != check::kNone)
+                    longest_delay_ = std::max(longest_delay_, longest_delay(model, point));
+        });
     }
     std::reverse(order_.begin(), order_.end());
     inputs_.assign(inputs.begin(), inputs.end());
@@ -76,6 +82,7 @@ void TruthEvaluator::reset() {
     labels_.assign(model_.formulas.size(), Label::unknown);
     memories_.assign(model_.formulas.size(), {});
     values_.assign(model_.inputs.size(), {});
+    earlier_.clear();
     held_.assign(model_.inputs.size(), {});
     ages_.assign(model_.inputs.size(), 0);
     freshness_.assign(model_.inputs.size(), {});
@@ -83,6 +90,10 @@ void TruthEvaluator::reset() {
 
 void TruthEvaluator::step(const Frame& frame) {
     ++frame_;
+    if (longest_delay_ > 0 && frame_ > 1) {
+        earlier_.push_front(values_);
+        if (earlier_.size() > longest_delay_) earlier_.pop_back();
+    }
     take_inputs(frame);
     for (const Index index : order_) labels_[index] = value(index);
 }
@@ -169,9 +180,7 @@ Label TruthEvaluator::in_the_past(const Formula& formula, Memory& memory, Label 
 }
 
 Label TruthEvaluator::compare(const check::Predicate& predicate) const {
-    const bool present = std::none_of(predicate.inputs.begin(), predicate.inputs.end(),
-                                      [&](Index input) { return values_[input].empty(); });
-    const double delta = present ? expression(predicate.expression) : kUnknown;
+    const double delta = expression(predicate.expression);
     if (std::isnan(delta)) return Label::unknown;
     // Samples are float32, and monitors compare for equality in float32.
     if (predicate.equality())
@@ -192,7 +201,8 @@ double TruthEvaluator::expression(const Expr& e) const {
     };
     switch (e.kind) {
         case Expr::Kind::number: return e.number;
-        case Expr::Kind::scalar: return values_[e.index][0];
+        case Expr::Kind::scalar:
+            return values_[e.index].empty() ? kUnknown : values_[e.index][0];
         case Expr::Kind::distance: return measure(model_.distances[e.index]);
         case Expr::Kind::past: return kUnknown;
         case Expr::Kind::negate: return -at(0);
@@ -209,11 +219,39 @@ double TruthEvaluator::expression(const Expr& e) const {
 }
 
 double TruthEvaluator::measure(const check::Distance& distance) const {
-    std::vector<double> point;
-    for (const Index input : model_.points[distance.point].inputs)
-        point.insert(point.end(), values_[input].begin(), values_[input].end());
-    point = check::projected(model_, distance.point, std::move(point));
-    return exact_distance(model_, distance, point).value_or(kUnknown);
+    const std::vector<double> point = elements(distance.point, 0);
+    if (point.empty()) return kUnknown;
+    if (!distance.is_between_points())
+        return exact_distance(model_, distance, point).value_or(kUnknown);
+    const std::vector<double> other = elements(distance.other, 0);
+    return other.empty() ? kUnknown : exact_distance(distance, point, other).value_or(kUnknown);
+}
+
+/// Returns a point as it was `ago` frames before; empty where it is missing.
+std::vector<double> TruthEvaluator::elements(Index index, std::size_t ago) const {
+    const check::Point& point = model_.points[index];
+    if (point.is_delayed()) return elements(point.inner, ago + point.steps);
+    if (point.is_projected()) {
+        const std::vector<double> inner = elements(point.inner, ago);
+        return inner.empty() ? inner
+                             : check::projected(model_.projections[point.projection], inner);
+    }
+    std::vector<double> all;
+    const auto append = [&](const std::vector<double>& part) {
+        all.insert(all.end(), part.begin(), part.end());
+        return !part.empty();
+    };
+    const auto was = [&](Index input) -> const std::vector<double>& {
+        return ago == 0 ? values_[input] : earlier_[ago - 1][input];
+    };
+    if (ago > earlier_.size()) return {};
+    const bool there =
+        point.is_joined()
+            ? std::all_of(point.parts.begin(), point.parts.end(),
+                          [&](Index part) { return append(elements(part, ago)); })
+            : std::all_of(point.inputs.begin(), point.inputs.end(),
+                          [&](Index input) { return append(was(input)); });
+    return there ? all : std::vector<double>{};
 }
 
 GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& labelled) {

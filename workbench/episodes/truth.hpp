@@ -49,6 +49,7 @@ private:
     Label compare(const check::Predicate& predicate) const;
     double expression(const check::Expr& e) const;
     double measure(const check::Distance& distance) const;
+    std::vector<double> elements(Index point, std::size_t ago) const;
     Label in_the_past(const check::Formula& formula, Memory& memory, Label f, Label g) const;
 
     const check::Model& model_;
@@ -57,6 +58,8 @@ private:
     std::vector<Label> labels_;
     std::vector<Memory> memories_;  ///< per formula
     Frame values_;                  ///< per input, after `hold`
+    std::uint32_t longest_delay_ = 0;
+    std::deque<Frame> earlier_;  ///< values of the frames before, the last one first
     Frame held_;
     std::vector<std::uint32_t> ages_;
     std::vector<plan::Freshness> freshness_;  ///< per input

@@ -46,7 +46,7 @@ Observations::Observations(const check::Model& model, check::Values values,
     columns_.resize(atoms_.size());
     for (Index a = 0; a < atoms_.size(); ++a) {
         if (!atoms_[a].is_predicate) continue;
-        columns_[a].distances = model.predicates[atoms_[a].index].distances();
+        columns_[a].distances = check::measured_targets(model, model.predicates[atoms_[a].index]);
         columns_[a].nearest.resize(columns_[a].distances.size());
     }
     for (const Index p : predicates) columns_[of_predicates_[p]].is_looked_at = true;

@@ -11,6 +11,7 @@
 #include "check/guarantees/provenance.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
+#include "episodes/recent_frames.hpp"
 #include "episodes/truth.hpp"
 #include "fit/blocks.hpp"
 
@@ -100,6 +101,12 @@ std::vector<Index> formulas_of(const std::vector<Need>& needs) {
     return formulas;
 }
 
+std::vector<Index> points_of(const std::vector<Need>& needs) {
+    std::vector<Index> points;
+    for (const Need& need : needs) points.push_back(need.point);
+    return points;
+}
+
 /// Returns what to read of an episode, for these needs and to measure.
 episodes::Wanted wanted_for(const check::Model& model, const std::vector<Need>& needs,
                             const std::vector<Measured>& measured,
@@ -174,7 +181,8 @@ public:
           points_(by_point(needs)),
           truth_(episodes::ground_truth(model, readings.wanted().predicates)),
           where_(truth_.model, formulas_of(needs)),
-          shares_(shares) {
+          shares_(shares),
+          recent_(model, points_of(needs)) {
         for (const PointNeeds& one : points_) blocks_.push_back(blocks_of(one));
     }
 
@@ -201,6 +209,7 @@ private:
         if (!opened) return opened.failure();
         episodes::Frames& frames = **opened;
         where_.reset();
+        recent_.reset();
         std::vector<Collector> collectors;
         for (const Need& need : needs_) collectors.emplace_back(need, shares_.most);
         for (;;) {
@@ -208,6 +217,7 @@ private:
             if (!more) return more.failure();
             if (!*more) break;
             take_labels(frames);
+            recent_.push(frames.samples());
             for (std::size_t p = 0; p < points_.size(); ++p)
                 take_point(frames, points_[p], collectors, blocks_[p]);
         }
@@ -231,7 +241,7 @@ private:
     /// Adds the point of one frame.
     void take_point(const episodes::Frames& frames, const PointNeeds& one,
                     std::vector<Collector>& collectors, Blocks& blocks) {
-        if (!read_point(model_, one.point, frames.samples(), point_)) point_.clear();
+        if (!recent_.read(one.point, point_)) point_.clear();
         classes_.clear();
         for (const std::size_t i : one.all) {
             const std::int8_t in_class =
@@ -271,6 +281,7 @@ private:
     episodes::GroundTruth truth_;
     episodes::TruthEvaluator where_;
     Shares shares_;
+    episodes::RecentFrames recent_;
     episodes::Frame frame_;
     std::vector<float> point_;
     std::vector<std::int8_t> classes_;
@@ -306,21 +317,6 @@ void Counts::add(const Counts& other) {
 Index innermost(const check::Model& model, Index point) {
     while (model.points[point].is_projected()) point = model.points[point].inner;
     return point;
-}
-
-bool read_point(const check::Model& model, Index point, const std::vector<plan::Sample>& samples,
-                std::vector<float>& values) {
-    values.clear();
-    for (const Index input : model.points[point].inputs) {
-        const plan::Sample& sample = samples[input];
-        if (!sample.present) return false;
-        const check::Range& range = model.inputs[input].range;
-        bool sound = true;  // without branches, so that it vectorises
-        for (const float x : sample.values) sound &= std::isfinite(x) && range.contains(x);
-        if (!sound) return false;
-        values.insert(values.end(), sample.values.begin(), sample.values.end());
-    }
-    return true;
 }
 
 std::optional<Collection> collect(const check::Model& model, const std::vector<Need>& needs,

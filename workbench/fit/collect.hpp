@@ -84,11 +84,6 @@ std::optional<Collection> collect(const check::Model& model, const std::vector<N
                                   const std::vector<Measured>& measured, const Request& request,
                                   diag::Sink& sink);
 
-/// Reads the samples of a point without projections; returns false where one is missing or not
-/// finite.
-bool read_point(const check::Model& model, Index point, const std::vector<plan::Sample>& samples,
-                std::vector<float>& values);
-
 /// Returns the innermost point, without projections.
 Index innermost(const check::Model& model, Index point);
 

@@ -9,6 +9,7 @@
 #include <memory>
 #include <set>
 
+#include "episodes/recent_frames.hpp"
 #include "episodes/parallel.hpp"
 #include "episodes/replay.hpp"
 #include "plan/plan.hpp"
@@ -110,10 +111,13 @@ class Measurer {
 public:
     Measurer(const check::Model& model, const std::vector<std::unique_ptr<Fold>>& folds,
              const Collection& collection, const std::vector<Measured>& predicates)
-        : folds_(folds), collection_(collection), predicates_(predicates) {
+        : folds_(folds),
+          collection_(collection),
+          predicates_(predicates),
+          plain_(plain_needs(model, predicates)),
+          recent_(model, points_of(plain_)) {
         for (const auto& fold : folds)
             followers_.push_back(std::make_unique<episodes::Follower>(fold->plan));
-        for (const Measured& one : predicates) plain_.push_back(plain_need(model, one.predicate));
     }
 
     diag::Result<Episode> score(const std::string& path) {
@@ -122,7 +126,9 @@ public:
         const auto frames = collection_.readings.open(episode);
         if (!frames) return frames.failure();
         Episode result(predicates_.size());
+        recent_.reset();
         const auto done = episodes::replay(**frames, {followers_[at].get()}, [&] {
+            recent_.push((**frames).samples());
             for (std::size_t i = 0; i < predicates_.size(); ++i)
                 add(*folds_[at], *followers_[at], **frames, episode, i, result[i]);
             return true;
@@ -132,6 +138,21 @@ public:
     }
 
 private:
+    static std::vector<std::optional<Need>> plain_needs(const check::Model& model,
+                                                        const std::vector<Measured>& predicates) {
+        std::vector<std::optional<Need>> result;
+        for (const Measured& one : predicates)
+            result.push_back(plain_need(model, one.predicate));
+        return result;
+    }
+
+    static std::vector<Index> points_of(const std::vector<std::optional<Need>>& needs) {
+        std::vector<Index> points;
+        for (const auto& need : needs)
+            if (need) points.push_back(need->point);
+        return points;
+    }
+
     void add(const Fold& fold, const episodes::Follower& follower, const episodes::Frames& frames,
              std::size_t episode, std::size_t i, Ranked& ranked) {
         const Label label = frames.label(predicates_[i].label);
@@ -144,7 +165,7 @@ private:
         if (!std::isnan(delta))
             ranked.after.push_back({{upper ? -delta : delta, number, positive}, step});
         if (!plain_[i] || !fold.means[i] ||
-            !read_point(fold.model, plain_[i]->point, frames.samples(), point_))
+            !recent_.read(plain_[i]->point, point_))
             return;
         const Eigen::Map<const Eigen::VectorXf> point(point_.data(),
                                                       static_cast<Eigen::Index>(point_.size()));
@@ -157,6 +178,7 @@ private:
     const std::vector<Measured>& predicates_;
     std::vector<std::unique_ptr<episodes::Follower>> followers_;  ///< per fold
     std::vector<std::optional<Need>> plain_;                      ///< per predicate
+    episodes::RecentFrames recent_;
     std::vector<float> point_;
 };
 
@@ -202,13 +224,16 @@ std::optional<Index> refused_for(const Filled& filled, Index predicate) {
     };
     check::for_each_distance(model.predicates[predicate].expression, [&](Index d) {
         const check::Distance& distance = model.distances[d];
-        const check::Target& target = model.targets[distance.target];
-        look(target.fitted);
-        if (target.source != kNone) look(model.targets[target.source].fitted);
+        if (!distance.is_between_points()) {
+            const check::Target& target = model.targets[distance.target];
+            look(target.fitted);
+            if (target.source != kNone) look(model.targets[target.source].fitted);
+        }
         look(distance.weights_fitted);
-        for (Index at = distance.point; model.points[at].is_projected();
-             at = model.points[at].inner)
-            look(model.projections[model.points[at].projection].fitted);
+        for (const Index point : {distance.point, distance.other})
+            for (Index at = point; at != kNone; at = model.points[at].inner)
+                if (model.points[at].is_projected())
+                    look(model.projections[model.points[at].projection].fitted);
     });
     return found;
 }
@@ -217,8 +242,10 @@ std::optional<Need> plain_need(const check::Model& model, Index predicate) {
     std::set<Index> points;
     check::for_each_distance(model.predicates[predicate].expression, [&](Index distance) {
         points.insert(innermost(model, model.distances[distance].point));
+        if (model.distances[distance].is_between_points())
+            points.insert(innermost(model, model.distances[distance].other));
     });
-    if (points.size() != 1) return std::nullopt;
+    if (points.size() != 1 || !check::is_recorded(model, *points.begin())) return std::nullopt;
     return Need{Need::Kind::mean, *points.begin(), kNone, predicate};
 }
 

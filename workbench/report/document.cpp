@@ -203,7 +203,7 @@ Json monitor_json(const check::Model& model, const plan::Monitor& monitor) {
 Json plane_json(const check::Model& model, const Plane& plane) {
     std::vector<Index> targets;
     for (const check::Distance& distance : model.distances)
-        if (distance.point == plane.point &&
+        if (distance.point == plane.point && !distance.is_between_points() &&
             std::find(targets.begin(), targets.end(), distance.target) == targets.end())
             targets.push_back(distance.target);
     Json shown = Json::array();
@@ -283,7 +283,9 @@ Json inputs_json(const plan::Plan& plan, const Totals& totals) {
 }  // namespace
 
 Index declared_target(const check::Model& model, const check::Predicate& predicate) {
-    if (!predicate.plain_distance()) return check::kNone;
+    if (!predicate.plain_distance() ||
+        model.distances[predicate.expression.index].is_between_points())
+        return check::kNone;
     return declared(model, model.distances[predicate.expression.index].target);
 }
 

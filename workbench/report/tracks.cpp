@@ -48,7 +48,7 @@ bool same_numbers(const Numbers& a, const Numbers& b) {
 bool has_row(const check::Predicate& predicate, const check::Model& model) {
     if (!predicate.plain_distance()) return false;
     const check::Distance& distance = model.distances[predicate.expression.index];
-    return distance.aggregation == check::Aggregation::min;
+    return distance.aggregation == check::Aggregation::min && !distance.is_between_points();
 }
 
 }  // namespace

@@ -108,6 +108,7 @@ private:
         }
         if (const auto* point = std::get_if<ast::Point>(&argument.value)) {
             fitted_.point = check_point(c_, *point);
+            if (fitted_.point != kNone && !is_of_recorded(fitted_.point)) fitted_.point = kNone;
         } else if (number == nullptr) {
             where_ = std::get<ast::FormulaPtr>(argument.value).get();
         } else if (key == "away") {
@@ -115,6 +116,17 @@ private:
         } else {
             count_ = number;
         }
+    }
+
+    /// What is fitted is taken from recorded samples, then projected: a projection stands outside.
+    bool is_of_recorded(Index point) {
+        Index at = point;
+        while (c_.model.points[at].is_projected()) at = c_.model.points[at].inner;
+        if (is_recorded(c_.model, at)) return true;
+        return c_.refuse(Code::fitting_argument, written_.span,
+                         fmt::format("{} is fitted to what a step computes; expected projections "
+                                     "outside, as in P(z@2) for P(z)@2, or P([z, z@2])",
+                                     c_.model.points[point].text));
     }
 
     void require_all() {

@@ -116,6 +116,29 @@ bool rests_on_fitted(const Model& model, const Distance& distance) {
            (distance.is_between_points() && rests_on_fitted(model, distance.other));
 }
 
+Index as_of_now(const Model& model, Index index) {
+    const Point& point = model.points[index];
+    if (point.is_joined()) return kNone;
+    if (point.is_delayed()) return as_of_now(model, point.inner);
+    if (!point.is_projected()) return index;
+    const Index inner = as_of_now(model, point.inner);
+    if (inner == point.inner || inner == kNone) return inner == kNone ? kNone : index;
+    const auto found = std::find_if(
+        model.points.begin(), model.points.end(), [&](const Point& other) {
+            return other.projection == point.projection && other.inner == inner;
+        });
+    return found == model.points.end() ? kNone
+                                       : static_cast<Index>(found - model.points.begin());
+}
+
+bool is_recorded(const Model& model, Index index) {
+    const Point& point = model.points[index];
+    if (point.is_projected()) return false;
+    if (point.inner != kNone) return is_recorded(model, point.inner);
+    return std::all_of(point.parts.begin(), point.parts.end(),
+                       [&](Index part) { return is_recorded(model, part); });
+}
+
 std::string projection_hash(const Projection& projection) {
     std::vector<float> values = projection.matrix;
     values.insert(values.end(), projection.offset.begin(), projection.offset.end());

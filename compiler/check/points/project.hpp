@@ -32,6 +32,13 @@ std::optional<Index> fill(Model& model, Index fitted, const Filling& filling);
 /// Whether the distance depends on something fitted.
 bool rests_on_fitted(const Model& model, const Distance& distance);
 
+/// Returns the point of the model that a delayed one is the earlier value of, also inside of
+/// projections; kNone for points put together.
+Index as_of_now(const Model& model, Index point);
+
+/// Whether a point consists of samples alone, now and of earlier steps, without projections.
+bool is_recorded(const Model& model, Index point);
+
 /// Returns the content hash of a projection's matrix, with the offset as one more row.
 std::string projection_hash(const Projection& projection);
 

@@ -106,6 +106,8 @@ public:
     etlmon::Measured measured(Index distance) const { return distances_[distance]; }
     /// Returns the elements of a point of the model that is measured; null where unknown.
     const float* point(Index point) const { return point_at_[point]; }
+    /// Returns the elements that it had `ago` steps before, where a point of the model needs them.
+    const float* point(Index point, std::uint32_t ago) const;
     /// Returns the rows that may be nearest to z, for a distance by full weights to its nearest row
     /// (near_rows.hpp).
     const std::vector<std::uint32_t>& near_rows(Index distance, const float* z,
@@ -153,6 +155,7 @@ private:
     const float* join(const check::Point& point, float* elements) const;
     const EarlierSamples& earlier_of(Index point) const;
     void keep_points();
+    void keep_for(Index point, std::uint32_t ago, std::map<Index, std::uint32_t>& longest) const;
     void measure_distances();
     void measure_predicates();
     /// Returns whether all distances of a predicate are known.

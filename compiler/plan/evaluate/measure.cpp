@@ -35,8 +35,10 @@ void Evaluator::prepare_distances() {
         if (model_.points[p].kind != check::Point::Kind::embedding)
             points_[p].resize(model_.points[p].dimension);
     measured_points_ = points_of(model_, plan_.distances);
-    for (const EarlierPoint& earlier : earlier_points(model_, plan_.distances))
-        earlier_.push_back({earlier.point, earlier.steps, model_.points[earlier.point].dimension});
+    std::map<Index, std::uint32_t> longest;
+    for (const Index p : measured_points_) keep_for(p, 0, longest);
+    for (const auto& [point, steps] : longest)
+        earlier_.push_back({point, steps + 1, model_.points[point].dimension});
     for (Index p : measured_points_)
         if (model_.points[p].is_projected())
             centred_.resize(std::max<std::size_t>(
@@ -62,6 +64,21 @@ void Evaluator::prepare_distances() {
     for (const check::Predicate& predicate : model_.predicates)
         contrast_cuts_.push_back(contrast_cuts(plan_, predicate));
     contrast_rows_.resize(model_.predicates.size());
+}
+
+/// Finds what a point of `ago` steps before rests on, and how long ago. Calibration also needs what
+/// a delayed point was projected from.
+void Evaluator::keep_for(Index index, std::uint32_t ago,
+                         std::map<Index, std::uint32_t>& longest) const {
+    const check::Point& point = model_.points[index];
+    if (!point.is_delayed() && ago > 0) longest[index] = std::max(longest[index], ago);
+    if (point.inner != kNone) keep_for(point.inner, ago + point.steps, longest);
+    for (const Index part : point.parts) keep_for(part, ago, longest);
+}
+
+const float* Evaluator::point(Index point, std::uint32_t ago) const {
+    // The point of this step has been kept already.
+    return ago == 0 ? point_at_[point] : earlier_of(point).at(ago + 1);
 }
 
 void Evaluator::measure_points() {

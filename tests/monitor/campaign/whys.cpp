@@ -50,7 +50,9 @@ std::optional<Why> expected(const Observations& observations, const Explanation&
     const check::Predicate& predicate = observations.predicate(sample.atom);
     why.predicate = predicate.shown();
     why.threshold = predicate.threshold.value;
-    if (predicate.plain_distance() && !observations.is_missing(sample))
+    const bool has_rows = predicate.plain_distance() &&
+                          !check::measured_targets(observations.model(), predicate).empty();
+    if (has_rows && !observations.is_missing(sample))
         why.row = observations.nearest(sample, 0);
     return why;
 }

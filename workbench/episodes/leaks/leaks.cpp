@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "check/points/project.hpp"
+
 namespace etlc::episodes {
 
 namespace {
@@ -35,11 +37,16 @@ const check::Target& declared_target(const check::Model& model, const Distance& 
     return model.targets[declared(model, distance)];
 }
 
+/// Returns the point that a distance is measured from, without its delay.
+Index point_of(const check::Model& model, const Distance& distance) {
+    return check::as_of_now(model, distance.point);
+}
+
 /// Returns the point in whose space the rows were declared.
 Index declared_space(const check::Model& model, const Distance& distance) {
     const Index space = declared_target(model, distance).space;
     if (space != check::kNone) return space;
-    Index at = distance.point;
+    Index at = point_of(model, distance);
     while (model.points[at].is_projected()) at = model.points[at].inner;
     return at;
 }
@@ -81,6 +88,11 @@ std::vector<float> gathered(const check::Model& model, const Distance& distance,
     return point;
 }
 
+/// Returns false between two points, and from points put together, of which no frame is a row.
+bool has_frames(const check::Model& model, const Distance& distance) {
+    return !distance.is_between_points() && point_of(model, distance) != check::kNone;
+}
+
 /// Compares numbers of a row and a sample: they differ where rounding of the sample cannot explain
 /// it.
 struct Rounded {
@@ -107,6 +119,7 @@ double rounding_of_length(const Input& input, const std::vector<float>& z, doubl
 Leaks::Leaks(const check::Model& model, const std::vector<Index>& predicates) : model_(model) {
     for (const Index predicate : predicates)
         check::for_each_distance(model.predicates[predicate].expression, [&](Index distance) {
+            if (!has_frames(model, model.distances[distance])) return;
             if (!may_be_recorded(model, model.distances[distance])) return;
             if (declared_target(model, model.distances[distance]).space == check::kNone)
                 watch(predicate, distance);
@@ -119,7 +132,7 @@ void Leaks::watch(Index predicate, Index index) {
     const check::Target& target = declared_target(model_, distance);
     Watched watched{predicate, index, false, {}, {}};
     watched.by_direction = target.dimension > 1 && check::is_of_directions(distance.metric) &&
-                           !model_.points[distance.point].is_projected();
+                           !model_.points[point_of(model_, distance)].is_projected();
     const bool known = std::any_of(watched_.begin(), watched_.end(), [&](const Watched& other) {
         const Distance& of = model_.distances[other.distance];
         return inputs_of(model_, of) == inputs_of(model_, distance) &&
@@ -150,7 +163,8 @@ void Leaks::watch_near(Index predicate, Index index) {
     };
     const Index space = declared_space(model_, distance);
     add(space, declared(model_, distance));
-    if (space != distance.point) add(distance.point, distance.target);
+    const Index point = point_of(model_, distance);
+    if (space != point) add(point, distance.target);
 }
 
 void Leaks::find_near(const std::vector<plan::Sample>& samples, std::uint64_t frame,

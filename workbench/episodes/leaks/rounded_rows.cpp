@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "check/points/project.hpp"
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
 
@@ -61,7 +62,7 @@ RoundedRows::RoundedRows(const check::Model& model, Index distance, Index point,
     : model_(model), point_(point), target_(target), norms_(model.projections.size()) {
     const check::Distance& of = model.distances[distance];
     const check::Target& rows = model.targets[target];
-    if (of.point == point) {
+    if (check::as_of_now(model, of.point) == point) {
         by_direction_ = rows.dimension > 1 && check::is_of_directions(of.metric);
         if (of.weights_diagonal) weights_ = of.weights;
     }
