@@ -147,7 +147,7 @@ void visit(check::Model&, check::Projection& of, Changing& changing) {
 
 void visit(check::Model& model, check::Point& of, Changing& changing) {
     changing.of("Point");
-    auto& [kind, inputs, dimension, projection, inner, text] = of;
+    auto& [kind, inputs, dimension, projection, inner, steps, parts, text] = of;
     field(changing, "kind", kind);
     field(changing, "inputs", inputs);
     field(changing, "dimension", dimension);
@@ -156,6 +156,8 @@ void visit(check::Model& model, check::Point& of, Changing& changing) {
     field(changing, "text", text);
     // Only to earlier ones.
     if (inner != kNone) field(changing, "inner", Place{inner, inner + 1});
+    field(changing, "steps", steps);
+    for (Index& part : parts) field(changing, "parts", Place{part, part + 1});
 }
 
 void visit(check::Model& model, check::Target& of, Changing& changing) {
@@ -300,10 +302,11 @@ void visit(check::Model& model, check::Input& of, Changing& changing) {
 
 void visit(check::Model& model, check::Distance& of, Changing& changing) {
     changing.of("Distance");
-    auto& [point, target, metric, aggregation, kth, weights, weights_diagonal, weights_fitted,
-           weights_path, text, span] = of;
+    auto& [point, target, other, metric, aggregation, kth, weights, weights_diagonal,
+           weights_fitted, weights_path, text, span] = of;
     field(changing, "point", Place{point, model.points.size()});
-    field(changing, "target", Place{target, model.targets.size()});
+    if (target != kNone) field(changing, "target", Place{target, model.targets.size()});
+    if (other != kNone) field(changing, "other", Place{other, model.points.size()});
     field(changing, "metric", metric);
     field(changing, "aggregation", aggregation);
     field(changing, "kth", kth);

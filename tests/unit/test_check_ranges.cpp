@@ -23,7 +23,8 @@ float value_of(const Expr& e, const std::vector<float>& inputs) {
     switch (e.kind) {
         case Expr::Kind::number: return e.number32;
         case Expr::Kind::scalar: return inputs[e.index];
-        case Expr::Kind::distance: break;
+        case Expr::Kind::distance:
+        case Expr::Kind::past: break;
         case Expr::Kind::negate: return -a[0];
         case Expr::Kind::add: return a[0] + a[1];
         case Expr::Kind::subtract: return a[0] - a[1];

@@ -11,6 +11,7 @@
 #include "check/matrices/matrices.hpp"
 #include "check/numbers/decimal.hpp"
 #include "check/points/points.hpp"
+#include "check/points/project.hpp"
 
 namespace etlc::check {
 
