@@ -18,17 +18,18 @@ using Samples = std::vector<std::vector<float>>;
 /// `hold` applied.
 std::vector<Samples> accept(const check::Model& model, const Trace& trace);
 
-/// The delta of a predicate, nothing where unknown; the nearest row of a plain distance.
+/// The delta of a predicate at a step of the trace, nothing where unknown; the nearest row of a
+/// plain distance.
 struct Measurement {
     std::optional<double> delta;
     std::uint32_t nearest = 0;
 };
 Measurement measure(const check::Model& model, const check::Predicate& predicate,
-                    const Samples& samples);
+                    const std::vector<Samples>& trace, std::size_t step);
 
 /// Returns d aggregated over the target set, with the row of the smallest d; nothing where the
 /// point is missing, or the zero vector under cosine and angular.
 Measurement distance(const check::Model& model, const check::Distance& distance,
-                     const Samples& samples);
+                     const std::vector<Samples>& trace, std::size_t step);
 
 }  // namespace etlc::reference

@@ -135,8 +135,8 @@ bool is_zero(const Vector& point) {
 }  // namespace
 
 Measurement distance(const check::Model& model, const check::Distance& distance,
-                     const Samples& samples) {
-    const Vector point = point_of(model, distance.point, samples);
+                     const std::vector<Samples>& trace, std::size_t step) {
+    const Vector point = point_of(model, distance.point, trace[step]);
     if (point.empty()) return {};
     const bool needs_direction =
         distance.metric == Metric::cosine || distance.metric == Metric::angular;

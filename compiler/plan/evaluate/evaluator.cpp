@@ -39,6 +39,8 @@ Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
     }
     distances_.resize(model_.distances.size());
     enclosed_.resize(model_.distances.size());
+    for (const Index past : plan.pasts) past_states_.emplace_back(model_.pasts[past]);
+    pasts_.resize(model_.pasts.size());
     measured_.resize(model_.predicates.size());
     for (const check::Predicate& predicate : model_.predicates)
         thresholds_.push_back(predicate.threshold.value);
@@ -68,6 +70,8 @@ void Evaluator::reset() {
     for (StreamState& state : stream_states_) reset_stream(state);
     for (std::size_t i = 0; i < plan_.readings.size(); ++i)
         reset_reading(plan_.readings[i], reading_states_[i]);
+    for (PastState& past : past_states_) past.reset();
+    std::fill(pasts_.begin(), pasts_.end(), etlmon::kMissing);
     std::fill(measured_.begin(), measured_.end(), etlmon::Measured{etlmon::kMissing, 0});
     std::fill(verdicts_.begin(), verdicts_.end(), etlmon::Verdict{});
     lets_.assign(plan_.lets.size(), etlmon::Verdict{});
@@ -85,6 +89,7 @@ const std::vector<etlmon::Verdict>& Evaluator::step(const std::vector<Sample>& s
     restart_those_due();
     take_inputs(samples);
     measure_distances();
+    take_pasts();
     measure_predicates();
     advance_streams();
     advance_readings();
@@ -186,17 +191,17 @@ void Evaluator::measure_predicates() {
         if (stream.op == StreamOp::flag) missing |= inputs_[stream.index] == nullptr;
     for (Index p : plan_.predicates) {
         const check::Predicate& predicate = model_.predicates[p];
-        const bool present = std::all_of(predicate.inputs.begin(), predicate.inputs.end(),
-                                         [&](Index input) { return inputs_[input] != nullptr; });
         etlmon::Measured measured{etlmon::kMissing, 0};
-        if (present && predicate.plain_distance())
-            measured = distances_[predicate.expression.index];
-        const bool is_contrast = present && !contrast_cuts_[p].empty();
+        if (predicate.plain_distance()) measured = distances_[predicate.expression.index];
+        const bool is_contrast =
+            !contrast_cuts_[p].empty() &&
+            std::all_of(predicate.inputs.begin(), predicate.inputs.end(),
+                        [&](Index input) { return inputs_[input] != nullptr; });
         const etlmon::Enclosed contrast =
             is_contrast ? measure_contrast(predicate) : etlmon::Enclosed{};
         if (is_contrast)
             measured.delta = contrast.measured.delta;
-        else if (present && !predicate.plain_distance())
+        else if (!predicate.plain_distance())
             measured.delta = expression(predicate.expression);
         measured_[p] = measured;
         predicate_values_[p] = value_of(predicate, measured.delta, thresholds_[p], plan_.values);

@@ -16,6 +16,7 @@
 #include "etlmon/temporal/verdict.hpp"
 #include "plan/evaluate/inputs.hpp"
 #include "plan/evaluate/near_rows.hpp"
+#include "plan/evaluate/past_state.hpp"
 #include "plan/program/program.hpp"
 
 namespace etlc::plan {
@@ -99,10 +100,12 @@ public:
     float threshold(Index predicate) const { return thresholds_[predicate]; }
     void observe(Index predicate, float distance, bool truth);
 
-    /// Return what the predicates of the last step were computed from: an input's values after
-    /// `hold`, null where missing, and a distance with its nearest row, by index in the model.
+    /// Return what the predicates of the last step were computed from, by index in the model: an
+    /// input's values after `hold`, null where missing, and a distance with its nearest row.
     const float* input(Index input) const { return inputs_[input]; }
     etlmon::Measured measured(Index distance) const { return distances_[distance]; }
+    /// Returns a number that earlier steps have a part in; NaN where it is missing.
+    float past(Index past) const { return pasts_[past]; }
     /// Returns the elements of a point of the model that is measured; null where unknown.
     const float* point(Index point) const { return point_at_[point]; }
     /// Returns the rows that may be nearest to z, for a distance by full weights to its nearest row
@@ -150,6 +153,7 @@ private:
     void measure_points();
     const float* take_point(Index point);
     void measure_distances();
+    void take_pasts();
     void measure_predicates();
     etlmon::Enclosed measure(Index distance, const float* z);
     etlmon::Measured measure_wide(Index distance, const float* z);
@@ -197,6 +201,8 @@ private:
     std::vector<std::vector<Cut>> contrast_cuts_;
     /// Per predicate: the nearest rows of its two distances, where it has such cuts.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> contrast_rows_;
+    std::vector<PastState> past_states_;  ///< as plan.pasts
+    std::vector<float> pasts_;            ///< per past number of the model: at this step
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
     std::vector<float> thresholds_;        ///< per predicate

@@ -172,6 +172,14 @@ etlmon::Measured Evaluator::measure_near(Index d, const float* z) {
     return measured;
 }
 
+/// Advances the numbers that earlier steps have a part in, each after those that it contains.
+void Evaluator::take_pasts() {
+    for (std::size_t i = 0; i < past_states_.size(); ++i) {
+        const Index past = plan_.pasts[i];
+        pasts_[past] = past_states_[i].push(expression(model_.pasts[past].expression));
+    }
+}
+
 /// Evaluates EXPR in float32, rounding each operation once; NaN where an operand is.
 float Evaluator::expression(const Expr& e) const {
     const auto at = [&](std::size_t i) { return expression(e.arguments[i]); };
@@ -182,9 +190,10 @@ float Evaluator::expression(const Expr& e) const {
     };
     switch (e.kind) {
         case Expr::Kind::number: return e.number32;
-        case Expr::Kind::scalar: return *inputs_[e.index];
+        case Expr::Kind::scalar:
+            return inputs_[e.index] != nullptr ? *inputs_[e.index] : etlmon::kMissing;
         case Expr::Kind::distance: return distances_[e.index].delta;
-        case Expr::Kind::past: return etlmon::kMissing;
+        case Expr::Kind::past: return pasts_[e.index];
         case Expr::Kind::negate: return etlmon::negate(at(0));
         case Expr::Kind::add: return etlmon::add(at(0), at(1));
         case Expr::Kind::subtract: return etlmon::subtract(at(0), at(1));
