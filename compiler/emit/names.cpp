@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "emit/text/identifiers.hpp"
-#include "plan/program/sample_codes.hpp"
+#include "plan/program/scalar_uses.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
@@ -60,18 +60,6 @@ std::string predicate_name(const check::Predicate& predicate) {
     return identifier(predicate.text + predicate.threshold.text, "comparison");
 }
 
-/// Counts how often measure() names a scalar. A point is checked before it is measured.
-std::map<check::Index, int> scalar_uses(const plan::Plan& plan) {
-    std::map<check::Index, int> uses;
-    for (check::Index p : plan.predicates)
-        check::for_each(plan.model->predicates[p].expression, [&](const check::Expr& e) {
-            if (e.kind == check::Expr::Kind::scalar) ++uses[e.index];
-        });
-    for (check::Index d : plan.distances)
-        for (check::Index i : plan.model->point_of(d).inputs) uses[i] += 2;
-    return uses;
-}
-
 class Naming {
 public:
     explicit Naming(const plan::Plan& plan)
@@ -121,7 +109,7 @@ private:
     }
 
     void name_measurements() {
-        std::map<check::Index, int> uses = scalar_uses(plan_);
+        std::map<check::Index, int> uses = plan::scalar_uses(plan_);
         for (check::Index i : plan_.inputs) {
             const check::Input& input = model_.inputs[i];
             if (uses[i] == 1 && !input.has_state()) continue;  // a scalar, read in place
@@ -151,6 +139,11 @@ private:
         }
         for (check::Index d : plan_.distances)
             names_.distance_local[d] = local(measure_, distance_name(model_.distances[d]));
+        for (check::Index p : plan_.pasts) {
+            const std::string name = name_of(model_, model_.pasts[p]);
+            names_.past_local[p] = local(measure_, name);
+            names_.past_member[p] = member(members_, name);
+        }
     }
 
     /// Returns "min_l2_z_goal"; "to_goal" if that is too long, or may change in a retargetable
@@ -327,11 +320,15 @@ private:
 
     void name_numbers() {
         Scope scope;
-        for (check::Index p : plan_.predicates)
-            check::for_each(model_.predicates[p].expression, [&](const check::Expr& e) {
+        const auto name = [&](const check::Expr& expression, const std::string& of) {
+            check::for_each_of_step(expression, [&](const check::Expr& e) {
                 if (e.kind == check::Expr::Kind::number)
-                    names_.number_constant[&e] = scope.number(names_.predicate_atom[p]);
+                    names_.number_constant[&e] = scope.number(of);
             });
+        };
+        for (check::Index p : plan_.predicates)
+            name(model_.predicates[p].expression, names_.predicate_atom[p]);
+        for (check::Index p : plan_.pasts) name(model_.pasts[p].expression, names_.past_local[p]);
     }
 
     void name_constants() {

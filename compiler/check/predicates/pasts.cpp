@@ -27,8 +27,8 @@ std::optional<std::uint32_t> window_steps(Context& c, PastKind kind, const ast::
                                                                 : time.number.constant;
         auto& error = c.report(
             Code::past_form, time.span,
-            fmt::format("{} has no unit; write '{}({}, {} steps)', or a unit of time: '{} s'",
-                        shown(time.number), word(kind), "EXPR", number, number));
+            fmt::format("the time of a {} needs a unit; write '{} steps', or a duration: '{} s'",
+                        word(kind), number, number));
         error.meant = number + " steps";
         return std::nullopt;
     }
