@@ -17,7 +17,11 @@ using episodes::Label;
 
 /// Returns a formula of past operators over a, b and two comparisons.
 std::string past_formula(Random& random, int depth) {
-    if (depth == 0) return random.word({"a", "b", "(x > 0.375)", "(l2([x, y], goal) < 0.6875)"});
+    if (depth == 0)
+        return random.word({"a", "b", "(x > 0.375)", "(l2([x, y], goal) < 0.6875)",
+                            "(mean(y, 4 steps) + x@3 <= 0.25)", "(max(l1([x, y], goal), 3 steps) < 1)",
+                            "(min(x - y@1, 2 steps) > mean(x, 2 steps))",
+                            "(abs(mean(1 / y, 2 steps)) < 3)"});
     const auto operand = [&] {
         return "(" + past_formula(random, random.between(0, depth - 1)) + ")";
     };

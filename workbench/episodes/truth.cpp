@@ -56,6 +56,7 @@ TruthEvaluator::TruthEvaluator(const check::Model& model, const std::vector<Inde
     std::vector<bool> wanted(model.formulas.size());
     for (const Index formula : formulas) wanted[formula] = true;
     std::set<Index> inputs;
+    std::set<Index> pasts;
     for (Index i = static_cast<Index>(wanted.size()); i-- > 0;) {
         if (!wanted[i]) continue;
         const Formula& formula = model.formulas[i];
@@ -65,9 +66,14 @@ TruthEvaluator::TruthEvaluator(const check::Model& model, const std::vector<Inde
         if (formula.kind != Formula::Kind::predicate) continue;
         const std::vector<Index>& read = model.predicates[formula.index].inputs;
         inputs.insert(read.begin(), read.end());
+        check::for_each(model.predicates[formula.index].expression, [&](const Expr& e) {
+            if (e.kind == Expr::Kind::past) pasts.insert(e.index);
+        });
     }
     std::reverse(order_.begin(), order_.end());
     inputs_.assign(inputs.begin(), inputs.end());
+    read_pasts_.assign(pasts.begin(), pasts.end());
+    for (const Index past : read_pasts_) past_values_.emplace_back(model.pasts[past]);
     reset();
 }
 
@@ -79,11 +85,14 @@ void TruthEvaluator::reset() {
     held_.assign(model_.inputs.size(), {});
     ages_.assign(model_.inputs.size(), 0);
     freshness_.assign(model_.inputs.size(), {});
+    for (PastValues& past : past_values_) past.reset();
+    pasts_.assign(model_.pasts.size(), kUnknown);
 }
 
 void TruthEvaluator::step(const Frame& frame) {
     ++frame_;
     take_inputs(frame);
+    take_pasts();
     for (const Index index : order_) labels_[index] = value(index);
 }
 
@@ -100,6 +109,14 @@ void TruthEvaluator::take_inputs(const Frame& frame) {
         }
         values_[i] = ages_[i] < input.hold ? held_[i] : std::vector<double>{};
         ages_[i] += ages_[i] < input.hold ? 1 : 0;
+    }
+}
+
+/// A past number comes after those that it contains.
+void TruthEvaluator::take_pasts() {
+    for (std::size_t i = 0; i < read_pasts_.size(); ++i) {
+        const Index past = read_pasts_[i];
+        pasts_[past] = past_values_[i].push(expression(model_.pasts[past].expression));
     }
 }
 
@@ -169,9 +186,7 @@ Label TruthEvaluator::in_the_past(const Formula& formula, Memory& memory, Label 
 }
 
 Label TruthEvaluator::compare(const check::Predicate& predicate) const {
-    const bool present = std::none_of(predicate.inputs.begin(), predicate.inputs.end(),
-                                      [&](Index input) { return values_[input].empty(); });
-    const double delta = present ? expression(predicate.expression) : kUnknown;
+    const double delta = expression(predicate.expression);
     if (std::isnan(delta)) return Label::unknown;
     // Samples are float32, and monitors compare for equality in float32.
     if (predicate.equality())
@@ -192,9 +207,9 @@ double TruthEvaluator::expression(const Expr& e) const {
     };
     switch (e.kind) {
         case Expr::Kind::number: return e.number;
-        case Expr::Kind::scalar: return values_[e.index][0];
+        case Expr::Kind::scalar: return values_[e.index].empty() ? kUnknown : values_[e.index][0];
         case Expr::Kind::distance: return measure(model_.distances[e.index]);
-        case Expr::Kind::past: return kUnknown;
+        case Expr::Kind::past: return pasts_[e.index];
         case Expr::Kind::negate: return -at(0);
         case Expr::Kind::add: return at(0) + at(1);
         case Expr::Kind::subtract: return at(0) - at(1);
@@ -210,8 +225,10 @@ double TruthEvaluator::expression(const Expr& e) const {
 
 double TruthEvaluator::measure(const check::Distance& distance) const {
     std::vector<double> point;
-    for (const Index input : model_.points[distance.point].inputs)
+    for (const Index input : model_.points[distance.point].inputs) {
+        if (values_[input].empty()) return kUnknown;
         point.insert(point.end(), values_[input].begin(), values_[input].end());
+    }
     point = check::projected(model_, distance.point, std::move(point));
     return exact_distance(model_, distance, point).value_or(kUnknown);
 }

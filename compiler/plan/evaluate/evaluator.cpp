@@ -41,6 +41,7 @@ Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
     enclosed_.resize(model_.distances.size());
     for (const Index past : plan.pasts) past_states_.emplace_back(model_.pasts[past]);
     pasts_.resize(model_.pasts.size());
+    past_operands_.resize(model_.pasts.size());
     measured_.resize(model_.predicates.size());
     for (const check::Predicate& predicate : model_.predicates)
         thresholds_.push_back(predicate.threshold.value);

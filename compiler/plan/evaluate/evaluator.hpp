@@ -104,8 +104,9 @@ public:
     /// input's values after `hold`, null where missing, and a distance with its nearest row.
     const float* input(Index input) const { return inputs_[input]; }
     etlmon::Measured measured(Index distance) const { return distances_[distance]; }
-    /// Returns a number that earlier steps have a part in; NaN where it is missing.
-    float past(Index past) const { return pasts_[past]; }
+    /// Returns the value of the expression of a number that earlier steps have a part in; NaN where
+    /// it is missing.
+    float operand_of(Index past) const { return past_operands_[past]; }
     /// Returns the elements of a point of the model that is measured; null where unknown.
     const float* point(Index point) const { return point_at_[point]; }
     /// Returns the rows that may be nearest to z, for a distance by full weights to its nearest row
@@ -120,6 +121,9 @@ public:
     /// them.
     using PredicateValue = std::function<Value(Index predicate)>;
     void replace_predicate_values(PredicateValue value) { replacement_ = std::move(value); }
+    /// Calls `taken` at every step before predicates are measured, when inputs, distances and past
+    /// numbers are known.
+    void after_pasts(std::function<void()> taken) { after_pasts_ = std::move(taken); }
 
 private:
     struct Held {
@@ -203,11 +207,13 @@ private:
     std::vector<std::pair<std::uint32_t, std::uint32_t>> contrast_rows_;
     std::vector<PastState> past_states_;  ///< as plan.pasts
     std::vector<float> pasts_;            ///< per past number of the model: at this step
+    std::vector<float> past_operands_;    ///< likewise: its expression
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
     std::vector<float> thresholds_;        ///< per predicate
     std::vector<Value> predicate_values_;  ///< per predicate
     PredicateValue replacement_;
+    std::function<void()> after_pasts_;
     std::vector<Value> flags_;  ///< per input
     std::vector<Value> streams_;
     std::vector<StreamState> stream_states_;

@@ -176,8 +176,10 @@ etlmon::Measured Evaluator::measure_near(Index d, const float* z) {
 void Evaluator::take_pasts() {
     for (std::size_t i = 0; i < past_states_.size(); ++i) {
         const Index past = plan_.pasts[i];
-        pasts_[past] = past_states_[i].push(expression(model_.pasts[past].expression));
+        past_operands_[past] = expression(model_.pasts[past].expression);
+        pasts_[past] = past_states_[i].push(past_operands_[past]);
     }
+    if (after_pasts_) after_pasts_();
 }
 
 /// Evaluates EXPR in float32, rounding each operation once; NaN where an operand is.
