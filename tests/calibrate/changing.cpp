@@ -147,12 +147,14 @@ void visit(check::Model&, check::Projection& of, Changing& changing) {
 
 void visit(check::Model& model, check::Point& of, Changing& changing) {
     changing.of("Point");
-    auto& [kind, inputs, dimension, projection, inner, text] = of;
+    auto& [kind, inputs, dimension, projection, inner, steps, parts, text] = of;
     field(changing, "kind", kind);
     field(changing, "inputs", inputs);
     field(changing, "dimension", dimension);
     if (projection != kNone)
         field(changing, "projection", Place{projection, model.projections.size()});
+    field(changing, "steps", steps);
+    field(changing, "parts", parts);
     field(changing, "text", text);
     // Only to earlier ones.
     if (inner != kNone) field(changing, "inner", Place{inner, inner + 1});
@@ -185,9 +187,23 @@ void visit(check::Model& model, check::Expr& of, Changing& changing) {
     field(changing, "number32", number32);
     if (kind == check::Expr::Kind::scalar)
         field(changing, "index", Place{index, model.inputs.size()});
+    if (kind == check::Expr::Kind::past)
+        field(changing, "index", Place{index, model.pasts.size()});
     field(changing, "arguments", arguments);
     field(changing, "span", span);
     for (check::Expr& argument : arguments) visit(model, argument, changing);
+}
+
+void visit(check::Model& model, check::Past& of, Changing& changing) {
+    changing.of("Past");
+    auto& [kind, expression, formula, steps, text, range, span] = of;
+    field(changing, "kind", kind);
+    field(changing, "formula", Place{formula, model.formulas.size()});
+    field(changing, "steps", steps);
+    field(changing, "text", text);
+    field(changing, "range", range);
+    field(changing, "span", span);
+    visit(model, expression, changing);
 }
 
 void visit(check::Model&, check::Threshold& of, Changing& changing) {
@@ -300,10 +316,11 @@ void visit(check::Model& model, check::Input& of, Changing& changing) {
 
 void visit(check::Model& model, check::Distance& of, Changing& changing) {
     changing.of("Distance");
-    auto& [point, target, metric, aggregation, kth, weights, weights_diagonal, weights_fitted,
+    auto& [point, target, other, metric, aggregation, kth, weights, weights_diagonal, weights_fitted,
            weights_path, text, span] = of;
     field(changing, "point", Place{point, model.points.size()});
     field(changing, "target", Place{target, model.targets.size()});
+    if (other != kNone) field(changing, "other", Place{other, model.points.size()});
     field(changing, "metric", metric);
     field(changing, "aggregation", aggregation);
     field(changing, "kth", kth);
@@ -341,8 +358,8 @@ void visit(check::Model& model, check::Truth& of, Changing& changing) {
 
 void visit(check::Model& of, Changing& changing) {
     auto& [name, retargetable, constants, file, step_seconds, rounded, rounding, encoders, encoded,
-           inputs, projections, points, targets, fitted, distances, predicates, formulas, lets,
-           truths, monitors, dependencies, reservations] = of;
+           inputs, projections, points, targets, fitted, distances, pasts, predicates, formulas,
+           lets, truths, monitors, dependencies, reservations] = of;
     visit_all(of, encoders, changing);
     visit_all(of, inputs, changing);
     visit_all(of, projections, changing);
@@ -350,6 +367,7 @@ void visit(check::Model& of, Changing& changing) {
     visit_all(of, targets, changing);
     visit_all(of, fitted, changing);
     visit_all(of, distances, changing);
+    visit_all(of, pasts, changing);
     visit_all(of, predicates, changing);
     visit_all(of, formulas, changing);
     visit_all(of, lets, changing);
