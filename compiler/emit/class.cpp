@@ -50,6 +50,8 @@ std::vector<Member> own_members(const Context& context) {
                           name, "search state of " + context.model.distances[d].text,
                           name + ".reset();"});
     }
+    const std::vector<Member> pasts = past_members(context);
+    result.insert(result.end(), pasts.begin(), pasts.end());
     const std::vector<Member> telemetry = telemetry_members(context);
     result.insert(result.end(), telemetry.begin(), telemetry.end());
     const std::vector<Member> thresholds = threshold_members(context);

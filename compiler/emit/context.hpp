@@ -183,6 +183,8 @@ std::vector<Member> members(const Context& context);
 void print_restarts(Printer& out, const Context& context, const std::vector<Member>& all);
 /// Returns the members of readings and streams, as the plan lists them.
 std::vector<Member> temporal_members(const Context& context);
+/// Returns the members of numbers that earlier steps have a part in.
+std::vector<Member> past_members(const Context& context);
 /// Returns the comment of registers in an array, from the first to the last: "pending: b U[0, 23]
 /// c, ..., b U[0, 0] c". `more`: there are others between them.
 std::string comment_of_array(const Context& context, const plan::Member& first,

@@ -1,6 +1,7 @@
-// Declares the members that the plan lists for readings and streams.
+// Declares the members that the plan lists for readings, streams and numbers of earlier steps.
 #include <algorithm>
 
+#include "diag/diag.hpp"
 #include "emit/context.hpp"
 
 namespace etlc::emit {
@@ -79,6 +80,18 @@ void add_members(std::vector<Member>& result, const Context& context, std::size_
     }
 }
 
+std::string past_type(const check::Past& past) {
+    using Past = check::Past::Kind;
+    switch (past.kind) {
+        case Past::ago: return fmt::format("etlmon::Ago<{}>", past.steps);
+        case Past::mean: return fmt::format("etlmon::MovingMean<{}>", past.steps);
+        case Past::min: return fmt::format("etlmon::MovingMin<{}>", past.steps);
+        case Past::max: return fmt::format("etlmon::MovingMax<{}>", past.steps);
+        case Past::count: break;
+    }
+    return "";
+}
+
 }  // namespace
 
 std::string comment_of_array(const Context& context, const plan::Member& first,
@@ -87,6 +100,18 @@ std::string comment_of_array(const Context& context, const plan::Member& first,
     only_formulas.before.clear();
     return fmt::format("{}, {}{}", plan::comment_of(first, context.graph), more ? "..., " : "",
                        plan::comment_of(only_formulas, context.graph));
+}
+
+std::vector<Member> past_members(const Context& context) {
+    std::vector<Member> result;
+    for (const auto& [p, name] : context.names.past_member) {
+        const check::Past& past = context.model.pasts[p];
+        result.push_back({past_type(past), name,
+                          fmt::format("{} at the last {}", check::print(context.model, past.expression),
+                                      diag::counted(past.steps, "step")),
+                          name + ".reset();", ""});
+    }
+    return result;
 }
 
 std::vector<Member> temporal_members(const Context& context) {

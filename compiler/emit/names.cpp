@@ -4,9 +4,10 @@
 
 #include <algorithm>
 
+#include "emit/functions.hpp"
 #include "emit/measure/uses.hpp"
 #include "emit/text/identifiers.hpp"
-#include "plan/program/sample_codes.hpp"
+#include "plan/program/scalar_uses.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
@@ -27,29 +28,6 @@ std::string local(Scope& scope, const std::string& name) {
     return name.find('_') == std::string::npos ? scope.number(name) : scope.claim(name);
 }
 
-/// Returns the functions with an underscore in their names: of the runtime, and of the class, named
-/// after predicates and monitors.
-std::set<std::string> functions(const check::Model& model, const plan::Plan& plan) {
-    std::set<std::string> names{"max_of", "min_of"};
-    for (check::Index p : plan.predicates)
-        for (const char* prefix : {"distance_", "nearest_", "threshold_", "unseen_",
-                                   "initial_threshold_", "set_threshold_", "observe_"})
-            names.insert(prefix + model.predicates[p].name);
-    if (plan::value_type(plan.values).sourced)
-        for (const plan::Monitor& monitor : plan.monitors) names.insert("why_" + monitor.name);
-    for (const plan::Monitor& monitor : plan.monitors)
-        for (const char* prefix : {"restart_", "alarms_", "fulfilled_"})
-            if (monitor.restarts != check::Restarts::never) names.insert(prefix + monitor.name);
-    for (check::Index p : plan.predicates)
-        for (check::Index d : check::measured_targets(model, model.predicates[p]))
-            names.insert(fmt::format("nearest_{}_{}", model.predicates[p].name,
-                                     model.targets[model.distances[d].target].name));
-    for (const plan::Let& let : plan.lets)
-        for (const char* prefix : {"let_", "robustness_"})
-            names.insert(prefix + model.lets[let.index].name);
-    return names;
-}
-
 /// Returns whether the stream is a constant, a predicate or a bool input.
 bool is_atom(plan::StreamOp op) {
     return op == plan::StreamOp::constant || op == plan::StreamOp::predicate ||
@@ -68,8 +46,8 @@ public:
           model_(*plan.model),
           graph_(*plan.formulas),
           on_demand_(plan::value_type(plan.values).on_demand),
-          judge_(functions(model_, plan)),
-          measure_scope_(functions(model_, plan)),
+          judge_(function_names(plan)),
+          measure_scope_(function_names(plan)),
           measure_(on_demand_ ? judge_ : measure_scope_) {}
 
     Names name_all() {
@@ -110,7 +88,7 @@ private:
     }
 
     void name_measurements() {
-        std::map<check::Index, int> uses = scalar_uses(plan_);
+        std::map<check::Index, int> uses = plan::scalar_uses(plan_);
         for (check::Index i : plan_.inputs) {
             const check::Input& input = model_.inputs[i];
             if (uses[i] == 1 && !input.has_state()) continue;  // a scalar, read in place
@@ -144,6 +122,11 @@ private:
                 member(members_, identifier(model_.points[earlier.point].text, "point") + "_earlier");
         for (check::Index d : plan_.distances)
             names_.distance_local[d] = local(measure_, distance_name(model_.distances[d]));
+        for (check::Index p : plan_.pasts) {
+            const std::string name = name_of(model_, model_.pasts[p]);
+            names_.past_local[p] = local(measure_, name);
+            names_.past_member[p] = member(members_, name);
+        }
     }
 
     /// Returns "min_l2_z_goal"; "to_goal" if that is too long, or may change in a retargetable
@@ -321,11 +304,15 @@ private:
 
     void name_numbers() {
         Scope scope;
-        for (check::Index p : plan_.predicates)
-            check::for_each(model_.predicates[p].expression, [&](const check::Expr& e) {
+        const auto name = [&](const check::Expr& expression, const std::string& of) {
+            check::for_each_of_step(expression, [&](const check::Expr& e) {
                 if (e.kind == check::Expr::Kind::number)
-                    names_.number_constant[&e] = scope.number(names_.predicate_atom[p]);
+                    names_.number_constant[&e] = scope.number(of);
             });
+        };
+        for (check::Index p : plan_.predicates)
+            name(model_.predicates[p].expression, names_.predicate_atom[p]);
+        for (check::Index p : plan_.pasts) name(model_.pasts[p].expression, names_.past_local[p]);
     }
 
     void name_constants() {

@@ -30,6 +30,9 @@ struct Names {
     /// In measure(): widened elements, or a flag as a word.
     std::map<check::Index, std::string> input_buffer;
     std::map<check::Index, std::string> distance_local;  ///< in measure(): the result of the kernel
+    /// In measure(): a number that earlier steps have a part in, and what it is computed from.
+    std::map<check::Index, std::string> past_local;
+    std::map<check::Index, std::string> past_member;
     /// In measure(): delta of a predicate without telemetry.
     std::map<check::Index, std::string> predicate_local;
     /// Field of Atoms, or a local of a Boolean class.

@@ -16,6 +16,7 @@ std::pair<std::string_view, std::string> name_of(const Context& context, const P
         case Parameter::Kind::threshold:
             return {"thresholds", context.names.predicate_atom.at(one.index)};
         case Parameter::Kind::number:
+        case Parameter::Kind::in_past:
             return {"constants", context.names.number_constant.at(one.number)};
         case Parameter::Kind::rows: return {"targets", context.names.target_array.at(one.index)};
         case Parameter::Kind::weights: return {"targets", context.names.weight_array.at(one.index)};
@@ -40,6 +41,7 @@ std::string words_for(const Context& context, const Parameter& one) {
         case Parameter::Kind::threshold: return "";
         case Parameter::Kind::number:
             return "in the expression of " + model.predicates[one.index].name;
+        case Parameter::Kind::in_past: return "in " + model.pasts[one.index].text;
         case Parameter::Kind::rows:
             return rows +
                    (plan::rows_as_given(model.distances[one.index]) ? "" : ", scaled to length 1");

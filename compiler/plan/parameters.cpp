@@ -32,6 +32,8 @@ public:
 
     std::vector<Parameter> list() {
         for (const Index p : plan_.predicates) add_scalars(p);
+        for (const Index p : plan_.pasts)
+            add_numbers(Kind::in_past, p, model_.pasts[p].expression);
         for (const Index d : plan_.distances) add_distance(d);
         for (const Index p : projected_points(model_, plan_.distances))
             add_projection(model_.points[p].projection);
@@ -44,9 +46,13 @@ private:
         add({.kind = Kind::threshold,
              .index = p,
              .rule = predicate.plain_distance() ? ParamsPart::not_negative : ParamsPart::any});
-        check::for_each(predicate.expression, [&](const check::Expr& e) {
+        add_numbers(Kind::number, p, predicate.expression);
+    }
+
+    void add_numbers(Kind kind, Index index, const check::Expr& expression) {
+        check::for_each_of_step(expression, [&](const check::Expr& e) {
             if (e.kind == check::Expr::Kind::number)
-                add({.kind = Kind::number, .index = p, .number = &e});
+                add({.kind = kind, .index = index, .number = &e});
         });
     }
 
@@ -104,7 +110,8 @@ private:
 std::vector<float> values_of(const check::Model& model, const Parameter& parameter) {
     switch (parameter.kind) {
         case Kind::threshold: return {model.predicates[parameter.index].threshold.value};
-        case Kind::number: return {parameter.number->number32};
+        case Kind::number:
+        case Kind::in_past: return {parameter.number->number32};
         case Kind::rows: return prepared_rows(model, model.distances[parameter.index]);
         case Kind::weights: return model.distances[parameter.index].weights;
         case Kind::matrix: return model.projections[parameter.index].matrix;

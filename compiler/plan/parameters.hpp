@@ -17,6 +17,7 @@ struct Parameter {
     enum class Kind : std::uint8_t {
         threshold,  ///< threshold of predicate `index`
         number,     ///< `number` in the expression of predicate `index`
+        in_past,    ///< `number` in the expression of past number `index`
         rows,       ///< rows of distance `index` and of others to the same target
         weights,    ///< weights of distance `index`
         matrix,     ///< matrix of projection `index`

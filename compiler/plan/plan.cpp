@@ -19,14 +19,17 @@ namespace etlc::plan {
 
 namespace {
 
-/// Sets the inputs, distances and targets that these predicates and inputs need.
+/// Sets the inputs, distances, past numbers and targets that these predicates and inputs need.
 void need(Plan& plan, std::set<Index> inputs, const std::set<Index>& predicates) {
     const check::Model& model = *plan.model;
     std::set<Index> distances;
+    std::set<Index> pasts;
     for (Index p : predicates) {
         inputs.insert(model.predicates[p].inputs.begin(), model.predicates[p].inputs.end());
-        check::for_each_distance(model.predicates[p].expression,
-                                 [&](Index distance) { distances.insert(distance); });
+        check::for_each(model.predicates[p].expression, [&](const check::Expr& e) {
+            if (e.kind == check::Expr::Kind::distance) distances.insert(e.index);
+            if (e.kind == check::Expr::Kind::past) pasts.insert(e.index);
+        });
     }
     std::set<Index> targets;
     for (Index d : distances)
@@ -34,6 +37,7 @@ void need(Plan& plan, std::set<Index> inputs, const std::set<Index>& predicates)
     plan.inputs.assign(inputs.begin(), inputs.end());
     plan.predicates.assign(predicates.begin(), predicates.end());
     plan.distances.assign(distances.begin(), distances.end());
+    plan.pasts.assign(pasts.begin(), pasts.end());
     plan.targets.assign(targets.begin(), targets.end());
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace etlc::reference {
 namespace {
@@ -38,15 +39,19 @@ bool stale(const check::Input& input, const std::vector<std::vector<float>>& see
     return true;
 }
 
+double past(const check::Model& model, const Expr& expr, const std::vector<Samples>& trace,
+            std::size_t step);
+
 /// Evaluates in double; a NaN anywhere makes the whole expression NaN, also through min and max.
 double evaluate(const check::Model& model, const Expr& expr, const std::vector<Samples>& trace,
                 std::size_t step) {
-    const Samples& samples = trace[step];
+    if (expr.kind == Expr::Kind::past) return past(model, expr, trace, step);
     std::vector<double> a;
     for (const Expr& argument : expr.arguments) {
         a.push_back(evaluate(model, argument, trace, step));
         if (std::isnan(a.back())) return kUnknown;
     }
+    const Samples& samples = trace[step];
     switch (expr.kind) {
         case Expr::Kind::number: return expr.number32;
         case Expr::Kind::scalar:
@@ -54,7 +59,7 @@ double evaluate(const check::Model& model, const Expr& expr, const std::vector<S
         case Expr::Kind::distance:
             return distance(model, model.distances[expr.index], trace, step)
                 .delta.value_or(kUnknown);
-        case Expr::Kind::past: return kUnknown;
+        case Expr::Kind::past: break;
         case Expr::Kind::negate: return -a[0];
         case Expr::Kind::add: return a[0] + a[1];
         case Expr::Kind::subtract: return a[0] - a[1];
@@ -66,6 +71,25 @@ double evaluate(const check::Model& model, const Expr& expr, const std::vector<S
         case Expr::Kind::max: return *std::max_element(a.begin(), a.end());
     }
     return kUnknown;
+}
+
+/// "e@n at step i is the value of e at step i - n"; "mean, min and max of w steps at step i are over
+/// the values of e at steps i - w + 1 to i"; missing where one of these is.
+double past(const check::Model& model, const Expr& expr, const std::vector<Samples>& trace,
+            std::size_t step) {
+    using Kind = check::Past::Kind;
+    const check::Past& how = model.pasts[expr.index];
+    const std::size_t first = how.kind == Kind::ago ? how.steps : how.steps - 1;
+    if (step < first) return kUnknown;
+    if (how.kind == Kind::ago) return evaluate(model, expr.arguments[0], trace, step - how.steps);
+    std::vector<double> values;
+    for (std::size_t j = step - first; j <= step; ++j) {
+        values.push_back(evaluate(model, expr.arguments[0], trace, j));
+        if (std::isnan(values.back())) return kUnknown;
+    }
+    if (how.kind == Kind::min) return *std::min_element(values.begin(), values.end());
+    if (how.kind == Kind::max) return *std::max_element(values.begin(), values.end());
+    return std::accumulate(values.begin(), values.end(), 0.0) / how.steps;
 }
 
 }  // namespace

@@ -165,17 +165,16 @@ private:
     Run run_;
 
     void measure_all() {
-        for (std::size_t i = 0; i < samples_.size(); ++i) {
-            const Samples& samples = samples_[i];
-            std::vector<Telemetry> step;
+        for (std::size_t step = 0; step < samples_.size(); ++step) {
+            std::vector<Telemetry> measured;
             for (const check::Predicate& predicate : model_.predicates) {
-                const Measurement m = measure(model_, predicate, samples_, i);
-                step.push_back(
+                const Measurement m = measure(model_, predicate, samples_, step);
+                measured.push_back(
                     {m.delta.value_or(std::numeric_limits<double>::quiet_NaN()), m.nearest});
             }
-            run_.telemetry.push_back(std::move(step));
+            run_.telemetry.push_back(std::move(measured));
             std::vector<bool> present;
-            for (const auto& sample : samples) present.push_back(!sample.empty());
+            for (const auto& sample : samples_[step]) present.push_back(!sample.empty());
             run_.present.push_back(std::move(present));
         }
     }

@@ -153,6 +153,8 @@ void visit(check::Model& model, check::Point& of, Changing& changing) {
     field(changing, "dimension", dimension);
     if (projection != kNone)
         field(changing, "projection", Place{projection, model.projections.size()});
+    field(changing, "steps", steps);
+    field(changing, "parts", parts);
     field(changing, "text", text);
     // Only to earlier ones.
     if (inner != kNone) field(changing, "inner", Place{inner, inner + 1});
@@ -187,9 +189,23 @@ void visit(check::Model& model, check::Expr& of, Changing& changing) {
     field(changing, "number32", number32);
     if (kind == check::Expr::Kind::scalar)
         field(changing, "index", Place{index, model.inputs.size()});
+    if (kind == check::Expr::Kind::past)
+        field(changing, "index", Place{index, model.pasts.size()});
     field(changing, "arguments", arguments);
     field(changing, "span", span);
     for (check::Expr& argument : arguments) visit(model, argument, changing);
+}
+
+void visit(check::Model& model, check::Past& of, Changing& changing) {
+    changing.of("Past");
+    auto& [kind, expression, formula, steps, text, range, span] = of;
+    field(changing, "kind", kind);
+    field(changing, "formula", Place{formula, model.formulas.size()});
+    field(changing, "steps", steps);
+    field(changing, "text", text);
+    field(changing, "range", range);
+    field(changing, "span", span);
+    visit(model, expression, changing);
 }
 
 void visit(check::Model&, check::Threshold& of, Changing& changing) {
@@ -344,8 +360,8 @@ void visit(check::Model& model, check::Truth& of, Changing& changing) {
 
 void visit(check::Model& of, Changing& changing) {
     auto& [name, retargetable, constants, file, step_seconds, rounded, rounding, encoders, encoded,
-           inputs, projections, points, targets, fitted, distances, predicates, formulas, lets,
-           truths, monitors, dependencies, reservations] = of;
+           inputs, projections, points, targets, fitted, distances, pasts, predicates, formulas,
+           lets, truths, monitors, dependencies, reservations] = of;
     visit_all(of, encoders, changing);
     visit_all(of, inputs, changing);
     visit_all(of, projections, changing);
@@ -353,6 +369,7 @@ void visit(check::Model& of, Changing& changing) {
     visit_all(of, targets, changing);
     visit_all(of, fitted, changing);
     visit_all(of, distances, changing);
+    visit_all(of, pasts, changing);
     visit_all(of, predicates, changing);
     visit_all(of, formulas, changing);
     visit_all(of, lets, changing);

@@ -25,7 +25,7 @@ const std::string kReadSpec =
     "predicate p = min l2(Q(z), g) - kth(2) l1(w, g) <= calibrated(f1);\n"
     "truth p = (mahalanobis([[2, 0], [0, 1]])(z, k) < 3 || min(x, 2) * abs(y) > 0.5) && O[0, 2] "
     "c;\n"
-    "predicate q = x - 2 / y != 0.5 missing false; predicate r = l2([x, y], k) < 0.5;\n"
+    "predicate q = x@2 - 2 / max(y, 3 steps) != 0.5 missing false; predicate r = l2([x, y], k) < 0.5;\n"
     "truth r = O[1, 3] (b && l2(Q(z), h) > 1); predicate s = l2(z, k) < u;\n"
     "let often = p && q; monitor m = F[0, 4] (often && r && s && X b) calibrated(conformal, alpha "
     "= 0.1,\n"
@@ -69,10 +69,10 @@ const std::set<std::string> kUnread{
     "Projection.fitted", "Target.values", "Target.origin", "Target.path", "Target.encoded",
     "Target.fitted", "Distance.weights_fitted", "Distance.weights_path",
     // Part of the text.
-    "Point.kind", "Point.dimension", "Point.inner", "Expr.number", "Expr.number32",
-    "Predicate.inputs", "Threshold.value64",
+    "Point.kind", "Point.dimension", "Point.inner", "Point.steps", "Point.parts", "Past.kind",
+    "Past.steps", "Expr.number", "Expr.number32", "Predicate.inputs", "Threshold.value64",
     // Ranges follow from the expression, the inputs and the threshold.
-    "Predicate.delta", "Predicate.robustness",
+    "Past.range", "Predicate.delta", "Predicate.robustness",
     // The entry itself records the quality of the threshold.
     "Threshold.alpha", "Threshold.n", "Threshold.k", "Threshold.adaptation", "Monitor.calibration",
     // Derived.

@@ -17,7 +17,12 @@ using episodes::Label;
 
 /// Returns a formula of past operators over a, b and two comparisons.
 std::string past_formula(Random& random, int depth) {
-    if (depth == 0) return random.word({"a", "b", "(x > 0.375)", "(l2([x, y], goal) < 0.6875)"});
+    if (depth == 0)
+        return random.word({"a", "b", "(x > 0.375)", "(l2([x, y], goal) < 0.6875)",
+                            "(mean(y, 4 steps) + x@3 <= 0.28125)",
+                            "(max(l1([x, y], goal), 3 steps) < 1.125)",
+                            "(min(x - y@1, 2 steps) > mean(x, 2 steps) + 0.0625)",
+                            "(abs(mean(1 / y, 2 steps)) < 3.125)"});
     const auto operand = [&] {
         return "(" + past_formula(random, random.between(0, depth - 1)) + ")";
     };
@@ -107,6 +112,20 @@ TEST(Truth, ComparesDoublesExactly) {
     EXPECT_EQ(single("l1(z, g) < 0.25", 0), Label::no);
     EXPECT_EQ(single("x > 1", 1e39),
               Label::unknown);  // not a float32: the monitor treats it as missing
+}
+
+/// A sum of floats of any size and sign is exact, so nothing is left of what has gone.
+TEST(Truth, MeansForgetWhatIsGone) {
+    const auto model = load("spec t; input x : f32; sliding monitor m = mean(x, 3 steps) >= 1e-3;");
+    const check::Index formula = model->monitors[0].formula;
+    episodes::TruthEvaluator truth(*model, {formula});
+    Label last = Label::unknown;
+    for (const double x : {1e30, 1e-20, -1e30, 3e-3}) truth.step({{x}}), last = truth[formula];
+    EXPECT_EQ(last, Label::no);  // (1e-20 - 1e30 + 3e-3) / 3
+    for (const double x : {1e-20, 2.9e-3}) truth.step({{x}}), last = truth[formula];
+    EXPECT_EQ(last, Label::yes);
+    truth.step({{1e-20}});
+    EXPECT_EQ(truth[formula], Label::no);
 }
 
 TEST(Truth, DistancesInDouble) {

@@ -74,7 +74,7 @@ private:
     std::string comparison_of_scalars() {
         const auto side = [this] { return random_.chance(0.3) ? "c" : number(-3, 3); };
         const std::string op = random_.chance(0.5) ? random_.word({"==", "!="}) : compare();
-        const std::string input = random_.word({"x", "y"});
+        const std::string input = random_.word({"x", "y", "x@2", "max(y, 2 steps)"});
         if (random_.chance(0.3)) return fmt::format("x {} y", op);
         if (random_.chance(0.3)) return fmt::format("{} {} {}", side(), op, input);
         return fmt::format("{} {} {}", input, op, side());
@@ -236,7 +236,20 @@ private:
         return fmt::format("{} {}(v, {})", aggregation(target), metric(dimension_), target);
     }
 
+    /// A number that earlier steps have a part in. A mean of 2 or 4 is exact.
+    std::string past(const std::string& of) {
+        const int steps = random_.between(1, 4);
+        switch (random_.between(0, 3)) {
+            case 0: return fmt::format("({})@{}", of, steps);
+            case 1:
+                return fmt::format("mean({}, {} steps)", of, !exact_ || steps != 3 ? steps : 2);
+            case 2: return fmt::format("min({}, {} steps)", of, steps + 1);
+            default: return fmt::format("max({}, {} steps)", of, steps + 1);
+        }
+    }
+
     std::string scalar_term() {
+        if (random_.chance(0.2)) return past(scalar_term());
         if (random_.chance(0.3)) return random_.word({"x", "y"});
         switch (random_.between(0, exact_ ? 5 : 7)) {
             case 0: return fmt::format("{} * {}", number(-2, 2), random_.word({"x", "y"}));
@@ -259,8 +272,11 @@ private:
     std::string predicate() {
         const int kind = random_.between(0, 9);
         if (kind < 5) return fmt::format("{} {} {}", distance(), compare(), number(0, 6));
-        if (kind < 7)
+        if (kind < 6)
             return fmt::format("{} - {} {} {}", distance(), distance(), compare(), number(-2, 2));
+        if (kind < 7)
+            return fmt::format("{} - {} {} {}", past(distance()), random_.chance(0.5) ? "y" : distance(),
+                               compare(), number(-2, 2));
         return fmt::format("{} {} {}", expression(random_.between(1, 3)), compare(), number(-3, 3));
     }
 };

@@ -2,7 +2,7 @@
 // Takes: a seed and a shape. Gives: a valid spec. Keeps true: the same seed gives the same bytes.
 // Inputs are scalars with and without ranges, a bool and an embedding of any element type, some
 // with `hold` and `stale after`; predicates use all comparisons, distances, aggregations and
-// expressions; formulas use all words and symbols of the operators, and lets.
+// expressions, of earlier steps too; formulas use all words and symbols of the operators, and lets.
 #pragma once
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 # that could change the meaning of floats. Windows and formulas use only integers, so testing them
 # with the sanitizers is enough.
 etlc_joined(float_sources temporal_floats
-  test_adaptation.cpp test_recorder.cpp test_stale.cpp test_temporal_truth.cpp
+  test_adaptation.cpp test_past.cpp test_recorder.cpp test_stale.cpp test_temporal_truth.cpp
   test_temporal_values.cpp)
 etlc_joined(integer_sources temporal_integers test_temporal_costs.cpp test_temporal_formulas.cpp)
 list(APPEND integer_sources ${CMAKE_CURRENT_SOURCE_DIR}/test_temporal_windows.cpp)

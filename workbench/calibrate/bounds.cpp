@@ -284,10 +284,12 @@ Interval of_distance(const check::Model& model, Index index, const plan::Evaluat
 /// flush it to zero.
 class Expression {
 public:
-    Expression(const check::Model& model, const plan::Evaluator& measured)
-        : model_(model), measured_(measured) {}
+    Expression(const check::Model& model, const plan::Evaluator& measured,
+               const PastIntervals& pasts)
+        : model_(model), measured_(measured), pasts_(pasts) {}
 
     Range of(const Expr& e) const {
+        if (e.kind == Expr::Kind::past) return flushed(pasts_[e.index]);
         std::vector<Range> a;
         for (const Expr& argument : e.arguments) a.push_back(of(argument));
         const bool exact =
@@ -300,7 +302,7 @@ public:
             case Expr::Kind::number: return flushed(e.number32);
             case Expr::Kind::scalar: return flushed(*measured_.input(e.index));
             case Expr::Kind::distance: return distance(e.index);
-            case Expr::Kind::past: return {};
+            case Expr::Kind::past: break;
             case Expr::Kind::negate: return check::negate(a[0]);
             case Expr::Kind::add:
                 return binary([](float x, float y) { return etlmon::add(x, y); }, check::add);
@@ -327,6 +329,8 @@ private:
         return {std::min(x, 0.0F), std::max(x, 0.0F)};
     }
 
+    static Range flushed(const Range& r) { return {flushed(r.low).low, flushed(r.high).high}; }
+
     static Range widened(const Range& r) {
         constexpr float kEnd = std::numeric_limits<float>::infinity();
         return {round_down(static_cast<double>(std::nextafter(r.low, -kEnd)) -
@@ -342,9 +346,42 @@ private:
 
     const check::Model& model_;
     const plan::Evaluator& measured_;
+    const PastIntervals& pasts_;
 };
 
+/// Returns the range of an expression that this build knows.
+Range known(const Expression& evaluated, const Expr& expression) {
+    const Range range = evaluated.of(expression);
+    return range.low <= range.high ? range : check::kEverything;  // infinities that cancel
+}
+
 }  // namespace
+
+PastIntervals::PastIntervals(const check::Model& model, const plan::Plan& plan)
+    : model_(model), pasts_(plan.pasts), now_(model.pasts.size()) {
+    for (const Index past : pasts_) {
+        lows_.emplace_back(model.pasts[past]);
+        highs_.emplace_back(model.pasts[past]);
+    }
+}
+
+void PastIntervals::reset() {
+    for (plan::PastState& low : lows_) low.reset();
+    for (plan::PastState& high : highs_) high.reset();
+}
+
+void PastIntervals::step(const plan::Evaluator& measured) {
+    for (std::size_t i = 0; i < pasts_.size(); ++i) {
+        const Index past = pasts_[i];
+        Range operand{etlmon::kMissing, etlmon::kMissing};
+        if (!std::isnan(measured.operand_of(past)))
+            operand = known(Expression(model_, measured, *this), model_.pasts[past].expression);
+        const float low = lows_[i].push(operand.low), high = highs_[i].push(operand.high);
+        // A mean of infinities of both signs has no value.
+        now_[past] = {std::isnan(low) ? check::kEverything.low : low,
+                      std::isnan(high) ? check::kEverything.high : high};
+    }
+}
 
 Interval interval_of(const Distance& distance, std::uint32_t rows, std::uint32_t dimension,
                      double delta) {
@@ -352,13 +389,11 @@ Interval interval_of(const Distance& distance, std::uint32_t rows, std::uint32_t
 }
 
 std::optional<Interval> interval_of(const check::Model& model, Index predicate,
-                                    const plan::Evaluator& measured) {
+                                    const plan::Evaluator& measured, const PastIntervals& pasts) {
     const check::Predicate& p = model.predicates[predicate];
     if (std::isnan(measured.distance(predicate))) return std::nullopt;
     if (p.plain_distance()) return of_distance(model, p.expression.index, measured);
-    const Range range = Expression(model, measured).of(p.expression);
-    if (!(range.low <= range.high))
-        return Interval{-kInfinity, kInfinity};  // infinities that cancel
+    const Range range = known(Expression(model, measured, pasts), p.expression);
     return Interval{static_cast<double>(range.low), static_cast<double>(range.high)};
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "check/model/model.hpp"
 #include "plan/evaluate/evaluator.hpp"
@@ -18,6 +19,27 @@ struct Interval {
     double high = 0;
 };
 
+/// The intervals of the numbers that earlier steps have a part in, from those of what they are
+/// computed from. Every build computes them from its own values without rounding, or with the
+/// rounding of a mean, and they grow with each value.
+class PastIntervals {
+public:
+    explicit PastIntervals(const check::Model& model, const plan::Plan& plan);
+
+    void reset();
+    /// Takes the step that the evaluator has measured.
+    void step(const plan::Evaluator& measured);
+    /// Returns the interval at the last step of a number that this build knows.
+    const check::Range& operator[](Index past) const { return now_[past]; }
+
+private:
+    const check::Model& model_;
+    const std::vector<Index>& pasts_;
+    std::vector<plan::PastState> lows_;   ///< as pasts_
+    std::vector<plan::PastState> highs_;  ///< likewise
+    std::vector<check::Range> now_;       ///< per past number of the model
+};
+
 /// Returns the interval of a distance, aggregated over `rows` targets, that this build measured as
 /// `delta`. Not for mahalanobis with full weights, whose error depends on the point.
 Interval interval_of(const check::Distance& distance, std::uint32_t rows, std::uint32_t dimension,
@@ -26,6 +48,6 @@ Interval interval_of(const check::Distance& distance, std::uint32_t rows, std::u
 /// Returns the interval of the delta just measured, or nothing if it is unknown. An end is infinite
 /// where delta is or may be.
 std::optional<Interval> interval_of(const check::Model& model, Index predicate,
-                                    const plan::Evaluator& measured);
+                                    const plan::Evaluator& measured, const PastIntervals& pasts);
 
 }  // namespace etlc::calibrate

@@ -51,6 +51,7 @@ Scorer::Scorer(const check::Model& model, const episodes::Leaks& leaks,
       watched_(std::move(watched)),
       plan_(plan::measuring(model, all_of(predicates_, watched_.predicates))),
       measured_(plan_),
+      pasts_(model, plan_),
       reading_(std::move(reading)) {
     const plan::Plan calibrated = plan::measuring(model, predicates_);
     wanted_ = episodes::wanted(model, {&calibrated}, predicates_, leaks);
@@ -75,7 +76,9 @@ diag::Result<Demonstration> Scorer::score(const std::string& path, const episode
     std::vector<Scores> scores(predicates_.size());
     std::string track;
     const bool is_divided = wanted.predicates.size() == divided_.predicates.size();
+    pasts_.reset();
     const auto done = episodes::replay(*recording, {&measured_}, [&] {
+        pasts_.step(measured_.evaluator());
         for (std::size_t i = 0; i < predicates_.size(); ++i)
             add(predicates_[i], recording->label(predicates_[i]), scores[i]);
         add_step(watched_, measured_.evaluator(), *recording, is_divided, track);
@@ -106,7 +109,7 @@ void Scorer::add(Index predicate, Label label, Scores& scores) const {
     const float score = p.upper_bound() ? delta : -delta;
     scores.labelled.push_back({score, positive});
     if (!positive || p.threshold.origin == ThresholdOrigin::f1) return;
-    const Interval interval = *interval_of(model_, predicate, measured_.evaluator());
+    const Interval interval = *interval_of(model_, predicate, measured_.evaluator(), pasts_);
     const double reach = p.upper_bound() ? interval.high : -interval.low;
     scores.worst_reach = scores.has_score ? std::max(scores.worst_reach, reach) : reach;
     scores.has_score = true;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrate/bounds.hpp"
 #include "calibrate/replayer.hpp"
 #include "data/spill/sorted.hpp"
 #include "episodes/ranking/auroc.hpp"
@@ -109,6 +110,7 @@ private:
     Watched watched_;
     plan::Plan plan_;
     episodes::Follower measured_;
+    PastIntervals pasts_;
     episodes::Wanted wanted_;
     episodes::Wanted divided_;  ///< the same with the labels that divide episodes
     episodes::ReadOptions reading_;

@@ -41,8 +41,9 @@ std::string_view truth_word(const check::Monitor& monitor) {
 }
 
 /// Returns the least and the greatest robustness of the predicate in any build.
-plan::Value spread(const check::Model& model, Index predicate, const plan::Evaluator& measured) {
-    const Interval delta = *interval_of(model, predicate, measured);
+plan::Value spread(const check::Model& model, Index predicate, const plan::Evaluator& measured,
+                   const PastIntervals& pasts) {
+    const Interval delta = *interval_of(model, predicate, measured, pasts);
     const check::Predicate& p = model.predicates[predicate];
     const float epsilon = p.threshold.value;
     const float low =
@@ -76,6 +77,8 @@ private:
     const episodes::ReadOptions& reading_;
     episodes::Follower highest_;  ///< the highest rho in any build
     episodes::Follower lowest_;
+    PastIntervals pasts_of_highest_;  ///< both measure the same, one after the other
+    PastIntervals pasts_of_lowest_;
     episodes::Follower truths_;
     episodes::Wanted wanted_;
     episodes::Wanted divided_;  ///< the same with the labels that divide episodes
@@ -90,6 +93,8 @@ MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plan
       reading_(reading),
       highest_(plans.monitors),
       lowest_(plans.monitors),
+      pasts_of_highest_(model, plans.monitors),
+      pasts_of_lowest_(model, plans.monitors),
       truths_(plans.truths, &plans.ground_truth),
       wanted_(episodes::wanted(model, {&plans.monitors, &plans.truths},
                                episodes::labelled_predicates(plans.ground_truth), leaks)),
@@ -98,13 +103,16 @@ MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plan
     std::set_union(wanted_.predicates.begin(), wanted_.predicates.end(), watched.dividing.begin(),
                    watched.dividing.end(), std::back_inserter(divided_.predicates));
     plan::Evaluator& lowest = lowest_.evaluator();
-    lowest.replace_predicate_values([&](Index p) { return spread(model_, p, lowest); });
+    lowest.after_pasts([&] { pasts_of_lowest_.step(lowest); });
+    lowest.replace_predicate_values(
+        [&](Index p) { return spread(model_, p, lowest, pasts_of_lowest_); });
     // A verdict reads the low end: the first end for a literal, the second for a negated one. With
     // the ends exchanged it reads the highest in any build, and the range of a missing sample
     // stays.
     plan::Evaluator& highest = highest_.evaluator();
+    highest.after_pasts([&] { pasts_of_highest_.step(highest); });
     highest.replace_predicate_values([&](Index p) {
-        const plan::Value value = spread(model_, p, highest);
+        const plan::Value value = spread(model_, p, highest, pasts_of_highest_);
         return plan::Value{value.high, value.low};
     });
 }
@@ -122,6 +130,8 @@ diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path,
     std::vector<MonitorScore> scores(monitors_.size());
     std::string track;
     const bool is_divided = wanted.predicates.size() == divided_.predicates.size();
+    pasts_of_highest_.reset();
+    pasts_of_lowest_.reset();
     const auto rest = [&] {
         note(scores);
         return true;

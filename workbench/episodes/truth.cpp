@@ -57,6 +57,7 @@ TruthEvaluator::TruthEvaluator(const check::Model& model, const std::vector<Inde
     std::vector<bool> wanted(model.formulas.size());
     for (const Index formula : formulas) wanted[formula] = true;
     std::set<Index> inputs;
+    std::set<Index> pasts;
     for (Index i = static_cast<Index>(wanted.size()); i-- > 0;) {
         if (!wanted[i]) continue;
         const Formula& formula = model.formulas[i];
@@ -66,6 +67,9 @@ TruthEvaluator::TruthEvaluator(const check::Model& model, const std::vector<Inde
         if (formula.kind != Formula::Kind::predicate) continue;
         const std::vector<Index>& read = model.predicates[formula.index].inputs;
         inputs.insert(read.begin(), read.end());
+        check::for_each(model.predicates[formula.index].expression, [&](const Expr& e) {
+            if (e.kind == Expr::Kind::past) pasts.insert(e.index);
+        });
         check::for_each_distance(model.predicates[formula.index].expression, [&](Index d) {
             for (const Index point : {model.distances[d].point, model.distances[d].other})
                 if (point != check::kNone)
@@ -74,6 +78,8 @@ TruthEvaluator::TruthEvaluator(const check::Model& model, const std::vector<Inde
     }
     std::reverse(order_.begin(), order_.end());
     inputs_.assign(inputs.begin(), inputs.end());
+    read_pasts_.assign(pasts.begin(), pasts.end());
+    for (const Index past : read_pasts_) past_values_.emplace_back(model.pasts[past]);
     reset();
 }
 
@@ -86,6 +92,8 @@ void TruthEvaluator::reset() {
     held_.assign(model_.inputs.size(), {});
     ages_.assign(model_.inputs.size(), 0);
     freshness_.assign(model_.inputs.size(), {});
+    for (PastValues& past : past_values_) past.reset();
+    pasts_.assign(model_.pasts.size(), kUnknown);
 }
 
 void TruthEvaluator::step(const Frame& frame) {
@@ -95,6 +103,7 @@ void TruthEvaluator::step(const Frame& frame) {
         if (earlier_.size() > longest_delay_) earlier_.pop_back();
     }
     take_inputs(frame);
+    take_pasts();
     for (const Index index : order_) labels_[index] = value(index);
 }
 
@@ -111,6 +120,14 @@ void TruthEvaluator::take_inputs(const Frame& frame) {
         }
         values_[i] = ages_[i] < input.hold ? held_[i] : std::vector<double>{};
         ages_[i] += ages_[i] < input.hold ? 1 : 0;
+    }
+}
+
+/// A past number comes after those that it contains.
+void TruthEvaluator::take_pasts() {
+    for (std::size_t i = 0; i < read_pasts_.size(); ++i) {
+        const Index past = read_pasts_[i];
+        pasts_[past] = past_values_[i].push(expression(model_.pasts[past].expression));
     }
 }
 
@@ -201,10 +218,9 @@ double TruthEvaluator::expression(const Expr& e) const {
     };
     switch (e.kind) {
         case Expr::Kind::number: return e.number;
-        case Expr::Kind::scalar:
-            return values_[e.index].empty() ? kUnknown : values_[e.index][0];
+        case Expr::Kind::scalar: return values_[e.index].empty() ? kUnknown : values_[e.index][0];
         case Expr::Kind::distance: return measure(model_.distances[e.index]);
-        case Expr::Kind::past: return kUnknown;
+        case Expr::Kind::past: return pasts_[e.index];
         case Expr::Kind::negate: return -at(0);
         case Expr::Kind::add: return at(0) + at(1);
         case Expr::Kind::subtract: return at(0) - at(1);

@@ -11,6 +11,7 @@
 
 #include "check/model/model.hpp"
 #include "episodes/labels/label.hpp"
+#include "episodes/past_values.hpp"
 #include "plan/evaluate/inputs.hpp"
 
 namespace etlc::episodes {
@@ -50,6 +51,7 @@ private:
     double expression(const check::Expr& e) const;
     double measure(const check::Distance& distance) const;
     std::vector<double> elements(Index point, std::size_t ago) const;
+    void take_pasts();
     Label in_the_past(const check::Formula& formula, Memory& memory, Label f, Label g) const;
 
     const check::Model& model_;
@@ -63,6 +65,9 @@ private:
     Frame held_;
     std::vector<std::uint32_t> ages_;
     std::vector<plan::Freshness> freshness_;  ///< per input
+    std::vector<Index> read_pasts_;           ///< past numbers of the model that formulas read
+    std::vector<PastValues> past_values_;     ///< of these
+    std::vector<double> pasts_;               ///< per past number: at this frame
     std::uint64_t frame_ = 0;                 ///< from 1; 0 before the first
 };
 

@@ -57,10 +57,11 @@ struct Context {
     std::vector<Span> operator_spans{};
     std::vector<std::uint32_t> depths{};
 
-    /// Index of each point, distance and predicate by canonical text, since the model has equal
-    /// ones once.
+    /// Index of each point, distance, past number and predicate by canonical text, since the model
+    /// has equal ones once.
     std::unordered_map<std::string, Index> point_of_text{};
     std::unordered_map<std::string, Index> distance_of_text{};
+    std::unordered_map<std::string, Index> past_of_text{};
     std::unordered_map<std::string, Index> predicate_of_text{};
 
     /// The projected target for each target and point.

@@ -91,6 +91,15 @@ void for_each(const Expr& expression, const Visit& visit) {
     for (const Expr& argument : expression.arguments) for_each(argument, visit);
 }
 
+/// Visits EXPR and its parts, the whole first, but not the parts of numbers that earlier steps have
+/// a part in: what is computed at every step by itself.
+template <class Visit>
+void for_each_of_step(const Expr& expression, const Visit& visit) {
+    visit(expression);
+    if (expression.kind == Expr::Kind::past) return;
+    for (const Expr& argument : expression.arguments) for_each_of_step(argument, visit);
+}
+
 /// Visits the distances in EXPR, by index, as often as each occurs.
 template <class Visit>
 void for_each_distance(const Expr& expression, const Visit& visit) {

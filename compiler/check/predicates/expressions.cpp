@@ -1,4 +1,5 @@
-// Checks EXPR: scalars, numbers, aggregated distances and arithmetic.
+// Checks EXPR: scalars, numbers, aggregated distances and arithmetic. Numbers that earlier steps
+// have a part in are checked in pasts.cpp.
 #include "check/predicates/predicates.hpp"
 
 #include <fmt/format.h>
@@ -54,8 +55,7 @@ std::optional<Expr> build(Context& c, const ast::Expr& written) {
         result.index = check_distance(c, *written.distance);
         good = result.index != kNone;
     }
-    if (result.kind == ExprKind::past)
-        return c.no_value(Code::past_form, written.span, "numbers of the past are not here yet");
+    if (result.kind == ExprKind::past) return check_past(c, written);
     for (const ast::ExprPtr& argument : written.arguments) {
         auto built = build(c, *argument);
         if (built) result.arguments.push_back(std::move(*built));

@@ -86,15 +86,21 @@ Sides sides(Context& c, const ast::Expr& left, Comparison comparison, const ast:
     return result;
 }
 
-/// Distances are rounded by their kernels, so exact equality means nothing.
+/// Distances are rounded by their kernels, and means by their division, so exact equality means
+/// nothing.
 bool can_be_equal(Context& c, const Predicate& predicate) {
-    bool measures = false;
-    for_each_distance(predicate.expression, [&](Index /*distance*/) { measures = true; });
-    if (!predicate.equality() || !measures) return true;
+    std::string_view rounded;
+    for_each(predicate.expression, [&](const Expr& e) {
+        const bool is_mean =
+            e.kind == Expr::Kind::past && c.model.pasts[e.index].kind == Past::Kind::mean;
+        if (is_mean && rounded.empty()) rounded = "means";
+        if (e.kind == Expr::Kind::distance) rounded = "distances";
+    });
+    if (!predicate.equality() || rounded.empty()) return true;
     return c.refuse(
         Code::equality_of_distances, predicate.span,
-        fmt::format("'{}' compares distances, which are rounded; expected '<=', '<', '>=' or '>'",
-                    symbol(predicate.comparison)));
+        fmt::format("'{}' compares {}, which are rounded; expected '<=', '<', '>=' or '>'",
+                    symbol(predicate.comparison), rounded));
 }
 
 /// Returns the predicate, or nothing after an error.

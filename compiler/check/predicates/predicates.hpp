@@ -14,6 +14,8 @@ Index comparison_predicate(Context& context, const ast::Formula& comparison);
 
 /// Returns the typed expression; nothing after an error.
 std::optional<Expr> check_expression(Context& context, const ast::Expr& expression);
+/// Returns a number that earlier steps have a part in, as an expression; nothing after an error.
+std::optional<Expr> check_past(Context& context, const ast::Expr& past);
 /// Returns the index of the distance in the model; kNone after an error.
 Index check_distance(Context& context, const ast::Distance& distance);
 

@@ -35,7 +35,7 @@ std::string expression(const Context& context, const Expr& e) {
             return context.retargetable() ? context.parameter(e) : float_literal(e.number32);
         case Expr::Kind::scalar: return sample(context, e.index);
         case Expr::Kind::distance: return distance(context, e.index) + ".delta";
-        case Expr::Kind::past: return "";
+        case Expr::Kind::past: return context.names.past_local.at(e.index);
         case Expr::Kind::negate: return apply("negate");
         case Expr::Kind::add: return apply("add");
         case Expr::Kind::subtract: return apply("subtract");
@@ -73,6 +73,7 @@ public:
             print_point(out_, context_, p);
         for (Index d : context_.plan.distances)
             if (has_local(d)) print_shared(d);
+        for (Index p : context_.plan.pasts) print_past(p);
         for (Index p : context_.plan.predicates) print_predicate(p);
     }
 
@@ -107,6 +108,20 @@ private:
         print_distance(out_, context_, d, "measured");
         out_.line(enclosed && !is_contrasted(d) ? "return measured.measured;" : "return measured;");
         out_.close("});");
+    }
+
+    /// Prints the step of a number that earlier steps have a part in, which every step has to take;
+    /// finish() takes none.
+    void print_past(Index p) {
+        const check::Past& past = context_.model.pasts[p];
+        const std::string call = fmt::format("{}.push({})", context_.names.past_member.at(p),
+                                             expression(context_, past.expression));
+        const bool may_finish = context_.on_demand && context_.plan.has_sliding;
+        out_.gap();
+        print_comment(out_, "//", context_.place(past.span), 4);
+        print_wrapped(out_, fmt::format("const float {} = {}{}{};", context_.names.past_local.at(p),
+                                        may_finish ? "finishes_ == 0 ? " : "", call,
+                                        may_finish ? " : etlmon::kMissing" : ""));
     }
 
     void print_predicate(Index p) {
@@ -251,10 +266,11 @@ namespace {
 
 /// Without parameters nothing is known, and nothing of it later.
 void print_unready(Printer& out, const Context& context) {
-    if (context.names.earlier_member.empty())
+    if (context.names.earlier_member.empty() && context.names.past_member.empty())
         return print_wrapped(out, "if (!ready()) return unknown();");
     out.open("if (!ready()) {");
-    for (const auto& [point, name] : context.names.earlier_member) out.line("{}.reset();", name);
+    for (const auto* members : {&context.names.earlier_member, &context.names.past_member})
+        for (const auto& [index, name] : *members) out.line("{}.reset();", name);
     out.line("return unknown();");
     out.close();
 }

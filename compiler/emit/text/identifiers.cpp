@@ -83,6 +83,17 @@ std::string identifier(std::string_view text, const std::string& otherwise) {
     return legal ? name : otherwise;
 }
 
+std::string name_of(const check::Model& model, const check::Past& past) {
+    const bool is_ago = past.kind == check::Past::Kind::ago;
+    const std::string otherwise = is_ago ? fmt::format("value_{}_ago", past.steps)
+                                         : fmt::format("{}_{}", word(past.kind), past.steps);
+    if (model.retargetable) return otherwise;
+    const std::string of = identifier(check::print(model, past.expression), "");
+    if (!is_ago) return identifier(past.text, otherwise);
+    return of.empty() ? otherwise
+                      : identifier(fmt::format("{}_{}_ago", of, past.steps), otherwise);
+}
+
 std::string with_more(const std::string& operand, bool max) {
     return operand + (max ? "_or_more" : "_and_more");
 }

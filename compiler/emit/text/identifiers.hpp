@@ -18,6 +18,10 @@ std::string identifier(std::string_view text, const std::string& otherwise);
 /// operand: always_p_or_more. Empty if no word fits.
 std::string name_of(const ir::Graph& graph, ir::NodeId node, std::size_t room = kLongestName);
 
+/// Names a number that earlier steps have a part in: x_30_ago, mean_x_20. If that is too long, or
+/// may change in a retargetable class, the name does not say what it is made of.
+std::string name_of(const check::Model& model, const check::Past& past);
+
 /// Returns the name of a max or min after one of its operands: "p_or_more".
 std::string with_more(const std::string& operand, bool max);
 

@@ -7,6 +7,7 @@
 
 #include "etlmon/hosted/footprint.hpp"
 #include "etlmon/temporal/earlier.hpp"
+#include "etlmon/temporal/past.hpp"
 #include "plan/program/sample_codes.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/targets/point_checks.hpp"
@@ -30,6 +31,7 @@ constexpr std::uint64_t kCodePerEnd = 16;
 constexpr std::uint64_t kCodePerReading = 64;
 constexpr std::uint64_t kCodePerWindow = 240;
 constexpr std::uint64_t kCodePerRing = 64;
+constexpr std::uint64_t kCodePerMean = 720;        // shared by all means
 constexpr std::uint64_t kCodePerAdaptation = 144;  // observe_P() on a Cortex-M4 at -Os
 constexpr std::uint64_t kCodePerTable = 200;
 constexpr std::uint64_t kCodePerSamples = 600;
@@ -183,10 +185,11 @@ Cost point_cost(const check::Model& model, const check::Point& point) {
 
 /// Returns the cost of the samples that are kept for a point.
 Cost earlier_cost(const check::Model& model, const EarlierPoint& earlier) {
-    return {.state_bytes = etlmon::earlier_bytes(earlier_element_bytes(model, earlier.point),
-                                              model.points[earlier.point].dimension, earlier.steps),
-            .code_bytes = kCodePerRing,
-            .operations = 1};
+    return {
+        .state_bytes = etlmon::earlier_bytes(earlier_element_bytes(model, earlier.point),
+                                             model.points[earlier.point].dimension, earlier.steps),
+        .code_bytes = kCodePerRing,
+        .operations = 1};
 }
 
 std::uint64_t bytes_of_element(check::InputType type) {
@@ -242,6 +245,7 @@ public:
         for (std::uint32_t index : readings_)
             sum = sum + cost_of(plan_.readings[index], plan_.values);
         for (Index p : predicates_) sum = sum + telemetry(model.predicates[p]);
+        for (Index p : pasts_) sum = sum + cost_of(model.pasts[p]);
         const std::vector<Index> distances(distances_.begin(), distances_.end());
         for (Index p : built_points(model, distances))
             sum = sum + point_cost(model, model.points[p]);
@@ -275,12 +279,16 @@ private:
         if (!predicates_.insert(index).second) return;
         const check::Predicate& p = plan_.model->predicates[index];
         inputs_.insert(p.inputs.begin(), p.inputs.end());
-        check::for_each_distance(p.expression, [&](Index d) { distances_.insert(d); });
+        check::for_each(p.expression, [&](const check::Expr& e) {
+            if (e.kind == check::Expr::Kind::distance) distances_.insert(e.index);
+            if (e.kind == check::Expr::Kind::past) pasts_.insert(e.index);
+        });
     }
 
     const Plan& plan_;
     std::set<Slot> streams_;
     std::set<std::uint32_t> readings_;
+    std::set<Index> pasts_;
     std::set<Index> predicates_;
     std::set<Index> distances_;
     std::set<Index> inputs_;
@@ -333,6 +341,22 @@ Cost cost_of(const Stream& stream, Values kind) {
 
 Cost cost_of(const Reading& reading, Values kind) {
     return keeping(work_of(reading, kind), members_of(reading), kind);
+}
+
+Cost cost_of(const check::Past& past) {
+    using Kind = check::Past::Kind;
+    const std::uint64_t numbers = past.steps * kWord;
+    switch (past.kind) {
+        case Kind::ago: return {.state_bytes = kWord + numbers, .code_bytes = kCodePerRing};
+        case Kind::mean:
+            return {.state_bytes = sizeof(etlmon::MeanState) + numbers, .code_bytes = kCodePerMean};
+        case Kind::min:
+        case Kind::max: break;
+        case Kind::count: return {};
+    }
+    return {.state_bytes = (2 + etlmon::window_elements(past.steps)) * kWord,
+            .code_bytes = kCodePerWindow,
+            .operations = etlmon::window_operations(past.steps)};
 }
 
 Cost cost_of_table(std::size_t states, std::size_t transitions, Values kind) {

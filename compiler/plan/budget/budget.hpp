@@ -33,6 +33,7 @@ bool within(const Cost& cost, const Limits& limits);
 std::string in_words(const Cost& cost);
 Cost cost_of(const Stream& stream, check::Values values);
 Cost cost_of(const Reading& reading, check::Values values);
+Cost cost_of(const check::Past& past);
 /// Returns the target elements that a predicate measures.
 std::uint64_t measured_elements(const check::Model& model, Index predicate);
 /// Returns the same, with those of its projections.

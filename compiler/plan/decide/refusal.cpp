@@ -49,8 +49,10 @@ std::vector<ir::NodeId> costly_operators(const ir::Graph& graph, ir::NodeId part
 
 // ---- parts of a plan
 
+/// A formula, or a number that earlier steps have a part in.
 struct Part {
-    ir::NodeId node = kNone;
+    source::Span span;
+    std::string text;
     Cost cost;
 };
 
@@ -75,11 +77,17 @@ Index costliest_monitor(const Plan& plan, const Limits& limits) {
 
 std::vector<Part> costly_parts(const Plan& plan, const Limits& limits) {
     const auto weight = [&](const Cost& cost) { return weight_of(cost, plan.cost, limits); };
+    const ir::Graph& graph = *plan.formulas;
     std::vector<Part> parts;
-    for (const Reading& reading : plan.readings)
-        parts.push_back({reading.node, cost_of(reading, plan.values)});
-    for (const Stream& stream : plan.streams)
-        if (stream.node != kNone) parts.push_back({stream.node, cost_of(stream, plan.values)});
+    const auto add = [&](ir::NodeId node, const Cost& cost) {
+        if (node != kNone) parts.push_back({graph[node].span, graph.text(node), cost});
+    };
+    for (const Reading& reading : plan.readings) add(reading.node, cost_of(reading, plan.values));
+    for (const Stream& stream : plan.streams) add(stream.node, cost_of(stream, plan.values));
+    for (const Index p : plan.pasts) {
+        const check::Past& past = plan.model->pasts[p];
+        parts.push_back({past.span, past.text, cost_of(past)});
+    }
     std::stable_sort(parts.begin(), parts.end(),
                      [&](const Part& a, const Part& b) { return weight(a.cost) > weight(b.cost); });
     parts.resize(std::min(parts.size(), kMostNamed));
@@ -124,7 +132,6 @@ void refuse_part(const check::Monitor& monitor, const ReadingBuilder::Oversize& 
 
 void check_budget(const Plan& plan, const Limits& limits, const Advice& advice, diag::Sink& sink) {
     if (within(plan.cost, limits)) return;
-    const ir::Graph& graph = *plan.formulas;
     const check::Model& model = *plan.model;
     auto& error = sink.report(
         diag::Code::over_budget, model.monitors.front().span,
@@ -134,8 +141,8 @@ void check_budget(const Plan& plan, const Limits& limits, const Advice& advice, 
                    fmt::format("'{}' alone needs {}", plan.monitors[m].name,
                                in_words(plan.monitor_costs[m])));
     for (const Part& part : costly_parts(plan, limits))
-        error.note(graph[part.node].span, fmt::format("of that, '{}' takes {}",
-                                                      graph.text(part.node), in_words(part.cost)));
+        error.note(part.span,
+                   fmt::format("of that, '{}' takes {}", part.text, in_words(part.cost)));
     if (advice)
         for (diag::Note& note : advice(costliest_monitor(plan, limits), Among::all))
             error.notes.push_back(std::move(note));

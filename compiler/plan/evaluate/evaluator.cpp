@@ -39,6 +39,9 @@ Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
     }
     distances_.resize(model_.distances.size());
     enclosed_.resize(model_.distances.size());
+    for (const Index past : plan.pasts) past_states_.emplace_back(model_.pasts[past]);
+    pasts_.resize(model_.pasts.size());
+    past_operands_.resize(model_.pasts.size());
     measured_.resize(model_.predicates.size());
     for (const check::Predicate& predicate : model_.predicates)
         thresholds_.push_back(predicate.threshold.value);
@@ -69,6 +72,8 @@ void Evaluator::reset() {
     for (StreamState& state : stream_states_) reset_stream(state);
     for (std::size_t i = 0; i < plan_.readings.size(); ++i)
         reset_reading(plan_.readings[i], reading_states_[i]);
+    for (PastState& past : past_states_) past.reset();
+    std::fill(pasts_.begin(), pasts_.end(), etlmon::kMissing);
     std::fill(measured_.begin(), measured_.end(), etlmon::Measured{etlmon::kMissing, 0});
     std::fill(verdicts_.begin(), verdicts_.end(), etlmon::Verdict{});
     lets_.assign(plan_.lets.size(), etlmon::Verdict{});
@@ -86,6 +91,7 @@ const std::vector<etlmon::Verdict>& Evaluator::step(const std::vector<Sample>& s
     restart_those_due();
     take_inputs(samples);
     measure_distances();
+    take_pasts();
     measure_predicates();
     keep_points();
     advance_streams();

@@ -14,9 +14,10 @@
 #include "etlmon/temporal/pending.hpp"
 #include "etlmon/temporal/reading.hpp"
 #include "etlmon/temporal/verdict.hpp"
+#include "plan/evaluate/earlier_samples.hpp"
 #include "plan/evaluate/inputs.hpp"
 #include "plan/evaluate/near_rows.hpp"
-#include "plan/evaluate/earlier_samples.hpp"
+#include "plan/evaluate/past_state.hpp"
 #include "plan/program/program.hpp"
 
 namespace etlc::plan {
@@ -100,10 +101,13 @@ public:
     float threshold(Index predicate) const { return thresholds_[predicate]; }
     void observe(Index predicate, float distance, bool truth);
 
-    /// Return what the predicates of the last step were computed from: an input's values after
-    /// `hold`, null where missing, and a distance with its nearest row, by index in the model.
+    /// Return what the predicates of the last step were computed from, by index in the model: an
+    /// input's values after `hold`, null where missing, and a distance with its nearest row.
     const float* input(Index input) const { return inputs_[input]; }
     etlmon::Measured measured(Index distance) const { return distances_[distance]; }
+    /// Returns the value of the expression of a number that earlier steps have a part in; NaN where
+    /// it is missing.
+    float operand_of(Index past) const { return past_operands_[past]; }
     /// Returns the elements of a point of the model that is measured; null where unknown.
     const float* point(Index point) const { return point_at_[point]; }
     /// Returns the elements that it had `ago` steps before, where a point of the model needs them.
@@ -120,6 +124,9 @@ public:
     /// them.
     using PredicateValue = std::function<Value(Index predicate)>;
     void replace_predicate_values(PredicateValue value) { replacement_ = std::move(value); }
+    /// Calls `taken` at every step before predicates are measured, when inputs, distances and past
+    /// numbers are known.
+    void after_pasts(std::function<void()> taken) { after_pasts_ = std::move(taken); }
 
 private:
     struct Held {
@@ -157,6 +164,7 @@ private:
     void keep_points();
     void keep_for(Index point, std::uint32_t ago, std::map<Index, std::uint32_t>& longest) const;
     void measure_distances();
+    void take_pasts();
     void measure_predicates();
     /// Returns whether all distances of a predicate are known.
     bool is_measured(const check::Predicate& predicate) const;
@@ -187,7 +195,7 @@ private:
     std::vector<std::vector<float>> points_;  ///< per point: memory of vectors and projections
     std::vector<const float*> point_at_;      ///< per point: its elements; null: unknown
     std::vector<float> centred_;              ///< scratch of a projection
-    std::vector<EarlierSamples> earlier_;           ///< of the points that some point delays
+    std::vector<EarlierSamples> earlier_;     ///< of the points that some point delays
     /// Per target and distance: prepared rows.
     std::vector<std::vector<float>> prepared_;
     /// For distances by full weights to the nearest row: candidate rows, and room for their values.
@@ -207,11 +215,15 @@ private:
     std::vector<std::vector<Cut>> contrast_cuts_;
     /// Per predicate: the nearest rows of its two distances, where it has such cuts.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> contrast_rows_;
+    std::vector<PastState> past_states_;  ///< as plan.pasts
+    std::vector<float> pasts_;            ///< per past number of the model: at this step
+    std::vector<float> past_operands_;    ///< likewise: its expression
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
     std::vector<float> thresholds_;        ///< per predicate
     std::vector<Value> predicate_values_;  ///< per predicate
     PredicateValue replacement_;
+    std::function<void()> after_pasts_;
     std::vector<Value> flags_;  ///< per input
     std::vector<Value> streams_;
     std::vector<StreamState> stream_states_;

@@ -214,6 +214,16 @@ etlmon::Measured Evaluator::measure_near(Index d, const float* z) {
     return measured;
 }
 
+/// Advances the numbers that earlier steps have a part in, each after those that it contains.
+void Evaluator::take_pasts() {
+    for (std::size_t i = 0; i < past_states_.size(); ++i) {
+        const Index past = plan_.pasts[i];
+        past_operands_[past] = expression(model_.pasts[past].expression);
+        pasts_[past] = past_states_[i].push(past_operands_[past]);
+    }
+    if (after_pasts_) after_pasts_();
+}
+
 /// Evaluates EXPR in float32, rounding each operation once; NaN where an operand is.
 float Evaluator::expression(const Expr& e) const {
     const auto at = [&](std::size_t i) { return expression(e.arguments[i]); };
@@ -227,7 +237,7 @@ float Evaluator::expression(const Expr& e) const {
         case Expr::Kind::scalar:
             return inputs_[e.index] == nullptr ? etlmon::kMissing : *inputs_[e.index];
         case Expr::Kind::distance: return distances_[e.index].delta;
-        case Expr::Kind::past: return etlmon::kMissing;
+        case Expr::Kind::past: return pasts_[e.index];
         case Expr::Kind::negate: return etlmon::negate(at(0));
         case Expr::Kind::add: return etlmon::add(at(0), at(1));
         case Expr::Kind::subtract: return etlmon::subtract(at(0), at(1));

@@ -97,6 +97,7 @@ struct Plan {
     std::vector<Index> inputs;  ///< inputs of all monitors, in order of declaration
     std::vector<Index> targets;
     std::vector<Index> distances;
+    std::vector<Index> pasts;  ///< of the model, each after those that it contains
     std::vector<StoredSet> stored;
     std::vector<NarrowSet> narrow;  ///< of some distances
     std::vector<Index> predicates;

@@ -1,0 +1,14 @@
+// How often the code of a step names a scalar input: one that is named once is read in place.
+#pragma once
+
+#include <map>
+
+#include "plan/program/program.hpp"
+
+namespace etlc::plan {
+
+/// Returns the number of uses by index of the model's inputs. A point is checked before it is
+/// measured, which makes two of each scalar.
+std::map<Index, int> scalar_uses(const Plan& plan);
+
+}  // namespace etlc::plan

@@ -1,0 +1,256 @@
+// Checks the numbers of earlier steps under any flags: the delay and the windows against a search of
+// the whole stream, and means against integers in which neither sums nor products round.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "etlmon/temporal/past.hpp"
+
+namespace {
+
+constexpr std::uint32_t kNan = 0x7fc00000u;
+constexpr std::uint32_t kInf = 0x7f800000u;
+constexpr std::uint32_t kSign = 0x80000000u;
+
+using Stream = std::vector<std::uint32_t>;  // the bits of floats
+
+std::uint32_t any(std::mt19937& random) {
+    return static_cast<std::uint32_t>(random());
+}
+
+std::uint32_t bits(float x) {
+    std::uint32_t result = 0;
+    std::memcpy(&result, &x, sizeof result);
+    return result;
+}
+
+std::int64_t place(std::uint32_t of) {
+    return (of & kSign) != 0 ? -static_cast<std::int64_t>(of & ~kSign) : static_cast<std::int64_t>(of);
+}
+
+std::uint32_t at_place(std::int64_t place) {
+    return place < 0 ? kSign | static_cast<std::uint32_t>(-place) : static_cast<std::uint32_t>(place);
+}
+
+/// An integer of many digits, each of which may be negative: a sum has no carries.
+class Integer {
+public:
+    /// Adds factor times the float, in units of 2^-149.
+    void add(std::uint32_t of, std::int64_t factor) {
+        const std::uint32_t exponent = (of & ~kSign) >> 23, fraction = of & 0x7fffffu;
+        const std::int64_t significand = exponent == 0 ? fraction : fraction | 0x800000u;
+        const std::uint32_t shift = exponent == 0 ? 0 : exponent - 1;
+        const std::int64_t product = ((of & kSign) != 0 ? -factor : factor) * significand;
+        const std::int64_t low = product % (1 << 24), high = product / (1 << 24);
+        add_part(low, shift);
+        add_part(high, shift + 24);
+    }
+
+    int sign() const {
+        std::array<std::int64_t, kDigits> digits = digits_;
+        for (std::size_t i = 0; i + 1 < kDigits; ++i) {
+            std::int64_t carry = digits[i] / kBase;
+            if (digits[i] % kBase < 0) --carry;
+            digits[i] -= carry * kBase;
+            digits[i + 1] += carry;
+        }
+        if (digits.back() != 0) return digits.back() < 0 ? -1 : 1;
+        return std::any_of(digits.begin(), digits.end(), [](std::int64_t d) { return d != 0; });
+    }
+
+private:
+    static constexpr std::size_t kDigits = 24;
+    static constexpr std::int64_t kBase = 1 << 16;
+
+    void add_part(std::int64_t part, std::uint32_t shift) {
+        digits_[shift / 16] += part * (std::int64_t{1} << shift % 16);
+    }
+
+    std::array<std::int64_t, kDigits> digits_{};
+};
+
+/// Returns the sign of twice the sum of the window less n times what two floats add up to.
+int sign_of_rest(const Stream& window, std::uint32_t a, std::uint32_t b) {
+    Integer rest;
+    for (const std::uint32_t x : window) rest.add(x, 2);
+    const auto n = static_cast<std::int64_t>(window.size());
+    rest.add(a, -n);
+    rest.add(b, -n);
+    return rest.sign();
+}
+
+/// Checks that no float is nearer to the mean, and that an even one was taken of two.
+void expect_nearest(const Stream& window, std::uint32_t mean) {
+    const int above = sign_of_rest(window, mean, at_place(place(mean) + 1));
+    const int below = sign_of_rest(window, mean, at_place(place(mean) - 1));
+    ASSERT_TRUE(above < 0 || (above == 0 && mean % 2 == 0)) << std::hex << mean;
+    ASSERT_TRUE(below > 0 || (below == 0 && mean % 2 == 0)) << std::hex << mean;
+}
+
+/// Returns the last n numbers at a step; nothing if there are fewer or one of them is missing.
+Stream window_at(const Stream& stream, std::size_t step, std::size_t n) {
+    if (step + 1 < n) return {};
+    Stream window(stream.begin() + static_cast<std::ptrdiff_t>(step + 1 - n),
+                  stream.begin() + static_cast<std::ptrdiff_t>(step + 1));
+    if (std::find(window.begin(), window.end(), kNan) != window.end()) return {};
+    return window;
+}
+
+void expect_means(const Stream& stream, std::uint32_t n) {
+    std::vector<std::uint32_t> storage(n);
+    etlmon::MeanState state;
+    state.reset();
+    for (std::size_t step = 0; step < stream.size(); ++step) {
+        const std::uint32_t mean = etlmon::mean_push(storage.data(), state, n, stream[step]);
+        const Stream window = window_at(stream, step, n);
+        const auto has = [&](std::uint32_t infinity) {
+            return std::find(window.begin(), window.end(), infinity) != window.end();
+        };
+        SCOPED_TRACE(testing::Message() << n << " steps, step " << step);
+        if (window.empty() || (has(kInf) && has(kInf | kSign)))
+            ASSERT_EQ(mean, kNan);
+        else if (has(kInf) || has(kInf | kSign))
+            ASSERT_EQ(mean, has(kInf) ? kInf : kInf | kSign);
+        else
+            expect_nearest(window, mean);
+        if (testing::Test::HasFatalFailure()) return;
+    }
+}
+
+constexpr std::uint32_t kLengths[] = {2, 3, 4, 5, 7, 20, 64, 129};
+
+TEST(Past, MeansOfNumbersOfAllSizes) {
+    std::mt19937 random(1);
+    for (const std::uint32_t n : kLengths) {
+        for (const std::uint32_t exponents : {2u, 30u, 255u}) {
+            Stream stream;
+            const std::uint32_t least = exponents == 30 ? 110 : 0;
+            for (int step = 0; step < 400; ++step) {
+                const std::uint32_t exponent = least + any(random) % exponents;
+                stream.push_back((any(random) & (kSign | 0x7fffffu)) | exponent << 23);
+                if (any(random) % 200 == 0) stream.back() = kNan;
+            }
+            expect_means(stream, n);
+        }
+    }
+}
+
+TEST(Past, SumsThatCancel) {
+    Stream stream;
+    for (int i = 0; i < 60; ++i)
+        for (const float x : {1e30F, 1.0F, -1e30F, 3e-45F, 1e-38F, -1.0F}) stream.push_back(bits(x));
+    for (const std::uint32_t n : kLengths) expect_means(stream, n);
+    std::vector<std::uint32_t> storage(3);
+    etlmon::MeanState state;
+    state.reset();
+    std::uint32_t mean = 0;
+    for (const float x : {7e7F, 1e30F, 6.0F, -1e30F})
+        mean = etlmon::mean_push(storage.data(), state, 3, bits(x));
+    EXPECT_EQ(mean, bits(2.0F));
+}
+
+TEST(Past, TheMeanOfEqualNumbersIsTheirs) {
+    for (const std::uint32_t one : {0x1u, 0x3u, 0x7fffffu, 0x800000u, 0xffffffu, 0x3f800001u,
+                                    0x7f7fffffu, 0x80000001u, 0xff7fffffu, 0xbf800001u})
+        for (const std::uint32_t n : kLengths) {
+            std::vector<std::uint32_t> storage(n);
+            etlmon::MeanState state;
+            state.reset();
+            for (std::uint32_t i = 1; i < n; ++i)
+                ASSERT_EQ(etlmon::mean_push(storage.data(), state, n, one), kNan);
+            for (std::uint32_t i = 0; i < 3 * n; ++i)
+                ASSERT_EQ(etlmon::mean_push(storage.data(), state, n, one), one) << n;
+        }
+}
+
+TEST(Past, TiesGoToEven) {
+    Stream stream;
+    for (const std::uint32_t x : {0u, 1u, 2u, 3u, 0x7fffffu, 0x800000u, 0x800001u, 0x1000000u,
+                                  0x1000001u, 0x3f800000u, 0x3f800001u, 0x3f800002u})
+        for (const std::uint32_t y : {x, x + 1, x + 2}) stream.insert(stream.end(), {x, y, x | kSign});
+    for (const std::uint32_t n : {2u, 4u}) expect_means(stream, n);
+}
+
+TEST(Past, MeansOfInfinities) {
+    std::mt19937 random(2);
+    Stream stream;
+    for (int step = 0; step < 3000; ++step) {
+        const std::uint32_t kind = any(random) % 24;
+        stream.push_back(kind == 0   ? kInf
+                         : kind == 1 ? kInf | kSign
+                         : kind == 2 ? kNan
+                                     : any(random) % 0x7f800000u);
+    }
+    for (const std::uint32_t n : {2u, 3u, 8u}) expect_means(stream, n);
+}
+
+/// Returns few different numbers, some of them missing.
+Stream steps_of_all_kinds() {
+    std::mt19937 random(3);
+    Stream stream;
+    const std::uint32_t numbers[] = {bits(1), bits(-2), 0x1u, kSign | 1u, kInf, kInf | kSign, bits(5)};
+    for (int step = 0; step < 4000; ++step)
+        stream.push_back(any(random) % 12 == 0 ? kNan : numbers[any(random) % 7]);
+    return stream;
+}
+
+template <class Window, class Choose>
+void expect_windows(std::uint32_t n, const Choose& chosen) {
+    const Stream stream = steps_of_all_kinds();
+    Window window{};
+    window.reset();
+    for (std::size_t step = 0; step < stream.size(); ++step) {
+        const std::uint32_t found = bits(window.push(etlmon::float_of_bits(stream[step])));
+        Stream all = window_at(stream, step, n);
+        const auto less = [](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); };
+        std::sort(all.begin(), all.end(), less);
+        ASSERT_EQ(found, all.empty() ? kNan : chosen(all)) << n << " steps, step " << step;
+    }
+}
+
+template <std::uint32_t N>
+void expect_extremes() {
+    expect_windows<etlmon::MovingMin<N>>(N, [](const Stream& all) { return all.front(); });
+    expect_windows<etlmon::MovingMax<N>>(N, [](const Stream& all) { return all.back(); });
+}
+
+TEST(Past, TheLeastAndTheGreatest) {
+    expect_extremes<2>();
+    expect_extremes<3>();
+    expect_extremes<4>();
+    expect_extremes<7>();
+    expect_extremes<16>();
+}
+
+TEST(Past, ANumberOfAWhileAgo) {
+    const Stream stream = steps_of_all_kinds();
+    etlmon::Ago<5> ago{};
+    ago.reset();
+    for (std::size_t step = 0; step < stream.size(); ++step)
+        ASSERT_EQ(bits(ago.push(etlmon::float_of_bits(stream[step]))),
+                  step < 5 ? kNan : stream[step - 5]);
+}
+
+TEST(Past, AResetForgets) {
+    etlmon::MovingMean<2> mean{};
+    etlmon::MovingMax<2> max{};
+    etlmon::Ago<1> ago{};
+    for (int episode = 0; episode < 3; ++episode) {
+        mean.reset();
+        max.reset();
+        ago.reset();
+        EXPECT_TRUE(etlmon::is_nan(mean.push(4)));
+        EXPECT_TRUE(etlmon::is_nan(max.push(4)));
+        EXPECT_TRUE(etlmon::is_nan(ago.push(4)));
+        EXPECT_EQ(bits(mean.push(1)), bits(2.5F));
+        EXPECT_EQ(bits(max.push(1)), bits(4));
+        EXPECT_EQ(bits(ago.push(1)), bits(4));
+    }
+}
+
+}  // namespace
