@@ -187,8 +187,7 @@ void visit(check::Model& model, check::Expr& of, Changing& changing) {
     field(changing, "number32", number32);
     if (kind == check::Expr::Kind::scalar)
         field(changing, "index", Place{index, model.inputs.size()});
-    if (kind == check::Expr::Kind::past)
-        field(changing, "index", Place{index, model.pasts.size()});
+    if (kind == check::Expr::Kind::past) field(changing, "index", Place{index, model.pasts.size()});
     field(changing, "arguments", arguments);
     field(changing, "span", span);
     for (check::Expr& argument : arguments) visit(model, argument, changing);
@@ -316,8 +315,8 @@ void visit(check::Model& model, check::Input& of, Changing& changing) {
 
 void visit(check::Model& model, check::Distance& of, Changing& changing) {
     changing.of("Distance");
-    auto& [point, target, other, metric, aggregation, kth, weights, weights_diagonal, weights_fitted,
-           weights_path, text, span] = of;
+    auto& [point, target, other, metric, aggregation, kth, weights, weights_diagonal,
+           weights_fitted, weights_path, text, span] = of;
     field(changing, "point", Place{point, model.points.size()});
     field(changing, "target", Place{target, model.targets.size()});
     if (other != kNone) field(changing, "other", Place{other, model.points.size()});

@@ -30,7 +30,7 @@ constexpr std::uint64_t kCodePerEnd = 16;
 constexpr std::uint64_t kCodePerReading = 64;
 constexpr std::uint64_t kCodePerWindow = 240;
 constexpr std::uint64_t kCodePerRing = 64;
-constexpr std::uint64_t kCodePerMean = 720;  // shared by all means
+constexpr std::uint64_t kCodePerMean = 720;        // shared by all means
 constexpr std::uint64_t kCodePerAdaptation = 144;  // observe_P() on a Cortex-M4 at -Os
 constexpr std::uint64_t kCodePerTable = 200;
 constexpr std::uint64_t kCodePerSamples = 600;
@@ -331,8 +331,7 @@ Cost cost_of(const check::Past& past) {
     switch (past.kind) {
         case Kind::ago: return {.state_bytes = kWord + numbers, .code_bytes = kCodePerRing};
         case Kind::mean:
-            return {.state_bytes = sizeof(etlmon::MeanState) + numbers,
-                    .code_bytes = kCodePerMean};
+            return {.state_bytes = sizeof(etlmon::MeanState) + numbers, .code_bytes = kCodePerMean};
         case Kind::min:
         case Kind::max: break;
         case Kind::count: return {};
