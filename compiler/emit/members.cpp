@@ -106,10 +106,11 @@ std::vector<Member> past_members(const Context& context) {
     std::vector<Member> result;
     for (const auto& [p, name] : context.names.past_member) {
         const check::Past& past = context.model.pasts[p];
-        result.push_back({past_type(past), name,
-                          fmt::format("{} at the last {}", check::print(context.model, past.expression),
-                                      diag::counted(past.steps, "step")),
-                          name + ".reset();", ""});
+        result.push_back(
+            {past_type(past), name,
+             fmt::format("{} at the last {}", check::print(context.model, past.expression),
+                         diag::counted(past.steps, "step")),
+             name + ".reset();", ""});
     }
     return result;
 }

@@ -78,12 +78,14 @@ std::string operand_words(const Stuck& stuck) {
         return stuck.expects(EtlParser::CALIBRATED) && stuck.declaration == EtlParser::PREDICATE
                    ? "a threshold (a number, an expression or calibrated(...))"
                    : "a number or an expression";
-    const bool in_call = is(stuck.previous, {EtlParser::COMMA}) ||
-                         (is(stuck.previous, {EtlParser::LPAREN}) &&
-                          is(stuck.before_previous,
-                             {EtlParser::ABS, EtlParser::SQRT, EtlParser::MIN, EtlParser::MAX}));
+    const bool in_call =
+        is(stuck.previous, {EtlParser::COMMA}) ||
+        (is(stuck.previous, {EtlParser::LPAREN}) &&
+         is(stuck.before_previous,
+            {EtlParser::ABS, EtlParser::SQRT, EtlParser::MIN, EtlParser::MAX, EtlParser::MEAN}));
     if (in_call || !stuck.expects(EtlParser::NOT)) return "an expression";
     const bool bracket = is(stuck.previous, {EtlParser::LPAREN});
+    if (bracket && is(stuck.before_previous, {EtlParser::COUNT})) return "a formula";
     if (bracket && stuck.declaration == EtlParser::PREDICATE) return "an expression";
     return bracket ? "a formula or an expression" : "a formula";
 }

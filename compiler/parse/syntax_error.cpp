@@ -129,11 +129,11 @@ private:
                 : fmt::format("{} is neither a distance nor a function", quoted(word, file_)),
             span_of(word)};
         std::vector<std::string> callables = distance_words();
-        callables.insert(callables.end(), {"abs", "sqrt", "min", "max", "kth"});
+        callables.insert(callables.end(), {"abs", "sqrt", "min", "max", "mean", "count", "kth"});
         if (word.getType() == EtlParser::IDENTIFIER && !add_native(result, Foreign::callable, word))
             add_nearest(result, word, callables);
         if (result.notes.empty())
-            result.note(fmt::format("distances: {}; functions: abs, sqrt, min, max",
+            result.note(fmt::format("distances: {}; functions: abs, sqrt, min, max, mean, count",
                                     fmt::join(distance_forms(), ", ")));
         return result;
     }
@@ -203,8 +203,8 @@ private:
         if (found == EtlParser::ASSIGN && stuck_.rule != EtlParser::RuleName)
             return "comparisons are '<=', '<', '>=', '>', '==' and '!='";
         if (found == EtlParser::RPAREN && in_brackets)
-            return "min(...) and max(...) need two or more expressions; over a target set, write "
-                   "'min l2(z, goal)'";
+            return "min(...) and max(...) need two or more expressions or, as mean(...), one and a "
+                   "time: mean(x, 2 s); over a target set, write 'min l2(z, goal)'";
         if (is(stuck_.previous, {EtlParser::KTH}))
             return "kth takes its rank in brackets: kth(3) l2(z, goal)";
         if (!is_reserved_word(found_, file_) || !stuck_.expects(EtlParser::IDENTIFIER) ||

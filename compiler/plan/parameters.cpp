@@ -32,8 +32,7 @@ public:
 
     std::vector<Parameter> list() {
         for (const Index p : plan_.predicates) add_scalars(p);
-        for (const Index p : plan_.pasts)
-            add_numbers(Kind::in_past, p, model_.pasts[p].expression);
+        for (const Index p : plan_.pasts) add_numbers(Kind::in_past, p, model_.pasts[p].expression);
         for (const Index d : plan_.distances) add_distance(d);
         for (const Index p : projected_points(model_, plan_.distances))
             add_projection(model_.points[p].projection);

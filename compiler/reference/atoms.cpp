@@ -73,8 +73,8 @@ double evaluate(const check::Model& model, const Expr& expr, const std::vector<S
     return kUnknown;
 }
 
-/// "e@n at step i is the value of e at step i - n"; "mean, min and max of w steps at step i are over
-/// the values of e at steps i - w + 1 to i"; missing where one of these is.
+/// "e@n at step i is the value of e at step i - n"; "mean, min and max of w steps at step i are
+/// over the values of e at steps i - w + 1 to i"; missing where one of these is.
 double past(const check::Model& model, const Expr& expr, const std::vector<Samples>& trace,
             std::size_t step) {
     using Kind = check::Past::Kind;

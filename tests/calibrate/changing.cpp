@@ -189,8 +189,7 @@ void visit(check::Model& model, check::Expr& of, Changing& changing) {
     field(changing, "number32", number32);
     if (kind == check::Expr::Kind::scalar)
         field(changing, "index", Place{index, model.inputs.size()});
-    if (kind == check::Expr::Kind::past)
-        field(changing, "index", Place{index, model.pasts.size()});
+    if (kind == check::Expr::Kind::past) field(changing, "index", Place{index, model.pasts.size()});
     field(changing, "arguments", arguments);
     field(changing, "span", span);
     for (check::Expr& argument : arguments) visit(model, argument, changing);

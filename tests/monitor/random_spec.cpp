@@ -241,8 +241,7 @@ private:
         const int steps = random_.between(1, 4);
         switch (random_.between(0, 3)) {
             case 0: return fmt::format("({})@{}", of, steps);
-            case 1:
-                return fmt::format("mean({}, {} steps)", of, !exact_ || steps != 3 ? steps : 2);
+            case 1: return fmt::format("mean({}, {} steps)", of, !exact_ || steps != 3 ? steps : 2);
             case 2: return fmt::format("min({}, {} steps)", of, steps + 1);
             default: return fmt::format("max({}, {} steps)", of, steps + 1);
         }
@@ -275,8 +274,8 @@ private:
         if (kind < 6)
             return fmt::format("{} - {} {} {}", distance(), distance(), compare(), number(-2, 2));
         if (kind < 7)
-            return fmt::format("{} - {} {} {}", past(distance()), random_.chance(0.5) ? "y" : distance(),
-                               compare(), number(-2, 2));
+            return fmt::format("{} - {} {} {}", past(distance()),
+                               random_.chance(0.5) ? "y" : distance(), compare(), number(-2, 2));
         return fmt::format("{} {} {}", expression(random_.between(1, 3)), compare(), number(-3, 3));
     }
 };

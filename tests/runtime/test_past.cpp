@@ -1,5 +1,5 @@
-// Checks the numbers of earlier steps under any flags: the delay and the windows against a search of
-// the whole stream, and means against integers in which neither sums nor products round.
+// Checks the numbers of earlier steps under any flags: the delay and the windows against a search
+// of the whole stream, and means against integers in which neither sums nor products round.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,11 +30,13 @@ std::uint32_t bits(float x) {
 }
 
 std::int64_t place(std::uint32_t of) {
-    return (of & kSign) != 0 ? -static_cast<std::int64_t>(of & ~kSign) : static_cast<std::int64_t>(of);
+    return (of & kSign) != 0 ? -static_cast<std::int64_t>(of & ~kSign)
+                             : static_cast<std::int64_t>(of);
 }
 
 std::uint32_t at_place(std::int64_t place) {
-    return place < 0 ? kSign | static_cast<std::uint32_t>(-place) : static_cast<std::uint32_t>(place);
+    return place < 0 ? kSign | static_cast<std::uint32_t>(-place)
+                     : static_cast<std::uint32_t>(place);
 }
 
 /// An integer of many digits, each of which may be negative: a sum has no carries.
@@ -122,11 +124,11 @@ void expect_means(const Stream& stream, std::uint32_t n) {
     }
 }
 
-constexpr std::uint32_t kLengths[] = {2, 3, 4, 5, 7, 20, 64, 129};
+constexpr std::uint32_t kWindowLengths[] = {2, 3, 4, 5, 7, 20, 64, 129};
 
 TEST(Past, MeansOfNumbersOfAllSizes) {
     std::mt19937 random(1);
-    for (const std::uint32_t n : kLengths) {
+    for (const std::uint32_t n : kWindowLengths) {
         for (const std::uint32_t exponents : {2u, 30u, 255u}) {
             Stream stream;
             const std::uint32_t least = exponents == 30 ? 110 : 0;
@@ -143,8 +145,9 @@ TEST(Past, MeansOfNumbersOfAllSizes) {
 TEST(Past, SumsThatCancel) {
     Stream stream;
     for (int i = 0; i < 60; ++i)
-        for (const float x : {1e30F, 1.0F, -1e30F, 3e-45F, 1e-38F, -1.0F}) stream.push_back(bits(x));
-    for (const std::uint32_t n : kLengths) expect_means(stream, n);
+        for (const float x : {1e30F, 1.0F, -1e30F, 3e-45F, 1e-38F, -1.0F})
+            stream.push_back(bits(x));
+    for (const std::uint32_t n : kWindowLengths) expect_means(stream, n);
     std::vector<std::uint32_t> storage(3);
     etlmon::MeanState state;
     state.reset();
@@ -157,7 +160,7 @@ TEST(Past, SumsThatCancel) {
 TEST(Past, TheMeanOfEqualNumbersIsTheirs) {
     for (const std::uint32_t one : {0x1u, 0x3u, 0x7fffffu, 0x800000u, 0xffffffu, 0x3f800001u,
                                     0x7f7fffffu, 0x80000001u, 0xff7fffffu, 0xbf800001u})
-        for (const std::uint32_t n : kLengths) {
+        for (const std::uint32_t n : kWindowLengths) {
             std::vector<std::uint32_t> storage(n);
             etlmon::MeanState state;
             state.reset();
@@ -172,7 +175,8 @@ TEST(Past, TiesGoToEven) {
     Stream stream;
     for (const std::uint32_t x : {0u, 1u, 2u, 3u, 0x7fffffu, 0x800000u, 0x800001u, 0x1000000u,
                                   0x1000001u, 0x3f800000u, 0x3f800001u, 0x3f800002u})
-        for (const std::uint32_t y : {x, x + 1, x + 2}) stream.insert(stream.end(), {x, y, x | kSign});
+        for (const std::uint32_t y : {x, x + 1, x + 2})
+            stream.insert(stream.end(), {x, y, x | kSign});
     for (const std::uint32_t n : {2u, 4u}) expect_means(stream, n);
 }
 
@@ -193,7 +197,8 @@ TEST(Past, MeansOfInfinities) {
 Stream steps_of_all_kinds() {
     std::mt19937 random(3);
     Stream stream;
-    const std::uint32_t numbers[] = {bits(1), bits(-2), 0x1u, kSign | 1u, kInf, kInf | kSign, bits(5)};
+    const std::uint32_t numbers[] = {bits(1), bits(-2),     0x1u,   kSign | 1u,
+                                     kInf,    kInf | kSign, bits(5)};
     for (int step = 0; step < 4000; ++step)
         stream.push_back(any(random) % 12 == 0 ? kNan : numbers[any(random) % 7]);
     return stream;

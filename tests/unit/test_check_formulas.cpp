@@ -75,6 +75,31 @@ TEST(Canonical, Expressions) {
     EXPECT_EQ(checked.predicate("f").text, "mahalanobis([[1, 0], [0, 1]])(z, t1) < ");
 }
 
+TEST(Canonical, NumbersOfEarlierSteps) {
+    const Checked checked(
+        "spec t; rate 10 Hz; const k = 5; const d = 0.5 s; input x : f32 in [-3, 9]; input z : "
+        "f32[2]; target t1 = [[1, 2]];"
+        "predicate a = x@1@0.2s - (x - 0.50)@3 <= 1; predicate b = x@3 steps > 1.5;"
+        "predicate c = mean(l2(z, t1), k steps) < 1; predicate d2 = mean(l2(z,t1), d)@1s < 1;"
+        "predicate e = min(x, k) - min(x, d) < 1; predicate f = max(mean(x, 1 step), 2 steps) < 1;"
+        "monitor m = G (a && b && c && d2 && e && f);");
+    ASSERT_TRUE(checked.model) << checked.diagnostics();
+    EXPECT_EQ(checked.predicate("a").text, "x@3 - (x - 0.5)@3 <= ");
+    EXPECT_EQ(checked.predicate("b").text, "x@3 > ");
+    EXPECT_EQ(checked.predicate("c").text, "mean(l2(z, t1), 5 steps) < ");
+    EXPECT_EQ(checked.predicate("d2").text, "mean(l2(z, t1), 5 steps)@10 < ");
+    EXPECT_EQ(checked.predicate("e").text, "min(x, 5) - min(x, 5 steps) < ");
+    EXPECT_EQ(checked.predicate("f").text, "max(x, 2 steps) < ");
+    std::vector<std::string> pasts;
+    for (const check::Past& past : checked.model->pasts) pasts.push_back(past.text);
+    EXPECT_EQ(pasts, (std::vector<std::string>{"x@3", "(x - 0.5)@3", "mean(l2(z, t1), 5 steps)",
+                                               "mean(l2(z, t1), 5 steps)@10", "min(x, 5 steps)",
+                                               "max(x, 2 steps)"}));
+    EXPECT_EQ(checked.model->pasts[0].range.low, -3);
+    EXPECT_EQ(checked.model->pasts[1].range.high, 8.5F);
+    EXPECT_EQ(checked.model->pasts[2].range.low, 0);
+}
+
 class RandomFormulas {
 public:
     explicit RandomFormulas(unsigned seed) : random_(seed) {}

@@ -23,8 +23,8 @@ float value_of(const Expr& e, const std::vector<float>& inputs) {
     switch (e.kind) {
         case Expr::Kind::number: return e.number32;
         case Expr::Kind::scalar: return inputs[e.index];
-        case Expr::Kind::distance:
-        case Expr::Kind::past: break;
+        case Expr::Kind::distance: break;
+        case Expr::Kind::past: return a[0];  // where the inputs stay the same
         case Expr::Kind::negate: return -a[0];
         case Expr::Kind::add: return a[0] + a[1];
         case Expr::Kind::subtract: return a[0] - a[1];
@@ -45,7 +45,7 @@ public:
     std::string expression(int depth) {
         if (depth == 0 || below(6) == 0) return leaf();
         const std::string a = expression(depth - 1);
-        switch (below(9)) {
+        switch (below(11)) {
             case 0: return fmt::format("({} + {})", a, expression(depth - 1));
             case 1: return fmt::format("({} - {})", a, expression(depth - 1));
             case 2:
@@ -54,6 +54,8 @@ public:
             case 5: return fmt::format("abs({})", a);
             case 6: return fmt::format("sqrt({})", a);
             case 7: return fmt::format("min({}, {})", a, expression(depth - 1));
+            case 8: return fmt::format("({})@2", a);
+            case 9: return fmt::format("mean({}, 3 steps)", a);
             default: return fmt::format("max({}, {}, -{})", a, expression(depth - 1), leaf());
         }
     }

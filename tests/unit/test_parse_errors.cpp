@@ -154,8 +154,10 @@ TEST(Words, UnknownKeywordsWithTheNearest) {
            "did you mean 'cosine'?");
     expect("let f = min l3(z, t) < 1;", "E0106 2:13 expected a distance after 'min', found 'l3'\n",
            "did you mean 'l2'?");
-    expect("let f = mean(z) < 1;", "E0106 2:13 expected a distance after 'mean', found '('\n",
-           "distances: l2, l2sq");
+    expect("let f = mean lz(z, t) < 1;",
+           "E0106 2:14 expected a distance after 'mean', found 'lz'\n", "did you mean 'l2'?");
+    expect("let f = mean(z) < 1;", "E0104 2:15 expected an operator or ',' after 'z', found ')'\n",
+           "min(...) and max(...) need two or more expressions or, as mean(...), one and a time");
     expect("let f = a until b unti c;",
            "E0104 2:19 expected an operator or ';' after 'b', found 'unti'\n",
            "did you mean 'until'?");
@@ -281,7 +283,7 @@ TEST(Characters, UnexpectedOnesWithHints) {
     };
     EXPECT_EQ(of_line("let f = a ≤ 1;"), "E0102 2:11 unexpected character '≤'\n");
     EXPECT_EQ(hint("let f = a ≤ 1;"), "'less or equal' is '<='");
-    EXPECT_EQ(of_line("let f = a @ b;"), "E0102 2:11 unexpected character '@'\n");
+    EXPECT_EQ(of_line("let f = a $ b;"), "E0102 2:11 unexpected character '$'\n");
     EXPECT_EQ(of_line("let f = a \x01;"), "E0102 2:11 unexpected character U+0001\n");
     EXPECT_EQ(of_line("let f = x <> 1;"), "E0102 2:11 there is no operator '<>'\n");
     EXPECT_EQ(hint("let f = x <> 1;"), "'not equal' is '!='");

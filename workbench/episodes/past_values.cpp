@@ -12,7 +12,7 @@ using Kind = check::Past::Kind;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Adds to a sum that is kept in parts, whose bits do not overlap, without rounding (Shewchuk 1997).
+/// Adds to a sum without rounding: it is kept in parts whose bits do not overlap (Shewchuk 1997).
 void add_exactly(std::vector<double>& parts, double x) {
     std::size_t kept = 0;
     for (const double part : parts) {

@@ -8,7 +8,7 @@ namespace etlc::check {
 
 inline constexpr std::uint32_t kUnbounded = std::numeric_limits<std::uint32_t>::max();
 inline constexpr std::uint32_t kMaxBound = (1U << 31U) - 2U;  ///< in steps
-/// Of numbers that earlier steps have a part in, since every step takes memory.
+/// Limit of numbers that earlier steps have a part in, in steps, each of which takes memory.
 inline constexpr std::uint32_t kMaxPast = 1U << 24U;
 
 }  // namespace etlc::check

@@ -1,4 +1,5 @@
-// Checks numbers that earlier steps have a part in: EXPR@3s, mean(EXPR, 2s), min and max of a window.
+// Checks numbers that earlier steps have a part in: EXPR@3s, mean(EXPR, 2s), min and max of
+// windows.
 #include <fmt/format.h>
 
 #include "check/numbers/decimal.hpp"
@@ -23,8 +24,8 @@ std::nullopt_t report_too_long(Context& c, Span span, std::uint64_t steps) {
 /// Returns the length of a window in steps, from 1 on; nothing after an error.
 std::optional<std::uint32_t> window_steps(Context& c, PastKind kind, const ast::Bound& time) {
     if (time.unit.empty()) {
-        const std::string number = time.number.constant.empty() ? time.number.text
-                                                                : time.number.constant;
+        const std::string number =
+            time.number.constant.empty() ? time.number.text : time.number.constant;
         auto& error = c.report(
             Code::past_form, time.span,
             fmt::format("the time of a {} needs a unit; write '{} steps', or a duration: '{} s'",
@@ -53,10 +54,11 @@ const ast::Expr* undelayed(Context& c, const ast::Expr& written, std::uint64_t& 
     return at;
 }
 
+/// The unit tells min(x, 20 steps) from min(x, 20).
 std::string text_of(const Model& model, const Past& past) {
     const std::string of = print(model, past.expression);
     if (past.kind != PastKind::ago)
-        return fmt::format("{}({}, {})", word(past.kind), of, past.steps);
+        return fmt::format("{}({}, {} {})", word(past.kind), of, past.steps, ast::kStepsUnit);
     const bool whole = ast::operator_of(past.expression.kind).level == ast::kPrimary;
     return whole ? fmt::format("{}@{}", of, past.steps) : fmt::format("({})@{}", of, past.steps);
 }
@@ -83,7 +85,8 @@ std::optional<Expr> check_past(Context& c, const ast::Expr& written) {
     past.kind = written.past->kind;
     past.span = written.span;
     if (past.kind == PastKind::count)
-        return c.no_value(Code::past_form, written.span, "counts are not available");
+        return c.no_value(Code::past_form, written.span,
+                          "'count', how often a formula began to hold, is not available yet");
     std::uint64_t steps = 0;
     const ast::Expr* of = written.arguments[0].get();
     if (past.kind == PastKind::ago) {

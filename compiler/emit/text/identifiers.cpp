@@ -89,9 +89,10 @@ std::string name_of(const check::Model& model, const check::Past& past) {
                                          : fmt::format("{}_{}", word(past.kind), past.steps);
     if (model.retargetable) return otherwise;
     const std::string of = identifier(check::print(model, past.expression), "");
-    if (!is_ago) return identifier(past.text, otherwise);
-    return of.empty() ? otherwise
-                      : identifier(fmt::format("{}_{}_ago", of, past.steps), otherwise);
+    if (of.empty()) return otherwise;
+    return identifier(is_ago ? fmt::format("{}_{}_ago", of, past.steps)
+                             : fmt::format("{}_{}_{}", word(past.kind), of, past.steps),
+                      otherwise);
 }
 
 std::string with_more(const std::string& operand, bool max) {

@@ -1,5 +1,5 @@
-// The state of a number that earlier steps have a part in, with the runtime's arithmetic: the bits of
-// generated code. Memory is allocated by the constructor.
+// The state of a number that earlier steps have a part in, with the runtime's arithmetic: the bits
+// of generated code. Memory is allocated by the constructor.
 #pragma once
 
 #include <cstdint>

@@ -179,7 +179,10 @@ std::string reading_text(const Reading& reading, const ir::Graph& graph) {
 
 std::string print(const Plan& plan) {
     const ir::Graph& graph = *plan.formulas;
-    std::string text = fmt::format("plan {}\nstreams\n", plan.model->name);
+    std::string text = fmt::format("plan {}\n", plan.model->name);
+    if (!plan.pasts.empty()) text += "numbers of earlier steps\n";
+    for (const Index past : plan.pasts) text += fmt::format("  {}\n", plan.model->pasts[past].text);
+    text += "streams\n";
     for (Slot slot = 0; slot < plan.streams.size(); ++slot) text += stream_text(plan, graph, slot);
     if (!plan.readings.empty()) text += "readings\n";
     for (std::size_t i = 0; i < plan.readings.size(); ++i)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Numbers of earlier steps: the number of N steps ago; mean, min and max of the last N. Takes: one
-// number a step, NaN where it is missing. Gives: a number, NaN while one of those that it is made of
-// is missing or before the first step. Keeps true: constant work a step, whatever N; all arithmetic
-// is on integers, so every build gives the same bits. A mean is the exact sum of the N numbers,
-// divided by N and rounded once: nothing accumulates. The numbers pass as their bits, since clang
-// takes float parameters for numbers under -ffast-math.
+// number a step, NaN where it is missing. Gives: a number, NaN while one of those that it is made
+// of is missing or before the first step. Keeps true: constant work a step, whatever N; all
+// arithmetic is on integers, so every build gives the same bits. A mean is the exact sum of the N
+// numbers, divided by N and rounded once: nothing accumulates. The numbers pass as their bits,
+// since clang takes float parameters for numbers under -ffast-math.
 #pragma once
 
 #include <stdint.h>
@@ -69,9 +69,9 @@ class ExactSum {
   }
 
  private:
-  static constexpr uint32_t kFraction = 23;           // bits
-  static constexpr uint32_t kOne = 1u << kFraction;   // the bit that normal floats do not store
-  static constexpr uint32_t kWords = 10;              // 277 bits of a float, 31 of N, and a sign
+  static constexpr uint32_t kFraction = 23;          // bits
+  static constexpr uint32_t kOne = 1u << kFraction;  // the bit that normal floats do not store
+  static constexpr uint32_t kWords = 10;             // 277 bits of a float, 31 of N, and a sign
 
   /// Adds to a word, or subtracts from it. Returns what the next word has to take over.
   uint64_t change(uint32_t at, uint32_t part, uint64_t rest, bool negative) noexcept {
@@ -104,7 +104,7 @@ class ExactSum {
 
 }  // namespace detail
 
-/// What a mean keeps besides its numbers.
+/// The state of a mean besides its numbers.
 struct MeanState {
   detail::ExactSum sum;  ///< of the finite ones
   uint32_t cursor;       ///< slot of the oldest number, and of the next
@@ -160,8 +160,8 @@ template <class Monoid>
 inline uint32_t extreme_push(Key* storage, uint32_t& cursor, uint32_t& count, uint32_t n,
                              uint32_t bits) noexcept {
   const bool missing = is_nan_bits(bits);
-  const Key key = window_push<Monoid>(storage, cursor, n,
-                                      missing ? Monoid::identity() : detail::ordered(bits));
+  const Key key =
+      window_push<Monoid>(storage, cursor, n, missing ? Monoid::identity() : detail::ordered(bits));
   count = missing ? 0 : count + (count < n ? 1u : 0u);
   return count == n ? static_cast<uint32_t>(detail::ordered(static_cast<uint32_t>(key)))
                     : detail::kMissingBits;
