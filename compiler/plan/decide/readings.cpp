@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "plan/budget/budget.hpp"
+#include "plan/decide/chain.hpp"
 #include "plan/decide/straight.hpp"
 
 namespace etlc::plan {
@@ -101,6 +102,8 @@ std::optional<std::uint32_t> ReadingBuilder::of(NodeId id) {
         reading = add(id, "fold", fold(streams_, node, id));
     else if (auto code = response(streams_, graph_, id, Answer::at_once))
         reading = add(id, "response", std::move(*code));
+    else if (auto links = chain(streams_, graph_, id))
+        reading = add(id, "chain", std::move(*links));
     else
         reading = nested(node, id);
     if (reading) known_.emplace(key, *reading);

@@ -1,0 +1,420 @@
+#include "plan/decide/chain.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace etlc::plan {
+
+namespace {
+
+using ir::Interval;
+using ir::Node;
+using ir::Op;
+
+/// A chain with more delays than this is left to the other readings.
+constexpr std::size_t kMostDelays = 64;
+
+/// The operators of a chain whose ways are joined by max. Its dual exchanges each pair.
+struct Operators {
+    bool max = true;
+
+    Op either() const { return max ? Op::disjunction : Op::conjunction; }
+    Op both() const { return max ? Op::conjunction : Op::disjunction; }
+    Op seek() const { return max ? Op::eventually : Op::always; }
+    Op hold() const { return max ? Op::always : Op::eventually; }
+    Op wait() const { return max ? Op::until : Op::release; }
+    Op guard() const { return max ? Op::release : Op::until; }
+    /// Returns whether an obligation that is open at the end of the prefix is false (in the dual:
+    /// true), so that the value leaves it out.
+    bool is_owed(Op op) const { return ir::takes_max(op) == max; }
+};
+
+/// Returns what a `guard` demands besides its left side, which looks ahead, as in g R (f || g): the
+/// operands of f. Returns nothing where its right side has another form.
+std::optional<std::vector<NodeId>> beside(const ir::Graph& graph, const Node& guard, Op either) {
+    const NodeId left = guard.operands[0];
+    const Node& right = graph[guard.operands[1]];
+    if (right.op != either) return std::nullopt;
+    std::vector<NodeId> parts{left};
+    if (graph[left].op == either) parts = graph[left].operands;
+    std::vector<NodeId> rest;  // operands are sorted
+    std::set_difference(right.operands.begin(), right.operands.end(), parts.begin(), parts.end(),
+                        std::back_inserter(rest));
+    const bool holds_left = rest.size() + parts.size() == right.operands.size();
+    const bool without_future =
+        std::none_of(rest.begin(), rest.end(), [&](NodeId part) { return graph[part].has_future; });
+    return holds_left && without_future ? std::optional(rest) : std::nullopt;
+}
+
+/// Finds out whether a formula is a chain.
+class ChainRecognition {
+public:
+    ChainRecognition(const ir::Graph& graph, Operators operators) : graph_(graph), is_(operators) {}
+
+    bool is_chain(NodeId id) {
+        if (!looks_ahead(id)) return true;
+        if (const auto known = known_.find(id); known != known_.end()) return known->second;
+        const bool result = is_chain(graph_[id]);
+        known_.emplace(id, result);
+        return result;
+    }
+
+private:
+    bool looks_ahead(NodeId id) const { return graph_[id].has_future; }
+
+    bool is_chain(const Node& node) {
+        if (node.op == is_.either() || node.op == is_.both())
+            return (node.op == is_.either() || one_looks_ahead(node)) &&
+                   std::all_of(node.operands.begin(), node.operands.end(),
+                               [&](NodeId operand) { return is_chain(operand); });
+        if (ir::info(node.op).tense != ir::Tense::future) return false;
+        const NodeId last = node.operands.back();
+        if (node.op == is_.seek() || node.op == is_.hold()) {
+            const bool is_delay = node.interval.low == node.interval.high;
+            if (is_delay) delays_ += node.interval.low;
+            const bool fits = node.op == is_.seek() || is_delay || !looks_ahead(last);
+            return fits && in_reach(node.interval, is_delay) && is_chain(last);
+        }
+        if (!in_reach(node.interval, false)) return false;
+        if (node.op == is_.wait()) return !looks_ahead(node.operands[0]) && is_chain(last);
+        const bool fits = !looks_ahead(last) || beside(graph_, node, is_.either()).has_value();
+        return fits && is_chain(node.operands[0]);
+    }
+
+    bool in_reach(Interval interval, bool is_delay) {
+        if (!is_delay) delays_ += interval.low;
+        return (is_delay || !interval.bounded()) && delays_ <= kMostDelays;
+    }
+
+    bool one_looks_ahead(const Node& node) const {
+        return std::count_if(node.operands.begin(), node.operands.end(),
+                             [&](NodeId operand) { return looks_ahead(operand); }) == 1;
+    }
+
+    const ir::Graph& graph_;
+    Operators is_;
+    std::size_t delays_ = 0;
+    std::map<NodeId, bool> known_;
+};
+
+/// A place that ways pass through: a formula that begins at this step or, as an obligation, is open
+/// from the next step on. An unbounded operator from now on is both.
+struct Place {
+    NodeId formula = 0;
+    bool owed = false;
+
+    auto operator<=>(const Place&) const = default;
+};
+
+class ChainWriting {
+public:
+    ChainWriting(StreamBuilder& streams, ir::Graph& graph, bool max)
+        : streams_(streams), graph_(graph), is_{max} {}
+
+    Straight write(NodeId root) {
+        const Place start = owe(root);
+        order(start);
+        std::reverse(order_.begin(), order_.end());
+        begin(start);
+        for (const Place& place : order_) pass(place);
+        settle();
+        for (auto place = order_.rbegin(); place != order_.rend(); ++place) keep(*place);
+        read();
+        return std::move(code_);
+    }
+
+private:
+    /// The state of a place during one step.
+    struct Visit {
+        std::vector<Term> now;      ///< ways that arrive at this step
+        std::vector<Term> next;     ///< ways that arrive at the next one
+        std::optional<Term> kept;   ///< its register, if it has one, or a constant
+        std::optional<Term> stays;  ///< the ways that stay for the next step
+    };
+
+    // ---- terms of a chain of either kind
+
+    Term best(std::vector<Term> terms) const { return Term::extreme(is_.max, std::move(terms)); }
+    Term through(Term way, const std::vector<NodeId>& literals) {
+        std::vector<Term> terms{std::move(way)};
+        for (NodeId literal : literals) terms.push_back(streams_.term(streams_.of(literal)));
+        return Term::extreme(!is_.max, std::move(terms));
+    }
+    std::vector<NodeId> parts(NodeId id, Op op) const {
+        return graph_[id].op == op ? graph_[id].operands : std::vector<NodeId>{id};
+    }
+
+    // ---- places
+
+    bool is_open_ended(const Node& node) const {
+        return ir::info(node.op).tense == ir::Tense::future && node.interval == Interval{};
+    }
+
+    /// Returns the place of a formula that must hold from the next step on. X F f and F f are one
+    /// where both are false at the end of the prefix, and likewise for their duals.
+    Place owe(NodeId id) const {
+        const Node& node = graph_[id];
+        if (is_open_ended(node)) return {id, false};
+        if (node.interval == Interval{0, 0} && ir::info(node.op).tense == ir::Tense::future) {
+            const Node& inner = graph_[node.operands[0]];
+            if (is_open_ended(inner) && ir::takes_max(inner.op) == ir::takes_max(node.op))
+                return {node.operands[0], false};
+        }
+        return {id, true};
+    }
+
+    Place later(const Node& node) {
+        return owe(graph_.keep(node.op, node.interval.earlier(), node.operands, node.span));
+    }
+
+    /// Calls to(place) for each place that ways reach from this one.
+    template <class To>
+    void for_each_beyond(const Place& place, const To& to) {
+        const Node node = graph_[place.formula];  // a copy: the graph grows meanwhile
+        const auto now = [&](NodeId id) { to(Place{id, false}); };
+        if (place.owed) return now(place.formula);
+        if (!node.has_future) return;
+        if (node.op == is_.either() || node.op == is_.both()) {
+            for (NodeId operand : node.operands)
+                if (graph_[operand].has_future) now(operand);
+            return;
+        }
+        const bool opens_later = node.interval.low > 0;
+        if (opens_later) to(later(node));
+        if (node.op == is_.guard()) return now(node.operands[0]);
+        if (!opens_later) now(node.operands.back());
+    }
+
+    /// Adds the places that ways reach, those beyond a place before it.
+    void order(const Place& place) {
+        if (!graph_[place.formula].has_future) return;
+        if (!visits_.emplace(place, Visit{}).second) return;
+        for_each_beyond(place, [&](const Place& beyond) { order(beyond); });
+        order_.push_back(place);
+    }
+
+    // ---- the step, forwards
+
+    /// Adds the registers. The first one begins true (in the dual: false).
+    void begin(const Place& start) {
+        for (const Place& place : order_) {
+            const Node& node = graph_[place.formula];
+            if (!place.owed && !is_open_ended(node)) continue;
+            Visit& visit = visits_.at(place);
+            const bool first = place == start;
+            if (first && node.op == is_.seek() && is_open_ended(node)) {
+                visit.kept = Term::constant(neutral(!is_.max));
+                continue;
+            }
+            visit.kept = Term::reg(code_.registers.size());
+            code_.registers.push_back({.first = neutral(first ? !is_.max : is_.max),
+                                       .suffix = first ? "_whole" : "_pending",
+                                       .before = "pending: ",
+                                       .formulas = {place.formula}});
+        }
+    }
+
+    void assign(const Term& to, Term value) {
+        code_.assignments.push_back(
+            {.target = to.kind, .index = to.index, .value = std::move(value)});
+    }
+
+    /// Returns the term, by a name if it is not one operand.
+    Term named(Term term) {
+        if (term.operands.empty()) return term;
+        const Term local = Term::local(code_.locals.size());
+        code_.locals.emplace_back("_open");
+        assign(local, std::move(term));
+        return local;
+    }
+
+    void arrive(NodeId id, const Term& way) {
+        if (!graph_[id].has_future)
+            done_.push_back(through(way, parts(id, is_.both())));
+        else
+            visits_.at({id, false}).now.push_back(way);
+    }
+
+    void arrive_later(const Node& node, const Term& way) {
+        visits_.at(later(node)).next.push_back(way);
+    }
+
+    void pass(const Place& place) {
+        const Node node = graph_[place.formula];  // a copy: the graph grows meanwhile
+        Visit& visit = visits_.at(place);
+        if (place.owed) return arrive(place.formula, *visit.kept);
+        if (!visit.kept) return begin_now(node, best(visit.now));
+        std::vector<Term> ways{*visit.kept};
+        ways.insert(ways.end(), visit.now.begin(), visit.now.end());
+        pass_open_ended(node, visit, best(std::move(ways)));
+    }
+
+    /// Passes a way to what a formula without a register asks for.
+    void begin_now(const Node& node, Term way) {
+        if (node.op == is_.either()) {
+            std::vector<NodeId> present;
+            way = named(std::move(way));
+            for (NodeId operand : node.operands)
+                graph_[operand].has_future ? arrive(operand, way) : present.push_back(operand);
+            if (!present.empty()) arrive(graph_.combine(node.op, present, node.span), way);
+            return;
+        }
+        if (node.op == is_.both()) {
+            std::vector<NodeId> present;
+            NodeId ahead = 0;
+            for (NodeId operand : node.operands)
+                graph_[operand].has_future ? void(ahead = operand) : present.push_back(operand);
+            return arrive(ahead, through(std::move(way), present));
+        }
+        if (node.interval.low == 0) return arrive(node.operands[0], way);  // over [0,0]
+        if (node.op == is_.guard()) {
+            way = named(std::move(way));
+            arrive(node.operands[0], way);
+        }
+        if (node.op == is_.wait())
+            way = through(std::move(way), parts(node.operands[0], is_.both()));
+        arrive_later(node, way);
+    }
+
+    /// Passes the open ways of an unbounded operator on, and computes which of them stay.
+    void pass_open_ended(const Node& node, Visit& visit, Term open) {
+        const NodeId last = node.operands.back();
+        if (node.op == is_.seek()) {
+            open = stored(visit, std::move(open));
+            arrive(last, open);
+            visit.stays = *visit.kept;
+        } else if (node.op == is_.hold()) {
+            visit.stays = through(std::move(open), parts(last, is_.both()));
+        } else if (node.op == is_.wait()) {
+            open = named(std::move(open));
+            arrive(last, open);
+            visit.stays = through(open, parts(node.operands[0], is_.both()));
+        } else if (!graph_[last].has_future) {
+            arrive(node.operands[0],
+                   stored(visit, through(std::move(open), parts(last, is_.both()))));
+            visit.stays = *visit.kept;
+        } else {
+            open = named(std::move(open));
+            arrive(node.operands[0], open);
+            const NodeId other =
+                graph_.combine(is_.either(), *beside(graph_, node, is_.either()), node.span);
+            visit.stays = through(open, {other});
+        }
+    }
+
+    /// Stores a value at once: what follows in this step reads the new one.
+    Term stored(const Visit& visit, Term value) {
+        if (visit.kept->kind == Term::Kind::reg && value != *visit.kept)
+            assign(*visit.kept, std::move(value));
+        return *visit.kept;
+    }
+
+    /// Stores the ways with nothing pending.
+    void settle() {
+        if (done_.empty()) return;
+        settled_ = Term::reg(code_.registers.size());
+        code_.registers.push_back(
+            {.first = neutral(is_.max),
+             .suffix = is_.max ? "_met" : "_settled",
+             .before = is_.max ? "nothing is pending" : "where nothing is pending"});
+        done_.insert(done_.begin(), *settled_);
+        assign(*settled_, best(done_));
+    }
+
+    // ---- the step, backwards
+
+    /// Stores what the next step needs, after all that read the old value.
+    void keep(const Place& place) {
+        Visit& visit = visits_.at(place);
+        if (!visit.kept || visit.kept->kind != Term::Kind::reg) return;
+        std::vector<Term> ways = visit.next;
+        if (visit.stays) ways.insert(ways.begin(), *visit.stays);
+        Term value = best(std::move(ways));
+        if (value != *visit.kept) assign(*visit.kept, std::move(value));
+    }
+
+    // ---- the reading
+
+    /// Adds min(kept, key) to a max, grouped by key; in the dual: max and min exchanged.
+    class Bound {
+    public:
+        explicit Bound(bool max) : max_(max) {}
+        void add(const Term& kept, const Term& key) {
+            for (auto& [known, registers] : by_key_)
+                if (known == key) return registers.push_back(kept);
+            by_key_.emplace_back(key, std::vector<Term>{kept});
+        }
+        Term term() const {
+            std::vector<Term> terms;
+            for (const auto& [key, registers] : by_key_)
+                terms.push_back(Term::extreme(!max_, {Term::extreme(max_, registers), key}));
+            return Term::extreme(max_, std::move(terms));
+        }
+
+    private:
+        bool max_;
+        std::vector<std::pair<Term, std::vector<Term>>> by_key_;
+    };
+
+    /// Computes the bounds as for a state machine: of two unseen values of each obligation, one
+    /// counts towards what may still come, the other where the obligation may stay open forever.
+    void read() {
+        std::vector<Term> rho;
+        Bound hope(is_.max);
+        Bound sure(is_.max);
+        const Term all = Term::constant(neutral(!is_.max));
+        if (settled_) {
+            rho.push_back(*settled_);
+            hope.add(*settled_, all);
+            sure.add(*settled_, all);
+        }
+        for (const Place& place : order_) {
+            const Visit& visit = visits_.at(place);
+            if (!visit.kept) continue;
+            const Slot unseen = streams_.unseen(place.formula);
+            const End far = is_.max ? End::high : End::low;
+            const End near = is_.max ? End::low : End::high;
+            if (is_.is_owed(graph_[place.formula].op)) {
+                hope.add(*visit.kept, streams_.term(unseen, far));
+                continue;
+            }
+            rho.push_back(*visit.kept);
+            hope.add(*visit.kept, all);
+            sure.add(*visit.kept, streams_.term(unseen, near));
+        }
+        code_.rho = best(std::move(rho));
+        (is_.max ? code_.lower : code_.upper) = sure.term();
+        (is_.max ? code_.upper : code_.lower) = hope.term();
+    }
+
+    StreamBuilder& streams_;
+    ir::Graph& graph_;
+    Operators is_;
+    std::vector<Place> order_;  ///< those beyond a place after it
+    std::map<Place, Visit> visits_;
+    std::vector<Term> done_;
+    std::optional<Term> settled_;
+    Straight code_;
+};
+
+std::size_t operations(const Straight& code) {
+    std::size_t sum =
+        2 * combinations(code.rho) + combinations(code.lower) + combinations(code.upper);
+    for (const Assignment& assignment : code.assignments) sum += 2 * combinations(assignment.value);
+    return sum;
+}
+
+}  // namespace
+
+std::optional<Straight> chain(StreamBuilder& streams, ir::Graph& graph, NodeId id) {
+    std::optional<Straight> found;
+    for (const bool max : {true, false}) {
+        if (!ChainRecognition(graph, {max}).is_chain(id)) continue;
+        Straight code = ChainWriting(streams, graph, max).write(id);
+        if (!found || operations(code) < operations(*found)) found = std::move(code);
+    }
+    return found;
+}
+
+}  // namespace etlc::plan
