@@ -12,8 +12,9 @@ using ir::Interval;
 using ir::Node;
 using ir::Op;
 
-/// A chain with more delays than this is left to the other readings.
-constexpr std::size_t kMostDelays = 64;
+/// Formulas with longer delays are left to the other readings: a chain has a register for each
+/// step.
+constexpr std::uint32_t kLongestDelay = 8;
 
 /// The operators of a chain whose ways are joined by max. Its dual exchanges each pair.
 struct Operators {
@@ -70,21 +71,15 @@ private:
                                [&](NodeId operand) { return is_chain(operand); });
         if (ir::info(node.op).tense != ir::Tense::future) return false;
         const NodeId last = node.operands.back();
-        if (node.op == is_.seek() || node.op == is_.hold()) {
-            const bool is_delay = node.interval.low == node.interval.high;
-            if (is_delay) delays_ += node.interval.low;
-            const bool fits = node.op == is_.seek() || is_delay || !looks_ahead(last);
-            return fits && in_reach(node.interval, is_delay) && is_chain(last);
-        }
-        if (!in_reach(node.interval, false)) return false;
+        const Interval interval = node.interval;
+        const bool is_delay = interval.low == interval.high;
+        if (interval.low > kLongestDelay || (interval.bounded() && !is_delay)) return false;
+        if (node.op == is_.seek() || (node.op == is_.hold() && is_delay)) return is_chain(last);
+        if (node.op == is_.hold()) return !looks_ahead(last);
+        if (is_delay) return false;
         if (node.op == is_.wait()) return !looks_ahead(node.operands[0]) && is_chain(last);
         const bool fits = !looks_ahead(last) || beside(graph_, node, is_.either()).has_value();
         return fits && is_chain(node.operands[0]);
-    }
-
-    bool in_reach(Interval interval, bool is_delay) {
-        if (!is_delay) delays_ += interval.low;
-        return (is_delay || !interval.bounded()) && delays_ <= kMostDelays;
     }
 
     bool one_looks_ahead(const Node& node) const {
@@ -94,7 +89,6 @@ private:
 
     const ir::Graph& graph_;
     Operators is_;
-    std::size_t delays_ = 0;
     std::map<NodeId, bool> known_;
 };
 
