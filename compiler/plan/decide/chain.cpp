@@ -4,6 +4,10 @@
 #include <map>
 #include <utility>
 
+#include "plan/decide/chain_form.hpp"
+#include "plan/decide/schedule.hpp"
+#include "plan/decide/straight.hpp"
+
 namespace etlc::plan {
 
 namespace {
@@ -11,86 +15,6 @@ namespace {
 using ir::Interval;
 using ir::Node;
 using ir::Op;
-
-/// Formulas with longer delays are left to the other readings: a chain has a register for each
-/// step.
-constexpr std::uint32_t kLongestDelay = 8;
-
-/// The operators of a chain whose ways are joined by max. Its dual exchanges each pair.
-struct Operators {
-    bool max = true;
-
-    Op either() const { return max ? Op::disjunction : Op::conjunction; }
-    Op both() const { return max ? Op::conjunction : Op::disjunction; }
-    Op seek() const { return max ? Op::eventually : Op::always; }
-    Op hold() const { return max ? Op::always : Op::eventually; }
-    Op wait() const { return max ? Op::until : Op::release; }
-    Op guard() const { return max ? Op::release : Op::until; }
-    /// Returns whether an obligation that is open at the end of the prefix is false (in the dual:
-    /// true), so that the value leaves it out.
-    bool is_owed(Op op) const { return ir::takes_max(op) == max; }
-};
-
-/// Returns what a `guard` demands besides its left side, which looks ahead, as in g R (f || g): the
-/// operands of f. Returns nothing where its right side has another form.
-std::optional<std::vector<NodeId>> beside(const ir::Graph& graph, const Node& guard, Op either) {
-    const NodeId left = guard.operands[0];
-    const Node& right = graph[guard.operands[1]];
-    if (right.op != either) return std::nullopt;
-    std::vector<NodeId> parts{left};
-    if (graph[left].op == either) parts = graph[left].operands;
-    std::vector<NodeId> rest;  // operands are sorted
-    std::set_difference(right.operands.begin(), right.operands.end(), parts.begin(), parts.end(),
-                        std::back_inserter(rest));
-    const bool holds_left = rest.size() + parts.size() == right.operands.size();
-    const bool without_future =
-        std::none_of(rest.begin(), rest.end(), [&](NodeId part) { return graph[part].has_future; });
-    return holds_left && without_future ? std::optional(rest) : std::nullopt;
-}
-
-/// Finds out whether a formula is a chain.
-class ChainRecognition {
-public:
-    ChainRecognition(const ir::Graph& graph, Operators operators) : graph_(graph), is_(operators) {}
-
-    bool is_chain(NodeId id) {
-        if (!looks_ahead(id)) return true;
-        if (const auto known = known_.find(id); known != known_.end()) return known->second;
-        const bool result = is_chain(graph_[id]);
-        known_.emplace(id, result);
-        return result;
-    }
-
-private:
-    bool looks_ahead(NodeId id) const { return graph_[id].has_future; }
-
-    bool is_chain(const Node& node) {
-        if (node.op == is_.either() || node.op == is_.both())
-            return (node.op == is_.either() || one_looks_ahead(node)) &&
-                   std::all_of(node.operands.begin(), node.operands.end(),
-                               [&](NodeId operand) { return is_chain(operand); });
-        if (ir::info(node.op).tense != ir::Tense::future) return false;
-        const NodeId last = node.operands.back();
-        const Interval interval = node.interval;
-        const bool is_delay = interval.low == interval.high;
-        if (interval.low > kLongestDelay || (interval.bounded() && !is_delay)) return false;
-        if (node.op == is_.seek() || (node.op == is_.hold() && is_delay)) return is_chain(last);
-        if (node.op == is_.hold()) return !looks_ahead(last);
-        if (is_delay) return false;
-        if (node.op == is_.wait()) return !looks_ahead(node.operands[0]) && is_chain(last);
-        const bool fits = !looks_ahead(last) || beside(graph_, node, is_.either()).has_value();
-        return fits && is_chain(node.operands[0]);
-    }
-
-    bool one_looks_ahead(const Node& node) const {
-        return std::count_if(node.operands.begin(), node.operands.end(),
-                             [&](NodeId operand) { return looks_ahead(operand); }) == 1;
-    }
-
-    const ir::Graph& graph_;
-    Operators is_;
-    std::map<NodeId, bool> known_;
-};
 
 /// A place that ways pass through: a formula that begins at this step or, as an obligation, is open
 /// from the next step on. An unbounded operator from now on is both.
@@ -113,7 +37,9 @@ public:
         begin(start);
         for (const Place& place : order_) pass(place);
         settle();
-        for (auto place = order_.rbegin(); place != order_.rend(); ++place) keep(*place);
+        Schedule schedule(std::move(code_.assignments));
+        for (auto place = order_.rbegin(); place != order_.rend(); ++place) keep(*place, schedule);
+        code_.assignments = schedule.end();
         read();
         return std::move(code_);
     }
@@ -318,73 +244,75 @@ private:
 
     // ---- the step, backwards
 
-    /// Stores what the next step needs, after all that read the old value.
-    void keep(const Place& place) {
+    /// Joins ways through the same literals: max(min(a, p), min(b, p)) to min(max(a, b), p).
+    std::vector<Term> joined(std::vector<Term> ways) const {
+        const auto is_through = [&](const Term& way) {
+            return way.kind == Term::Kind::extreme && way.max != is_.max;
+        };
+        std::vector<Term> result;
+        for (Term& way : ways) {
+            const auto same = std::find_if(result.begin(), result.end(), [&](const Term& other) {
+                return is_through(way) && is_through(other) &&
+                       std::equal(way.operands.begin() + 1, way.operands.end(),
+                                  other.operands.begin() + 1, other.operands.end());
+            });
+            if (same == result.end()) {
+                result.push_back(std::move(way));
+                continue;
+            }
+            std::vector<Term> operands = std::move(same->operands);
+            operands[0] = best({std::move(operands[0]), std::move(way.operands[0])});
+            *same = Term::extreme(!is_.max, std::move(operands));
+        }
+        return result;
+    }
+
+    /// Stores what the next step needs.
+    void keep(const Place& place, Schedule& schedule) {
         Visit& visit = visits_.at(place);
         if (!visit.kept || visit.kept->kind != Term::Kind::reg) return;
         std::vector<Term> ways = visit.next;
         if (visit.stays) ways.insert(ways.begin(), *visit.stays);
-        Term value = best(std::move(ways));
-        if (value != *visit.kept) assign(*visit.kept, std::move(value));
+        Term value = best(joined(std::move(ways)));
+        if (value != *visit.kept) schedule.add(*visit.kept, std::move(value));
     }
 
     // ---- the reading
-
-    /// Adds min(kept, key) to a max, grouped by key; in the dual: max and min exchanged.
-    class Bound {
-    public:
-        explicit Bound(bool max) : max_(max) {}
-        void add(const Term& kept, const Term& key) {
-            for (auto& [known, registers] : by_key_)
-                if (known == key) return registers.push_back(kept);
-            by_key_.emplace_back(key, std::vector<Term>{kept});
-        }
-        Term term() const {
-            std::vector<Term> terms;
-            for (const auto& [key, registers] : by_key_)
-                terms.push_back(Term::extreme(!max_, {Term::extreme(max_, registers), key}));
-            return Term::extreme(max_, std::move(terms));
-        }
-
-    private:
-        bool max_;
-        std::vector<std::pair<Term, std::vector<Term>>> by_key_;
-    };
 
     /// Computes the bounds as for a state machine: of two unseen values of each obligation, one
     /// counts towards what may still come, the other where the obligation may stay open forever.
     void read() {
         std::vector<Term> rho;
-        Bound hope(is_.max);
-        Bound sure(is_.max);
-        const Term all = Term::constant(neutral(!is_.max));
+        std::vector<Limited> hope;
+        std::vector<Limited> sure;
+        const Term anything = Term::constant(neutral(!is_.max));
         if (settled_) {
             rho.push_back(*settled_);
-            hope.add(*settled_, all);
-            sure.add(*settled_, all);
+            hope.push_back({*settled_, anything});
+            sure.push_back({*settled_, anything});
         }
+        const End far = is_.max ? End::high : End::low;
+        const End near = is_.max ? End::low : End::high;
         for (const Place& place : order_) {
             const Visit& visit = visits_.at(place);
             if (!visit.kept) continue;
             const Slot unseen = streams_.unseen(place.formula);
-            const End far = is_.max ? End::high : End::low;
-            const End near = is_.max ? End::low : End::high;
             if (is_.is_owed(graph_[place.formula].op)) {
-                hope.add(*visit.kept, streams_.term(unseen, far));
+                hope.push_back({*visit.kept, streams_.term(unseen, far)});
                 continue;
             }
             rho.push_back(*visit.kept);
-            hope.add(*visit.kept, all);
-            sure.add(*visit.kept, streams_.term(unseen, near));
+            hope.push_back({*visit.kept, anything});
+            sure.push_back({*visit.kept, streams_.term(unseen, near)});
         }
         code_.rho = best(std::move(rho));
-        (is_.max ? code_.lower : code_.upper) = sure.term();
-        (is_.max ? code_.upper : code_.lower) = hope.term();
+        (is_.max ? code_.lower : code_.upper) = best_of(is_.max, sure);
+        (is_.max ? code_.upper : code_.lower) = best_of(is_.max, hope);
     }
 
     StreamBuilder& streams_;
     ir::Graph& graph_;
-    Operators is_;
+    ChainOperators is_;
     std::vector<Place> order_;  ///< those beyond a place after it
     std::map<Place, Visit> visits_;
     std::vector<Term> done_;
@@ -404,7 +332,7 @@ std::size_t operations(const Straight& code) {
 std::optional<Straight> chain(StreamBuilder& streams, ir::Graph& graph, NodeId id) {
     std::optional<Straight> found;
     for (const bool max : {true, false}) {
-        if (!ChainRecognition(graph, {max}).is_chain(id)) continue;
+        if (!is_chain(graph, {max}, id)) continue;
         Straight code = ChainWriting(streams, graph, max).write(id);
         if (!found || operations(code) < operations(*found)) found = std::move(code);
     }
