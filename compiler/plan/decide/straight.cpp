@@ -61,13 +61,11 @@ Straight fold(StreamBuilder& streams, const Node& node, NodeId id) {
 
 Term best_of(bool max, const std::vector<Limited>& limited) {
     std::vector<std::pair<Term, std::vector<Term>>> by_limit;
-    for (const auto& [value, limit] : limited) {
-        const auto known = std::find_if(by_limit.begin(), by_limit.end(),
-                                        [&](const auto& entry) { return entry.first == limit; });
-        if (known == by_limit.end())
-            by_limit.push_back({limit, {value}});
-        else
-            known->second.push_back(value);
+    for (const Limited& one : limited) {
+        auto known = std::find_if(by_limit.begin(), by_limit.end(),
+                                  [&](const auto& entry) { return entry.first == one.limit; });
+        if (known == by_limit.end()) known = by_limit.insert(known, {one.limit, {}});
+        known->second.push_back(one.value);
     }
     std::vector<Term> terms;
     for (auto& [limit, values] : by_limit)
