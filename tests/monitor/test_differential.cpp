@@ -63,6 +63,49 @@ TEST(PlanExhaustive, MonitorsThatRestart) {
     }
 }
 
+TEST(PlanExhaustive, Chains) {
+    for (const char* kind : {"monitor", "restartable monitor", "repeating monitor"}) {
+        expect_agreement_on_all(exhaustive_chains_spec("chains", kind), 5, false);
+        expect_agreement_on_all(exhaustive_chains_spec("chains", kind), 3, true);
+    }
+}
+
+/// What a step of a chain of p0, p1, ... costs.
+plan::Cost cost_of_chain(const std::string& kind, int phases) {
+    std::string spec = "spec long_chain;\n";
+    std::vector<std::string> operands;
+    for (int n = 0; n < phases; ++n) {
+        spec += fmt::format("input x{0} : f32 in [-4, {1}]; predicate p{0} = x{0} > 0;\n", n,
+                            1 + n % 7);
+        operands.push_back(fmt::format("p{}", n));
+    }
+    const auto model = load(spec + "monitor m = " + chain(kind, operands) + ";");
+    if (!model) return {};
+    PlanRunner runner(*model, kRoomy);
+    EXPECT_EQ(runner.refusal(), "") << kind << " of " << phases;
+    return runner.refusal().empty() ? runner.cost() : plan::Cost{};
+}
+
+// Each further phase costs the same: no register, operation or byte of code depends on the others.
+TEST(Chains, CostInProportionToTheirPhases) {
+    constexpr int kPeriod = 7;  // of the ranges of the inputs, which bounds are grouped by
+    for (const std::string& kind : chain_kinds()) {
+        const plan::Cost base = cost_of_chain(kind, 10);
+        const plan::Cost more = cost_of_chain(kind, 10 + kPeriod);
+        for (const int periods : {4, 16, 34}) {
+            const plan::Cost cost = cost_of_chain(kind, 10 + periods * kPeriod);
+            const auto n = static_cast<std::uint64_t>(periods);
+            EXPECT_EQ(cost.operations, base.operations + n * (more.operations - base.operations))
+                << kind;
+            EXPECT_EQ(cost.state_bytes,
+                      base.state_bytes + n * (more.state_bytes - base.state_bytes))
+                << kind;
+            EXPECT_EQ(cost.code_bytes, base.code_bytes + n * (more.code_bytes - base.code_bytes))
+                << kind;
+        }
+    }
+}
+
 // For sliding monitors the end of the trace matters too.
 TEST(PlanExhaustive, SlidingMonitors) {
     for (std::size_t steps = 1; steps <= 6; ++steps)
@@ -205,6 +248,12 @@ const RandomCase kCases[] = {
      80,
      0.1,
      true},
+    {"Chains",
+     {.formulas = Formulas::chains, .monitors = 3, .depth = 40, .restarts = 0.5, .missing = 0.3},
+     80},
+    {"ShortChains",
+     {.formulas = Formulas::chains, .monitors = 6, .depth = 5, .restarts = 0.3, .missing = 0.3},
+     80},
     {"SlidingRounded", {.formulas = Formulas::sliding, .depth = 2, .exact = false}, 40},
 };
 

@@ -302,7 +302,8 @@ Reading ReadingBuilder::as_reading(NodeId id, const Machine& machine) const {
 }
 
 /// Reads a chain by its own registers. Where phases imply each other, as in F (p && F p), the
-/// automaton has fewer; it is taken if it needs less of anything.
+/// automaton has fewer. It is taken if it needs fewer operations, or saves more bytes than it adds
+/// operations.
 std::optional<Reading> ReadingBuilder::as_chain(NodeId id) {
     auto code = chain(streams_, graph_, id);
     if (!code) return std::nullopt;
@@ -316,7 +317,8 @@ std::optional<Reading> ReadingBuilder::as_chain(NodeId id) {
     const Cost own = cost_of(reading, values_);
     const Cost others = cost_of(other, values_);
     const bool takes_less =
-        others.operations < own.operations || others.state_bytes < own.state_bytes;
+        others.operations < own.operations ||
+        others.operations + others.state_bytes < own.operations + own.state_bytes;
     return takes_less ? std::move(other) : std::move(reading);
 }
 
