@@ -5,6 +5,8 @@
 #include "always_eventually_50_why.hpp"
 #include "always_until_100_why.hpp"
 #include "cases.hpp"
+#include "chain_24_why.hpp"
+#include "chains.hpp"
 #include "eventually_50_why.hpp"
 #include "eventually_always_1000_why.hpp"
 #include "invariant_why.hpp"
@@ -20,6 +22,7 @@
 #include "two_why.hpp"
 #include "until_10000_why.hpp"
 #include "until_100_why.hpp"
+#include "until_24_why.hpp"
 
 namespace bench {
 
@@ -45,6 +48,8 @@ BENCH_EXPLAINED(always_1000)
 BENCH_EXPLAINED(until_100)
 BENCH_EXPLAINED(response_50)
 BENCH_EXPLAINED(sequence)
+BENCH_EXPLAINED(chain_24)
+BENCH_EXPLAINED(until_24)
 BENCH_EXPLAINED(responses)
 BENCH_EXPLAINED(always_eventually_50)
 BENCH_EXPLAINED(eventually_always_1000)

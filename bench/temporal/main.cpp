@@ -27,6 +27,8 @@ std::vector<Row> rows() {
             row<Until100>(),
             row<Response50>(),
             row<Sequence>(),
+            row<Chain24>(),
+            row<Until24>(),
             row<Responses>(),
             row<AlwaysEventually50>(),
             row<EventuallyAlways1000>(),

@@ -11,7 +11,7 @@
 namespace etlc::parse {
 
 /// Limit on nested brackets, prefix operators and right-associative operators.
-inline constexpr int kMaxNesting = 256;
+inline constexpr int kMaxNesting = 800;
 /// Limit on the nodes on the longest path of a declaration's tree, so that later stages may
 /// recurse. `&&` and `||` are one node whatever the number of operands; a sum of n terms is n - 1
 /// nodes deep, since + - * / and <-> associate to the left.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 namespace etlc::tests {
 namespace {
 
@@ -129,6 +131,28 @@ const Formulas kSlidingNestings = {
     "H p || G[0, 2] q",
 };
 
+/// How a chain continues after `{0}`, its operand, with `{1}`, its rest; the last one is its end.
+struct ChainKind {
+    const char* link;
+    const char* end;
+};
+const std::map<std::string, ChainKind> kChains = {
+    {"F", {"F ({0} && {1})", "F {0}"}},
+    {"then", {"F ({0} && X {1})", "F {0}"}},
+    {"G", {"G ({0} || {1})", "G {0}"}},
+    {"later G", {"G[1, inf] ({0} || {1})", "G {0}"}},
+    {"U", {"({0} U {1})", "{0}"}},
+    {"U and", {"({0} U ({0} && {1}))", "({0} U {0})"}},
+    {"U and X", {"({0} U ({0} && X {1}))", "X {0}"}},
+    {"R", {"({0} R {1})", "{0}"}},
+    {"R or", {"({0} R ({0} || {1}))", "F {0}"}},
+    {"W", {"({0} W {1})", "{0}"}},
+    {"until", {"({1} U {0})", "{0}"}},
+    {"release", {"({1} R {0})", "{0}"}},
+    {"mixed", {"F ({0} && (!{0} || G {0} || {1}))", "F[2, 2] {0}"}},
+    {"delayed", {"F[2, inf] ({0} && F[3, 3] {1})", "G[1, inf] {0}"}},
+};
+
 std::string spec(const std::string& name, const std::string& kind, const Formulas& formulas) {
     std::string result = fmt::format(
         "spec {};\n"
@@ -163,6 +187,36 @@ std::string exhaustive_sliding_spec(const std::string& name) {
     append(formulas, kOverConstants);
     append(formulas, kSlidingNestings);
     return spec(name, "sliding monitor", formulas);
+}
+
+const std::vector<std::string>& chain_kinds() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> result;
+        for (const auto& [name, parts] : kChains) result.push_back(name);
+        return result;
+    }();
+    return names;
+}
+
+std::string chain(const std::string& kind, const std::vector<std::string>& operands) {
+    const ChainKind& parts = kChains.at(kind);
+    std::string result = fmt::format(fmt::runtime(parts.end), operands.back());
+    for (std::size_t n = operands.size() - 1; n-- > 0;)
+        result = fmt::format(fmt::runtime(parts.link), operands[n], result);
+    return result;
+}
+
+std::string exhaustive_chains_spec(const std::string& name, const std::string& kind,
+                                   std::size_t phases) {
+    const Formulas kOperands = {"p", "q", "!p", "(p || Y q)", "O q", "!q", "(q && H p)", "p"};
+    Formulas formulas;
+    for (const std::string& chained : chain_kinds())
+        for (std::size_t n = 1; n <= phases; ++n) {
+            Formulas operands;
+            for (std::size_t i = 0; i < n; ++i) operands.push_back(kOperands[i % kOperands.size()]);
+            formulas.push_back(chain(chained, operands));
+        }
+    return spec(name, kind, formulas);
 }
 
 AllTraces::AllTraces(std::size_t steps, bool gaps) : steps_(steps), values_(gaps ? 3 : 2) {

@@ -19,6 +19,14 @@ std::string exhaustive_spec(const std::string& name = "exhaustive",
 /// Sliding monitors, with bounded futures and past operators over them.
 std::string exhaustive_sliding_spec(const std::string& name = "exhaustive_sliding");
 
+/// The kinds of chains: one formula waits for the next.
+const std::vector<std::string>& chain_kinds();
+/// Returns a chain of a kind through these operands, at least one, in this order.
+std::string chain(const std::string& kind, const std::vector<std::string>& operands);
+/// Monitors of every kind of chain with 1 to `phases` phases over p, q and formulas of the past.
+std::string exhaustive_chains_spec(const std::string& name = "chains",
+                                   const std::string& kind = "monitor", std::size_t phases = 8);
+
 /// Returns all traces of `steps` steps over x in {-1, 2} and y in {-2, 1}: 4^steps; with `gaps`
 /// either may be missing: 9^steps.
 class AllTraces {

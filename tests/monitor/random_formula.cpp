@@ -102,6 +102,40 @@ RandomFormula::Piece RandomFormula::response_in_two(int depth, Allowed allowed) 
     return unary(always ? "G" : "F", future_interval(), body);
 }
 
+/// Formulas that wait for one thing after the other: in each && at most one side looks ahead, the
+/// left side of U does not, and the right one of R only in W. The dual exchanges the operators.
+RandomFormula::Piece RandomFormula::chain(int phases, bool max) {
+    const Piece present = grow(random_.between(0, 2), {false, true});
+    if (phases == 0) return present;
+    const auto either = [&](const Piece& a, const Piece& b, bool is_or) {
+        return is_or ? binary(a, "||", "", b, disjunction) : binary(a, "&&", "", b, conjunction);
+    };
+    const auto interval = [&] {
+        return random_.word({"", "", "", "", "", "[1, inf]", "[1, inf]", "[2, inf]"});
+    };
+    const std::string seek = max ? "F" : "G";
+    const std::string hold = max ? "G" : "F";
+    const Piece rest = chain(phases - 1, max);
+    const std::string next = max ? "X" : "!X !";  // of a chain it is a step of the same chain
+    switch (random_.between(0, 12)) {
+        case 0:
+        case 1:
+        case 2:
+        case 3: return unary(seek, interval(), either(present, rest, !max));
+        case 4: return unary(seek, interval(), either(present, unary(next, "", rest), !max));
+        case 5:
+        case 6: return binary(present, max ? "U" : "R", interval(), rest, until);
+        case 7: return binary(present, max ? "U" : "R", "", either(present, rest, !max), until);
+        case 8: return binary(rest, max ? "R" : "U", interval(), present, until);
+        case 9:
+            return max ? binary(present, "W", "", rest, until)
+                       : unary(seek, interval(), either(present, rest, !max));
+        case 10: return either(unary(hold, interval(), present), rest, max);
+        case 11: return either(present, rest, random_.chance(0.5));
+        default: return unary(seek, random_.word({"[1, 1]", "[3, 3]"}), rest);
+    }
+}
+
 RandomFormula::Piece RandomFormula::past(int depth, Allowed allowed) {
     if (!shape_.nested) allowed = {false, false};
     if (!shape_.past_over_future) allowed.future = false;

@@ -18,6 +18,7 @@ struct FormulaShape {
     bool unbounded = true;          ///< unbounded future operators
     bool past_over_future = false;  ///< otherwise past operators see only the past and the present
     double future = 0.5;            ///< fraction of future operators where both kinds are allowed
+    int phases = 0;                 ///< if not 0: chains of at most so many phases
 };
 
 class RandomFormula {
@@ -31,7 +32,11 @@ public:
           shape_(shape),
           let_name_(std::move(let_name)) {}
 
-    std::string make() { return grow(shape_.depth, {true, true}).text; }
+    std::string make() {
+        if (shape_.phases > 0)
+            return chain(random_.between(1, shape_.phases), random_.chance(0.5)).text;
+        return grow(shape_.depth, {true, true}).text;
+    }
     /// The lets that formulas made since the last call refer to.
     std::string take_lets() { return std::exchange(lets_, {}); }
 
@@ -61,6 +66,7 @@ private:
     Piece future(int depth, Allowed allowed);
     Piece past(int depth, Allowed allowed);
     Piece response_in_two(int depth, Allowed allowed);
+    Piece chain(int phases, bool max);
     Piece named(Piece piece);
     Piece unary(const std::string& word, const std::string& interval, const Piece& operand);
     Piece binary(const Piece& left, const std::string& word, const std::string& interval,

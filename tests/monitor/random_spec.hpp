@@ -17,6 +17,7 @@ struct SpecShape {
                             ///< G (a -> F b)
         prefix,             ///< any nesting that a prefix monitor takes
         sliding,            ///< sliding monitors: future bounded, past over future too
+        chains,             ///< chains of at most `depth` phases
         mixed,              ///< prefix and sliding monitors in turn
     };
     Formulas formulas = Formulas::unnested;

@@ -33,7 +33,8 @@ void expect_agreement(const check::Model& model, PlanRunner& runner,
 }
 
 TEST(BooleanExhaustive, PrefixAndSlidingMonitorsWithGaps) {
-    for (const std::string& spec : {exhaustive_spec(), exhaustive_sliding_spec()}) {
+    for (const std::string& spec :
+         {exhaustive_spec(), exhaustive_sliding_spec(), exhaustive_chains_spec()}) {
         const auto model = load(spec);
         ASSERT_TRUE(model);
         PlanRunner runner(*model, kRoomy, Values::boolean);
@@ -93,6 +94,9 @@ const RandomCase kCases[] = {
       .window = 4,
       .restarts = 0.8,
       .missing = 0.3},
+     60},
+    {"Chains",
+     {.formulas = Formulas::chains, .monitors = 3, .depth = 40, .restarts = 0.5, .missing = 0.3},
      60},
     {"PrefixLongWindows",
      {.formulas = Formulas::prefix, .monitors = 2, .depth = 3, .window = 25},

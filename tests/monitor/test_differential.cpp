@@ -63,6 +63,47 @@ TEST(PlanExhaustive, MonitorsThatRestart) {
     }
 }
 
+TEST(PlanExhaustive, Chains) {
+    for (const char* kind : {"monitor", "restartable monitor", "repeating monitor"}) {
+        expect_agreement_on_all(exhaustive_chains_spec("chains", kind), 5, false);
+        expect_agreement_on_all(exhaustive_chains_spec("chains", kind), 3, true);
+    }
+}
+
+/// Operations, bytes of state and bytes of code of a chain of p0, p1, ...
+std::vector<std::uint64_t> cost_of_chain(const std::string& kind, int phases) {
+    std::string spec = "spec long_chain;\n";
+    std::vector<std::string> operands;
+    for (int n = 0; n < phases; ++n) {
+        spec += fmt::format("input x{0} : f32 in [-4, {1}]; predicate p{0} = x{0} > 0;\n", n,
+                            1 + n % 8);
+        operands.push_back(fmt::format("p{}", n));
+    }
+    const auto model = load(spec + "monitor m = " + chain(kind, operands) + ";");
+    if (!model) return {};
+    PlanRunner runner(*model, kRoomy);
+    EXPECT_EQ(runner.refusal(), "") << kind << " of " << phases;
+    if (!runner.refusal().empty()) return {};
+    const plan::Cost& cost = runner.cost();
+    return {cost.operations, cost.state_bytes, cost.code_bytes};
+}
+
+// Each further phase costs the same, whatever their number.
+TEST(Chains, CostInProportionToTheirPhases) {
+    for (const std::string& kind : chain_kinds()) {
+        const auto of_32 = cost_of_chain(kind, 32);
+        const auto of_64 = cost_of_chain(kind, 64);
+        ASSERT_FALSE(of_32.empty() || of_64.empty());
+        for (const int phases : {128, 256}) {
+            if (phases == 256 && kind == "U and X") continue;  // nests too deep
+            std::vector<std::uint64_t> expected;
+            for (std::size_t n = 0; n < of_32.size(); ++n)
+                expected.push_back(of_32[n] + (phases / 32 - 1) * (of_64[n] - of_32[n]));
+            EXPECT_EQ(cost_of_chain(kind, phases), expected) << kind << " of " << phases;
+        }
+    }
+}
+
 // For sliding monitors the end of the trace matters too.
 TEST(PlanExhaustive, SlidingMonitors) {
     for (std::size_t steps = 1; steps <= 6; ++steps)
@@ -205,6 +246,12 @@ const RandomCase kCases[] = {
      80,
      0.1,
      true},
+    {"Chains",
+     {.formulas = Formulas::chains, .monitors = 3, .depth = 40, .restarts = 0.5, .missing = 0.3},
+     80},
+    {"ShortChains",
+     {.formulas = Formulas::chains, .monitors = 6, .depth = 5, .restarts = 0.3, .missing = 0.3},
+     80},
     {"SlidingRounded", {.formulas = Formulas::sliding, .depth = 2, .exact = false}, 40},
 };
 

@@ -38,7 +38,8 @@ struct Subject {
 std::vector<Subject> subjects() {
     std::vector<Subject> result{{exhaustive_spec(), true, true},
                                 {exhaustive_sliding_spec(), true, true},
-                                {exhaustive_spec("restarted", "restartable monitor"), true, true}};
+                                {exhaustive_spec("restarted", "restartable monitor"), true, true},
+                                {exhaustive_chains_spec("chains", "monitor", 5), true, true}};
     const std::vector<SpecShape> shapes = {
         {.formulas = Formulas::unnested, .depth = 3},
         {.formulas = Formulas::unbounded_nesting, .depth = 3},
@@ -51,6 +52,7 @@ std::vector<Subject> subjects() {
          .window = 4,
          .restarts = 0.9,
          .missing = 0.4},
+        {.formulas = Formulas::chains, .monitors = 4, .depth = 30, .restarts = 0.3},
         {.formulas = Formulas::unnested, .depth = 2, .exact = false},
         {.formulas = Formulas::prefix, .monitors = 6, .depth = 2, .exact = false},
         {.formulas = Formulas::sliding, .depth = 3, .exact = false},
@@ -65,6 +67,8 @@ std::vector<Subject> subjects() {
     result.push_back({exhaustive_spec("boolean_prefix"), true, true, check::Values::boolean});
     result.push_back(
         {exhaustive_sliding_spec("boolean_sliding"), true, true, check::Values::boolean});
+    result.push_back({exhaustive_chains_spec("boolean_chains", "repeating monitor", 5), true, true,
+                      check::Values::boolean});
     for (std::size_t n = 0; n < shapes.size(); ++n)
         if (shapes[n].exact)
             result.push_back(

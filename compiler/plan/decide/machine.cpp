@@ -6,10 +6,6 @@ namespace etlc::plan {
 
 namespace {
 
-/// Larger machines become a constant table and one loop.
-constexpr std::size_t kMaxUnrolledStates = 32;
-constexpr std::size_t kMaxUnrolledTransitions = 160;
-
 /// Returns the index of a stream's key in its list; 0, the neutral key, for no stream.
 std::uint16_t index_of(std::vector<Slot>& list, Slot slot) {
     if (slot == kNone) return 0;

@@ -25,6 +25,10 @@ struct Machine {
     std::vector<std::vector<std::uint32_t>> guards;
 };
 
+/// Larger machines become a constant table and one loop.
+inline constexpr std::size_t kMaxUnrolledStates = 32;
+inline constexpr std::size_t kMaxUnrolledTransitions = 160;
+
 /// Returns whether straight-line code is used.
 bool is_small(const Machine& machine);
 

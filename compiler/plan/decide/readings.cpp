@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "plan/budget/budget.hpp"
+#include "plan/decide/chain.hpp"
 #include "plan/decide/straight.hpp"
 
 namespace etlc::plan {
@@ -21,6 +22,7 @@ constexpr std::uint64_t kWorkPerTransition = 8192;
 /// The share of one machine, so that some work is left for others.
 constexpr std::uint64_t kShares = 2;
 constexpr std::uint64_t kSmallShares = 16;
+constexpr std::uint64_t kChainShares = 128;
 
 /// Machines up to this size are preferred.
 constexpr std::size_t kSmallMachineStates = 256;
@@ -54,6 +56,13 @@ AutomatonLimits small_machine_limits(const Limits& limits) {
     const AutomatonLimits any = machine_limits(limits);
     return {std::min(any.states, kSmallMachineStates),
             std::min(any.transitions, kSmallMachineTransitions), total_work(limits) / kSmallShares};
+}
+
+/// Limits of an automaton that is compared with a chain. A long chain exceeds them soon.
+AutomatonLimits unrolled_machine_limits(const Limits& limits) {
+    const AutomatonLimits any = machine_limits(limits);
+    return {std::min(any.states, kMaxUnrolledStates),
+            std::min(any.transitions, kMaxUnrolledTransitions), total_work(limits) / kChainShares};
 }
 
 /// Returns the largest share of a limit; above 1 it does not fit.
@@ -101,6 +110,8 @@ std::optional<std::uint32_t> ReadingBuilder::of(NodeId id) {
         reading = add(id, "fold", fold(streams_, node, id));
     else if (auto code = response(streams_, graph_, id, Answer::at_once))
         reading = add(id, "response", std::move(*code));
+    else if (auto links = as_chain(id))
+        reading = add(std::move(*links));
     else
         reading = nested(node, id);
     if (reading) known_.emplace(key, *reading);
@@ -288,6 +299,27 @@ Reading ReadingBuilder::as_reading(NodeId id, const Machine& machine) const {
     else
         reading.table = make_table(machine);
     return reading;
+}
+
+/// Reads a chain by its own registers. Where phases imply each other, as in F (p && F p), the
+/// automaton has fewer. It is taken if it needs fewer operations, or saves more bytes than it adds
+/// operations.
+std::optional<Reading> ReadingBuilder::as_chain(NodeId id) {
+    auto code = chain(streams_, graph_, id);
+    if (!code) return std::nullopt;
+    Reading reading{
+        .kind = Reading::Kind::straight, .node = id, .as = "chain", .straight = std::move(*code)};
+    const std::size_t failures = oversize_.size();
+    const auto small = machine(id, unrolled_machine_limits(limits_));
+    oversize_.resize(failures);
+    if (!small) return reading;
+    Reading other = as_reading(id, *small);
+    const Cost own = cost_of(reading, values_);
+    const Cost others = cost_of(other, values_);
+    const bool takes_less =
+        others.operations < own.operations ||
+        others.operations + others.state_bytes < own.operations + own.state_bytes;
+    return takes_less ? std::move(other) : std::move(reading);
 }
 
 /// Chooses a small machine if there is one, else what takes the fewest operations: pending

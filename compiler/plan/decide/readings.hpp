@@ -39,6 +39,7 @@ private:
     std::optional<Reading> pending(const ir::Node& node, NodeId id);
     std::uint32_t pending_part(Pending& pending, std::map<NodeId, std::uint32_t>& known, NodeId id);
     std::optional<std::uint32_t> apart(NodeId id, double below);
+    std::optional<Reading> as_chain(NodeId id);
     std::optional<std::uint32_t> nested(const ir::Node& node, NodeId id);
     std::uint32_t add(Reading reading);
     std::uint32_t add(NodeId id, std::string as, Straight code);

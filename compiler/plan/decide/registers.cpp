@@ -4,6 +4,7 @@
 #include <set>
 
 #include "plan/decide/machine.hpp"
+#include "plan/decide/straight.hpp"
 
 namespace etlc::plan {
 
@@ -277,39 +278,24 @@ private:
     /// where a strong one is open.
     void read() {
         std::vector<Term> rho;
-        std::vector<std::pair<Term, Term>> lower;
-        std::vector<std::pair<Term, Term>> upper;
+        std::vector<Limited> lower;
+        std::vector<Limited> upper;
         for (std::uint32_t q = 0; q < machine_.states.size(); ++q) {
             const Machine::State& state = machine_.states[q];
             const Term kept =
                 state.always_true ? Term::constant(etlmon::kTrue) : Term::reg(register_of(q));
-            upper.emplace_back(kept, unseen(state.strong_unseen, End::high));
+            upper.push_back({kept, unseen(state.strong_unseen, End::high)});
             if (state.strong) continue;
             rho.push_back(kept);
-            lower.emplace_back(kept, unseen(state.weak_unseen, End::low));
+            lower.push_back({kept, unseen(state.weak_unseen, End::low)});
         }
         code_.rho = Term::extreme(true, std::move(rho));
-        code_.lower = best(lower);
-        code_.upper = best(upper);
+        code_.lower = best_of(true, lower);
+        code_.upper = best_of(true, upper);
     }
 
     Term unseen(Slot slot, End end) const {
         return slot == kNone ? Term::constant(etlmon::kTrue) : streams_.term(slot, end);
-    }
-
-    /// Returns the max of min(register, key), grouped by key.
-    static Term best(const std::vector<std::pair<Term, Term>>& registers_and_keys) {
-        std::vector<std::pair<Term, std::vector<Term>>> by_key;
-        for (const auto& one : registers_and_keys) {
-            auto found = std::find_if(by_key.begin(), by_key.end(),
-                                      [&](const auto& entry) { return entry.first == one.second; });
-            if (found == by_key.end()) found = by_key.insert(found, {one.second, {}});
-            found->second.push_back(one.first);
-        }
-        std::vector<Term> terms;
-        for (auto& [key, registers] : by_key)
-            terms.push_back(Term::extreme(false, {Term::extreme(true, std::move(registers)), key}));
-        return Term::extreme(true, std::move(terms));
     }
 
     const Machine& machine_;

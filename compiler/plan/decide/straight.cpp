@@ -1,5 +1,7 @@
 #include "plan/decide/straight.hpp"
 
+#include <algorithm>
+
 namespace etlc::plan {
 
 namespace {
@@ -55,6 +57,20 @@ Straight fold(StreamBuilder& streams, const Node& node, NodeId id) {
     code.lower = code.upper = best;
     (max ? code.upper : code.lower) = Term::before(node.interval.high, widen(best, hope), best);
     return code;
+}
+
+Term best_of(bool max, const std::vector<Limited>& limited) {
+    std::vector<std::pair<Term, std::vector<Term>>> by_limit;
+    for (const Limited& one : limited) {
+        auto known = std::find_if(by_limit.begin(), by_limit.end(),
+                                  [&](const auto& entry) { return entry.first == one.limit; });
+        if (known == by_limit.end()) known = by_limit.insert(known, {one.limit, {}});
+        known->second.push_back(one.value);
+    }
+    std::vector<Term> terms;
+    for (auto& [limit, values] : by_limit)
+        terms.push_back(Term::extreme(!max, {Term::extreme(max, std::move(values)), limit}));
+    return Term::extreme(max, std::move(terms));
 }
 
 namespace {

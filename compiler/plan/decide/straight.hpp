@@ -17,6 +17,14 @@ Straight latch(StreamBuilder& streams, NodeId id);
 /// the window is open.
 Straight fold(StreamBuilder& streams, const ir::Node& node, NodeId id);
 
+/// A value that counts up to a limit (in the dual: down to it).
+struct Limited {
+    Term value;
+    Term limit;
+};
+/// Returns the max of min(value, limit), grouped by limit, or the dual.
+Term best_of(bool max, const std::vector<Limited>& limited);
+
 /// The answer that G waits for: without future, or in two parts.
 enum class Answer : std::uint8_t { at_once, in_two };
 

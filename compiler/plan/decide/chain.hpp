@@ -1,0 +1,25 @@
+// Straight-line code for chains: formulas that wait for one thing after the other, such as
+// F (a && F (b && F c)) and a U (b U c). In a chain at most one operand of every && looks ahead,
+// the left one of U does not, and the right one of R only in the form of `f W g`, g R (f || g). So
+// an automaton would have one obligation a state: a register each, and no product of states. Duals
+// are chains too: G (a || G (b || c)), a R (b R c), G (a || F b).
+//
+// A register holds, as in an automaton, the best way up to the previous step with this obligation
+// open. At a step, `open`, the max of the register and of the ways that arrive now, goes on to the
+// parts of the obligation. Obligations are visited after those that they come from, so one step
+// passes through any number of phases, and the work is in proportion to the formula. The
+// transitions of an automaton list every pair of phases instead.
+#pragma once
+
+#include <optional>
+
+#include "plan/decide/streams.hpp"
+#include "plan/program/reading.hpp"
+
+namespace etlc::plan {
+
+/// Reads a chain or a dual, over operands without future, from unbounded intervals and delays.
+/// Returns nothing for other formulas.
+std::optional<Straight> chain(StreamBuilder& streams, ir::Graph& graph, NodeId id);
+
+}  // namespace etlc::plan
