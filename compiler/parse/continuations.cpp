@@ -102,13 +102,13 @@ bool has(const std::vector<std::size_t>& rules, std::size_t rule) {
 /// Returns the role of a name within these rules.
 Role role_in(const std::vector<std::size_t>& rules, std::size_t declaration) {
     if (has(rules, EtlParser::RuleAmount))
-        return has(rules, EtlParser::RuleBound) ? Role::bound : Role::amount;
+        return has(rules, EtlParser::RuleBound) || has(rules, EtlParser::RuleDelay) ? Role::bound
+                                                                                    : Role::amount;
     if (!rules.empty() && rules[0] == EtlParser::RuleFittedArgument) return Role::fitting_argument;
     if (rules.size() < 2 || rules[0] != EtlParser::RuleName) return Role::none;
     switch (rules[1]) {
         case EtlParser::RulePrimary: return Role::operand;
         case EtlParser::RulePoint: return Role::point;
-        case EtlParser::RuleDistance: return Role::target;
         case EtlParser::RuleWeights: return Role::weights;
         case EtlParser::RuleEncodedBy: return Role::encoder;
         case EtlParser::RuleCalibrated: return Role::calibration;
@@ -186,11 +186,14 @@ void ask(Continuations& found, Tokens tokens, std::uint32_t offset) {
         if (!is_word(probe, type)) continue;
         for (std::string& word : spellings(type)) found.words.push_back(std::move(word));
     }
-    if (const auto rules = probe.rules_of(EtlLexer::IDENTIFIER))
+    if (const auto rules = probe.rules_of(EtlLexer::IDENTIFIER)) {
         found.role = role_in(*rules, declaration);
-    // Names between the brackets of [px, py] are scalars.
-    const bool in_vector = previous == EtlLexer::LBRACKET || previous == EtlLexer::COMMA;
-    if (found.role == Role::point && in_vector) found.role = Role::scalar;
+        // Names between the brackets of [px, py] are scalars, and a distance has its target last.
+        const bool is_whole = rules->size() > 2 && (*rules)[2] == EtlParser::RuleDistance;
+        const bool in_list = previous == EtlLexer::LBRACKET || previous == EtlLexer::COMMA;
+        if (found.role == Role::point && in_list)
+            found.role = is_whole ? Role::target : Role::scalar;
+    }
     const auto number = probe.rules_of(EtlLexer::NUMBER);
     found.number = number.has_value();
     found.in_interval = number && has(*number, EtlParser::RuleBound);

@@ -92,8 +92,10 @@ std::string operand_words(const Stuck& stuck) {
 
 std::string name_words(const Stuck& stuck) {
     switch (stuck.rule_around()) {
-        case EtlParser::RuleDistance: return "the name of a target";
         case EtlParser::RulePoint:
+            if (stuck.parent_rule == EtlParser::RuleDistance &&
+                is(stuck.previous, {EtlParser::COMMA}))
+                return "the name of a target, or another point";
             return stuck.expects(EtlParser::LBRACKET)
                        ? "the name of an input or a projection, or a vector [x, y] of scalar inputs"
                        : "the name of a scalar input";

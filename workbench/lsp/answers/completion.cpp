@@ -132,6 +132,8 @@ bool fits(const Declared& declared, Role role, const std::string& declaration) {
     const NameKind kind = *declared.kind;
     if (kind == NameKind::unreadable) return role != Role::none;
     const bool is_number = kind == NameKind::constant && !declared.is_duration;
+    const bool is_point = kind == NameKind::projection ||
+                          (kind == NameKind::input && declared.shape == Shape::embedding);
     switch (role) {
         case Role::operand: {
             const bool scalar = kind == NameKind::input && declared.shape == Shape::scalar;
@@ -140,11 +142,10 @@ bool fits(const Declared& declared, Role role, const std::string& declaration) {
             return scalar || boolean || is_number || kind == NameKind::predicate ||
                    kind == NameKind::let;
         }
-        case Role::point:
-            return kind == NameKind::projection ||
-                   (kind == NameKind::input && declared.shape == Shape::embedding);
-        case Role::scalar: return kind == NameKind::input && declared.shape == Shape::scalar;
-        case Role::target:
+        case Role::point: return is_point;
+        case Role::scalar:
+            return is_point || (kind == NameKind::input && declared.shape == Shape::scalar);
+        case Role::target: return is_point || kind == NameKind::target;
         case Role::weights: return kind == NameKind::target;
         case Role::amount: return declaration == "period" ? kind == NameKind::constant : is_number;
         case Role::bound: return kind == NameKind::constant;
