@@ -58,7 +58,7 @@ std::set<std::string> runtime_headers(const Context& context) {
         if (!plan::contrast_cuts(plan, context.model.predicates[p]).empty())
             headers.insert("distance/contrast");
     }
-    if (!plan.pasts.empty()) headers.insert("temporal/past");
+    if (!plan.pasts.empty()) headers.insert("past/numbers");
     if (!context.names.threshold_member.empty()) headers.insert("temporal/adaptation");
     for (Index i : plan.inputs) {
         const check::Input& input = context.model.inputs[i];

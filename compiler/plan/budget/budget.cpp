@@ -6,7 +6,7 @@
 #include <set>
 
 #include "etlmon/hosted/footprint.hpp"
-#include "etlmon/temporal/past.hpp"
+#include "etlmon/past/numbers.hpp"
 #include "plan/program/sample_codes.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/targets/point_checks.hpp"
