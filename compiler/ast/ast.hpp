@@ -77,8 +77,8 @@ struct Images {
     Span span;
 };
 
-/// One bound of an interval, or the time in `held`, `hold`, `stale after` or `@`: steps, a duration,
-/// or inf.
+/// One bound of an interval, or the time in `held`, `hold`, `stale after` or `@`: steps, a
+/// duration, or inf.
 struct Bound {
     Number number;
     std::string unit;  ///< "", "us", "ms", "s", "min", kStepsUnit

@@ -71,8 +71,8 @@ constexpr std::string_view word(AggregationKind kind) {
     return kWords[static_cast<std::size_t>(kind)];
 }
 
-/// Numbers that earlier steps have a part in: the value of an expression a while ago, its mean, least
-/// and greatest value within a time, and how often a formula began to hold within a time.
+/// Numbers that earlier steps have a part in: the value of an expression a while ago, its mean,
+/// least and greatest value within a time, and how often a formula began to hold within a time.
 enum class PastKind : std::uint8_t { ago, mean, min, max, count };
 
 constexpr std::string_view word(PastKind kind) {
@@ -123,8 +123,8 @@ constexpr ExprOperator operator_of(ExprKind kind) {
 }
 
 /// Appends an expression to the text in linear time, in brackets where it binds looser than
-/// `needed`. `leaf` returns the text of numbers, names, distances and past numbers; `argument` returns the
-/// expression behind an element of `arguments`.
+/// `needed`. `leaf` returns the text of numbers, names, distances and past numbers; `argument`
+/// returns the expression behind an element of `arguments`.
 template <class Expr, class Leaf, class Argument>
 void append(std::string& text, const Expr& e, const Leaf& leaf, const Argument& argument,
             ExprLevel needed = kSum) {

@@ -53,7 +53,7 @@ std::set<std::string> runtime_headers(const Context& context) {
                                                                   : "distance/between");
     for (const Index d : plan.distances)
         if (context.model.distances[d].is_between_points()) headers.insert("distance/between");
-    if (!context.names.earlier_member.empty()) headers.insert("temporal/earlier");
+    if (!context.names.earlier_member.empty()) headers.insert("past/points");
     for (const auto& [projection, name] : context.names.matrix_array)
         if (plan::stored_projection(plan, projection) != nullptr)
             headers.insert("distance/targets");
@@ -63,7 +63,7 @@ std::set<std::string> runtime_headers(const Context& context) {
         if (!plan::contrast_cuts(plan, context.model.predicates[p]).empty())
             headers.insert("distance/contrast");
     }
-    if (!plan.pasts.empty()) headers.insert("temporal/past");
+    if (!plan.pasts.empty()) headers.insert("past/numbers");
     if (!context.names.threshold_member.empty()) headers.insert("temporal/adaptation");
     for (Index i : plan.inputs) {
         const check::Input& input = context.model.inputs[i];

@@ -54,6 +54,12 @@ std::string report(const plan::Plan& plan, const Options& options) {
                  what_takes_stack(plan));
     out.line();
     std::vector<Row> rows{{"part", "as", "state B", "code B", "operations"}};
+    for (const Index p : plan.pasts) {
+        const check::Past& past = plan.model->pasts[p];
+        const plan::Cost cost = plan::cost_of(past);
+        rows.push_back({shortened(past.text), "number", number(cost.state_bytes),
+                        number(cost.code_bytes), number(cost.operations)});
+    }
     for (const plan::Reading& reading : plan.readings) {
         const plan::Cost cost = plan::cost_of(reading, plan.values);
         rows.push_back({shortened(graph.text(reading.node)), reading.as, number(cost.state_bytes),

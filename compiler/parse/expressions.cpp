@@ -102,7 +102,8 @@ Builder::Expression Builder::expression(Grammar::FactorContext& context) const {
             std::vector<Expression> of;
             of.push_back(std::move(result));
             const source::Span span = source::join(span_of(context), span_of(*ago));
-            result = past({PastKind::ago, nullptr, delay(*ago)}, span, span_of(*ago), std::move(of));
+            result =
+                past({PastKind::ago, nullptr, delay(*ago)}, span, span_of(*ago), std::move(of));
         }
         return result;
     }
@@ -165,16 +166,15 @@ Builder::Expression Builder::variadic(Grammar::VariadicFunctionPrimaryContext& c
         fail(diag::Code::past_form, span_of(context),
              fmt::format("expected {0} of an expression and a time, as in '{0}(x, 2 s)'", word));
     Expression time = expression(*arguments[1]);
-    const bool is_amount =
-        time.root->kind == ExprKind::number || time.root->kind == ExprKind::name;
+    const bool is_amount = time.root->kind == ExprKind::number || time.root->kind == ExprKind::name;
     if (!is_amount)
         fail(diag::Code::past_form, span_of(*arguments[1]),
              fmt::format("expected a time, as in '{}(x, 2 s)'", word));
     const bool is_name = time.root->kind == ExprKind::name;
-    ast::Bound bound{{time.root->text, time.root->span, is_name ? time.root->text : ""},
-                     units.empty() ? "" : unit(*units[0]),
-                     units.empty() ? time.root->span
-                                   : source::join(time.root->span, span_of(*units[0]))};
+    ast::Bound bound{
+        {time.root->text, time.root->span, is_name ? time.root->text : ""},
+        units.empty() ? "" : unit(*units[0]),
+        units.empty() ? time.root->span : source::join(time.root->span, span_of(*units[0]))};
     const PastKind kind = op.getType() == Grammar::MEAN  ? PastKind::mean
                           : op.getType() == Grammar::MIN ? PastKind::min
                                                          : PastKind::max;

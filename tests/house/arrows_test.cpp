@@ -89,6 +89,7 @@ const std::map<std::string, Names> kHouses = {
     {"etlmon", {"etlmon"}},
     {"temporal", {"etlmon", "temporal"}},
     {"distance", {"etlmon", "temporal", "distance"}},
+    {"past", {"etlmon", "temporal", "past"}},
     {"params", {"etlmon", "distance", "params"}},
     {"vectors", {"etlmon", "distance", "vectors"}},
     {"hosted", {"etlmon", "temporal", "distance", "hosted"}}};

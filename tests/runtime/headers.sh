@@ -14,7 +14,7 @@ fail() { echo "$*" >&2; bad=1; }
 
 # Firmware code includes nothing of vectors/, and gnu.hpp in one place.
 gates=$(cd "$include" && grep -l 'include "etlmon/\(vectors/\|gnu\)' etlmon/*.hpp \
-  etlmon/temporal/* etlmon/distance/* | tr '\n' ' ')
+  etlmon/temporal/* etlmon/past/* etlmon/distance/* | tr '\n' ' ')
 [ "$gates" = 'etlmon/bits.hpp etlmon/views.hpp etlmon/distance/best.hpp ' ] ||
   fail "vectors/ or gnu.hpp is included by $gates"
 

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "etlmon/temporal/past.hpp"
+#include "etlmon/past/numbers.hpp"
 
 namespace {
 
@@ -76,20 +76,19 @@ private:
     std::array<std::int64_t, kDigits> digits_{};
 };
 
-/// Returns the sign of twice the sum of the window less n times what two floats add up to.
-int sign_of_rest(const Stream& window, std::uint32_t a, std::uint32_t b) {
+/// Returns the sign of twice the sum of the numbers less n times what two floats add up to.
+int sign_of_rest(const Stream& numbers, std::int64_t n, std::uint32_t a, std::uint32_t b) {
     Integer rest;
-    for (const std::uint32_t x : window) rest.add(x, 2);
-    const auto n = static_cast<std::int64_t>(window.size());
+    for (const std::uint32_t x : numbers) rest.add(x, 2);
     rest.add(a, -n);
     rest.add(b, -n);
     return rest.sign();
 }
 
-/// Checks that no float is nearer to the mean, and that an even one was taken of two.
-void expect_nearest(const Stream& window, std::uint32_t mean) {
-    const int above = sign_of_rest(window, mean, at_place(place(mean) + 1));
-    const int below = sign_of_rest(window, mean, at_place(place(mean) - 1));
+/// Checks that no float is nearer to the sum divided by n, and that an even one was taken of two.
+void expect_nearest(const Stream& numbers, std::int64_t n, std::uint32_t mean) {
+    const int above = sign_of_rest(numbers, n, mean, at_place(place(mean) + 1));
+    const int below = sign_of_rest(numbers, n, mean, at_place(place(mean) - 1));
     ASSERT_TRUE(above < 0 || (above == 0 && mean % 2 == 0)) << std::hex << mean;
     ASSERT_TRUE(below > 0 || (below == 0 && mean % 2 == 0)) << std::hex << mean;
 }
@@ -119,7 +118,7 @@ void expect_means(const Stream& stream, std::uint32_t n) {
         else if (has(kInf) || has(kInf | kSign))
             ASSERT_EQ(mean, has(kInf) ? kInf : kInf | kSign);
         else
-            expect_nearest(window, mean);
+            expect_nearest(window, n, mean);
         if (testing::Test::HasFatalFailure()) return;
     }
 }
@@ -139,6 +138,27 @@ TEST(Past, MeansOfNumbersOfAllSizes) {
             }
             expect_means(stream, n);
         }
+    }
+}
+
+TEST(Past, SumsDividedByAnyNumber) {
+    std::mt19937 random(4);
+    for (int i = 0; i < 20000; ++i) {
+        etlmon::detail::ExactSum sum;
+        sum.reset();
+        Stream numbers;
+        const std::uint32_t range = i % 2 == 0 ? 255 : 30, least = any(random) % (256 - range);
+        for (std::uint32_t count = any(random) % 4; count > 0; --count) {
+            const std::uint32_t exponent = least + any(random) % range;
+            numbers.push_back((any(random) & (kSign | 0x7fffffu)) | exponent << 23);
+            sum.add(numbers.back(), false);
+        }
+        const std::uint32_t n = i % 3 == 0 ? (1u << 24) - any(random) % 3
+                                           : 1 + any(random) % (1u << (1 + any(random) % 24));
+        const std::uint32_t mean = sum.divided_by(n);
+        if ((mean & ~kSign) < 0x7f7fffffu)  // more numbers than n may exceed the floats
+            expect_nearest(numbers, n, mean);
+        if (HasFatalFailure()) return;
     }
 }
 

@@ -31,12 +31,24 @@ std::uint64_t sum(std::uint64_t a, std::uint64_t b) {
     return a == Gap::kForGood || b == Gap::kForGood ? Gap::kForGood : a + b;
 }
 
+/// Returns how many steps back an expression reads.
+std::uint64_t steps_back(const Model& model, const Expr& expression) {
+    std::uint64_t back = 0;
+    for (const Expr& argument : expression.arguments)
+        back = std::max(back, steps_back(model, argument));
+    if (expression.kind != Expr::Kind::past) return back;
+    const Past& past = model.pasts[expression.index];
+    return back + past.steps - (past.kind == Past::Kind::ago ? 0 : 1);
+}
+
 std::vector<Reading> readings(const Model& model) {
     std::vector<Reading> result(model.formulas.size());
     for (Index f = 0; f < model.formulas.size(); ++f) {  // operands come first
         const Formula& formula = model.formulas[f];
         Reading& reading = result[f];
         reading.inputs = inputs_of(model, formula);
+        if (formula.kind == Formula::Kind::predicate)
+            reading.back = steps_back(model, model.predicates[formula.index].expression);
         for (const Index operand : formula.operands) {
             reading.inputs.insert(result[operand].inputs.begin(), result[operand].inputs.end());
             reading.back = std::max(reading.back, result[operand].back);

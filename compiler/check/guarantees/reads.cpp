@@ -40,7 +40,8 @@ public:
         // where they are used.
         const auto& [name, retargetable, constants, file, step_seconds, rounded, rounding, encoders,
                      encoded, inputs, projections, points, targets, fitted, distances, pasts,
-                     predicates, formulas, lets, truths, monitors, dependencies, reservations] = model;
+                     predicates, formulas, lets, truths, monitors, dependencies, reservations] =
+            model;
         // Episodes at another rate have different frames.
         if (step_seconds > 0) add("rate", fmt::format("{:.9g} s a step", step_seconds));
     }
@@ -142,10 +143,10 @@ private:
         // Expressions contain the text, which describes the distance in words.
         const auto& [point, target, other, metric, aggregation, kth, weights, weights_diagonal,
                      weights_fitted, weights_path, text, span] = model_.distances[index];
-        std::string all = fmt::format("{} {} {} from {} to {}", word(aggregation), kth,
-                                      kMetrics[static_cast<std::size_t>(metric)].word,
-                                      text_of(point),
-                                      target == kNone ? text_of(other) : add_target(target));
+        std::string all =
+            fmt::format("{} {} {} from {} to {}", word(aggregation), kth,
+                        kMetrics[static_cast<std::size_t>(metric)].word, text_of(point),
+                        target == kNone ? text_of(other) : add_target(target));
         if (metric == Metric::mahalanobis)
             all += fmt::format(", {}{}{}", weights_diagonal ? "diagonal " : "", kHashed,
                                weights_hash(model_.distances[index]));

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "etlmon/hosted/footprint.hpp"
-#include "etlmon/temporal/earlier.hpp"
-#include "etlmon/temporal/past.hpp"
+#include "etlmon/past/numbers.hpp"
+#include "etlmon/past/points.hpp"
 #include "plan/program/sample_codes.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/targets/point_checks.hpp"
@@ -31,7 +31,7 @@ constexpr std::uint64_t kCodePerEnd = 16;
 constexpr std::uint64_t kCodePerReading = 64;
 constexpr std::uint64_t kCodePerWindow = 240;
 constexpr std::uint64_t kCodePerRing = 64;
-constexpr std::uint64_t kCodePerMean = 720;        // shared by all means
+constexpr std::uint64_t kCodePerMean = 1200;       // of which all means share the most
 constexpr std::uint64_t kCodePerAdaptation = 144;  // observe_P() on a Cortex-M4 at -Os
 constexpr std::uint64_t kCodePerTable = 200;
 constexpr std::uint64_t kCodePerSamples = 600;
@@ -355,7 +355,7 @@ Cost cost_of(const check::Past& past) {
         case Kind::count: return {};
     }
     return {.state_bytes = (2 + etlmon::window_elements(past.steps)) * kWord,
-            .code_bytes = kCodePerWindow,
+            .code_bytes = kCodePerWindow + kCodePerRing,
             .operations = etlmon::window_operations(past.steps)};
 }
 

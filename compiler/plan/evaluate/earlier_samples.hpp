@@ -1,4 +1,4 @@
-// The samples of a point at earlier steps, as etlmon/temporal/earlier.hpp keeps them; in float32, which
+// The samples of a point at earlier steps, as etlmon/past/points.hpp keeps them; in float32, which
 // has every float16 and every scaled int8 that an input can have.
 #pragma once
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "etlmon/temporal/past.hpp"
+#include "etlmon/past/numbers.hpp"
 
 namespace etlc::plan {
 
