@@ -248,8 +248,8 @@ class Monitor {
   constexpr void reset() noexcept {
     reach_ = etlmon::kFalse;
     avoid_ = etlmon::kTrue;
-    sequential_met_ = etlmon::kFalse;
     sequential_pending_ = etlmon::kFalse;
+    sequential_met_ = etlmon::kFalse;
     at_a_ = etlmon::kUnmeasured;
     at_b_ = etlmon::kUnmeasured;
     near_c_ = etlmon::kUnmeasured;
@@ -297,8 +297,8 @@ class Monitor {
 
   etlmon::Register reach_{};               // F at_a
   etlmon::Register avoid_{};               // G !near_c
-  etlmon::Register sequential_met_{};      // nothing is pending
   etlmon::Register sequential_pending_{};  // pending: F at_b
+  etlmon::Register sequential_met_{};      // nothing is pending
   etlmon::Measured at_a_{};                // telemetry of at_a
   etlmon::Measured at_b_{};                // telemetry of at_b
   etlmon::Measured near_c_{};              // telemetry of near_c
