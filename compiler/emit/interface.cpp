@@ -212,7 +212,8 @@ void print_constants(Printer& out, const Context& context) {
         if (narrow != nullptr && done.insert(context.names.narrow_array.at(d)).second)
             print_narrow_rows(out, context, *narrow);
         const bool has_rows = !context.model.distances[d].is_between_points();
-        if (has_rows && !context.lossless(d) && done.insert(context.names.target_array.at(d)).second)
+        if (has_rows && !context.lossless(d) &&
+            done.insert(context.names.target_array.at(d)).second)
             print_rows(out, context, d);
         const auto weights = context.names.weight_array.find(d);
         if (weights == context.names.weight_array.end()) continue;

@@ -4,10 +4,9 @@
 
 #include <algorithm>
 
-#include "emit/functions.hpp"
-#include "emit/measure/uses.hpp"
+#include "emit/text/functions.hpp"
 #include "emit/text/identifiers.hpp"
-#include "plan/program/scalar_uses.hpp"
+#include "plan/program/uses.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
@@ -118,8 +117,8 @@ private:
             names_.point_buffer[p] = local(measure_, name + "_values");
         }
         for (const plan::EarlierPoint& earlier : plan::earlier_points(model_, plan_.distances))
-            names_.earlier_member[earlier.point] =
-                member(members_, identifier(model_.points[earlier.point].text, "point") + "_earlier");
+            names_.earlier_member[earlier.point] = member(
+                members_, identifier(model_.points[earlier.point].text, "point") + "_earlier");
         for (check::Index d : plan_.distances)
             names_.distance_local[d] = local(measure_, distance_name(model_.distances[d]));
         for (check::Index p : plan_.pasts) {

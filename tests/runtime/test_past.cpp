@@ -123,11 +123,11 @@ void expect_means(const Stream& stream, std::uint32_t n) {
     }
 }
 
-constexpr std::uint32_t kWindowLengths[] = {2, 3, 4, 5, 7, 20, 64, 129};
+constexpr std::uint32_t kMeanLengths[] = {2, 3, 4, 5, 7, 20, 64, 129};
 
 TEST(Past, MeansOfNumbersOfAllSizes) {
     std::mt19937 random(1);
-    for (const std::uint32_t n : kWindowLengths) {
+    for (const std::uint32_t n : kMeanLengths) {
         for (const std::uint32_t exponents : {2u, 30u, 255u}) {
             Stream stream;
             const std::uint32_t least = exponents == 30 ? 110 : 0;
@@ -167,7 +167,7 @@ TEST(Past, SumsThatCancel) {
     for (int i = 0; i < 60; ++i)
         for (const float x : {1e30F, 1.0F, -1e30F, 3e-45F, 1e-38F, -1.0F})
             stream.push_back(bits(x));
-    for (const std::uint32_t n : kWindowLengths) expect_means(stream, n);
+    for (const std::uint32_t n : kMeanLengths) expect_means(stream, n);
     std::vector<std::uint32_t> storage(3);
     etlmon::MeanState state;
     state.reset();
@@ -180,7 +180,7 @@ TEST(Past, SumsThatCancel) {
 TEST(Past, TheMeanOfEqualNumbersIsTheirs) {
     for (const std::uint32_t one : {0x1u, 0x3u, 0x7fffffu, 0x800000u, 0xffffffu, 0x3f800001u,
                                     0x7f7fffffu, 0x80000001u, 0xff7fffffu, 0xbf800001u})
-        for (const std::uint32_t n : kWindowLengths) {
+        for (const std::uint32_t n : kMeanLengths) {
             std::vector<std::uint32_t> storage(n);
             etlmon::MeanState state;
             state.reset();

@@ -261,12 +261,11 @@ std::vector<double> TruthEvaluator::elements(Index index, std::size_t ago) const
         return ago == 0 ? values_[input] : earlier_[ago - 1][input];
     };
     if (ago > earlier_.size()) return {};
-    const bool there =
-        point.is_joined()
-            ? std::all_of(point.parts.begin(), point.parts.end(),
-                          [&](Index part) { return append(elements(part, ago)); })
-            : std::all_of(point.inputs.begin(), point.inputs.end(),
-                          [&](Index input) { return append(was(input)); });
+    const bool there = point.is_joined()
+                           ? std::all_of(point.parts.begin(), point.parts.end(),
+                                         [&](Index part) { return append(elements(part, ago)); })
+                           : std::all_of(point.inputs.begin(), point.inputs.end(),
+                                         [&](Index input) { return append(was(input)); });
     return there ? all : std::vector<double>{};
 }
 

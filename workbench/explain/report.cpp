@@ -65,7 +65,7 @@ float margin(const Observations& observations, Sample sample) {
 std::vector<Nearest> nearest(const Observations& observations, Sample sample) {
     std::vector<Nearest> result;
     if (!observations.atoms()[sample.atom].is_predicate) return result;
-    const std::vector<Index> distances = 
+    const std::vector<Index> distances =
         check::measured_targets(observations.model(), observations.predicate(sample.atom));
     for (std::size_t n = 0; n < distances.size(); ++n) {
         const check::Distance& distance = observations.model().distances[distances[n]];

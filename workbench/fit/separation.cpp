@@ -9,8 +9,8 @@
 #include <memory>
 #include <set>
 
-#include "episodes/recent_frames.hpp"
 #include "episodes/parallel.hpp"
+#include "episodes/recent_frames.hpp"
 #include "episodes/replay.hpp"
 #include "plan/plan.hpp"
 
@@ -141,8 +141,7 @@ private:
     static std::vector<std::optional<Need>> plain_needs(const check::Model& model,
                                                         const std::vector<Measured>& predicates) {
         std::vector<std::optional<Need>> result;
-        for (const Measured& one : predicates)
-            result.push_back(plain_need(model, one.predicate));
+        for (const Measured& one : predicates) result.push_back(plain_need(model, one.predicate));
         return result;
     }
 
@@ -164,9 +163,7 @@ private:
         const bool upper = fold.model.predicates[predicates_[i].predicate].upper_bound();
         if (!std::isnan(delta))
             ranked.after.push_back({{upper ? -delta : delta, number, positive}, step});
-        if (!plain_[i] || !fold.means[i] ||
-            !recent_.read(plain_[i]->point, point_))
-            return;
+        if (!plain_[i] || !fold.means[i] || !recent_.read(plain_[i]->point, point_)) return;
         const Eigen::Map<const Eigen::VectorXf> point(point_.data(),
                                                       static_cast<Eigen::Index>(point_.size()));
         const double squared = (point.cast<double>() - *fold.means[i]).squaredNorm();

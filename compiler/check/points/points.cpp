@@ -28,11 +28,11 @@ Index input_of(Context& c, const ast::Name& name, bool in_brackets) {
     const Input& input = c.model.inputs[index];
     const bool is_scalar = input.type == InputType::scalar;
     if (input.is_embedding() || (in_brackets && is_scalar)) return index;
-    auto& error = c.report(Code::point_form, name.span,
-                           fmt::format("'{}' is {}; expected {}", name.text,
-                                       is_scalar ? "a scalar" : "a bool",
-                                       in_brackets ? "a scalar or an embedding"
-                                                   : "an embedding, or a vector of scalars"));
+    auto& error = c.report(
+        Code::point_form, name.span,
+        fmt::format(
+            "'{}' is {}; expected {}", name.text, is_scalar ? "a scalar" : "a bool",
+            in_brackets ? "a scalar or an embedding" : "an embedding, or a vector of scalars"));
     if (is_scalar) error.note(fmt::format("for a point of one dimension write [{}]", name.text));
     return kNone;
 }
@@ -235,8 +235,8 @@ void report_dimensions(Context& c, const Target& target, const Point& point, con
                        Span span) {
     auto& error =
         c.report(Code::dimension_mismatch, span,
-                 fmt::format("{} has dimension {}, target '{}' has dimension {}",
-                             words_of(point), point.dimension, target.name, target.dimension));
+                 fmt::format("{} has dimension {}, target '{}' has dimension {}", words_of(point),
+                             point.dimension, target.name, target.dimension));
     if (point.kind == Point::Kind::embedding)
         error.note(c.model.inputs[point.inputs[0]].span,
                    fmt::format("{} is declared here", words_of(point)));
@@ -253,8 +253,7 @@ std::uint32_t shortest_delay(const Model& model, Index index) {
     if (point.is_projected()) return shortest_delay(model, point.inner);
     if (point.is_delayed()) return point.steps + shortest_delay(model, point.inner);
     std::uint32_t shortest = point.is_joined() ? kMaxBound : 0;
-    for (const Index part : point.parts)
-        shortest = std::min(shortest, shortest_delay(model, part));
+    for (const Index part : point.parts) shortest = std::min(shortest, shortest_delay(model, part));
     return shortest;
 }
 
@@ -311,10 +310,8 @@ bool is_same_space(const Model& model, Index a, Index b) {
     if (left.dimension != right.dimension || left.projection != right.projection) return false;
     if (left.is_projected()) return is_same_space(model, left.inner, right.inner);
     if (!left.is_joined() && !right.is_joined()) return true;
-    return std::equal(left.parts.begin(), left.parts.end(), right.parts.begin(),
-                      right.parts.end(), [&](Index one, Index other) {
-                          return is_same_space(model, one, other);
-                      });
+    return std::equal(left.parts.begin(), left.parts.end(), right.parts.begin(), right.parts.end(),
+                      [&](Index one, Index other) { return is_same_space(model, one, other); });
 }
 
 Index target_in_space(Context& c, Index index, Index measured, Span span) {

@@ -123,12 +123,11 @@ Index as_of_now(const Model& model, Index index) {
     if (!point.is_projected()) return index;
     const Index inner = as_of_now(model, point.inner);
     if (inner == point.inner || inner == kNone) return inner == kNone ? kNone : index;
-    const auto found = std::find_if(
-        model.points.begin(), model.points.end(), [&](const Point& other) {
+    const auto found =
+        std::find_if(model.points.begin(), model.points.end(), [&](const Point& other) {
             return other.projection == point.projection && other.inner == inner;
         });
-    return found == model.points.end() ? kNone
-                                       : static_cast<Index>(found - model.points.begin());
+    return found == model.points.end() ? kNone : static_cast<Index>(found - model.points.begin());
 }
 
 bool is_recorded(const Model& model, Index index) {

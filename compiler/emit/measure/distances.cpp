@@ -116,8 +116,8 @@ std::optional<std::string> measured_at_once(const Context& context, Index d) {
     if (distance.is_between_points())
         return fmt::format("etlmon::measure_between<etlmon::{}, {}>({}, {}{})",
                            plan::metric_name(distance), point.dimension,
-                           elements_of(context, distance.point), elements_of(context, distance.other),
-                           weights_argument(context, d));
+                           elements_of(context, distance.point),
+                           elements_of(context, distance.other), weights_argument(context, d));
     if (point.is_vector() && plan::checks_point(context.plan, d))
         return wide_call(context, d, '{' + scalars_of(context, point) + '}');
     const Index embedding = point.inputs[0];

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "emit/measure/measurements.hpp"
-#include "emit/measure/uses.hpp"
 #include "plan/program/predicate_values.hpp"
+#include "plan/program/uses.hpp"
 #include "plan/targets/narrow_targets.hpp"
 #include "plan/targets/point_checks.hpp"
 
@@ -65,7 +65,7 @@ const char* robustness_name(const check::Predicate& predicate) {
 class MeasurePrinter {
 public:
     MeasurePrinter(Printer& out, const Context& context)
-        : out_(out), context_(context), uses_(distance_uses(context.plan)) {}
+        : out_(out), context_(context), uses_(plan::distance_uses(context.plan)) {}
 
     void print() {
         for (Index i : context_.plan.inputs) print_input(out_, context_, i);

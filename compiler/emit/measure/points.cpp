@@ -75,8 +75,8 @@ const check::Input* narrow_input(const Context& context, Index point) {
 /// Prints POINT@n.
 void print_delayed(Printer& out, const Context& context, Index index) {
     const check::Point& point = context.model.points[index];
-    const std::string at = fmt::format("{}.at({})", context.names.earlier_member.at(point.inner),
-                                       point.steps);
+    const std::string at =
+        fmt::format("{}.at({})", context.names.earlier_member.at(point.inner), point.steps);
     const check::Input* const narrow = narrow_input(context, point.inner);
     if (narrow == nullptr) return print_pointer(out, context, index, at);
     const std::string& buffer = context.names.point_buffer.at(index);
@@ -128,11 +128,11 @@ void print_kept_points(Printer& out, const Context& context) {
         const std::string sample = fmt::format("in.{}.data()", narrow->name);
         const std::string& fresh =
             context.names.input_buffer.at(context.model.points[point].inputs[0]);
-        print_wrapped(out, narrow->hold == 0
-                               ? fmt::format("{}.push({} != nullptr ? {} : nullptr);", name,
-                                             elements, sample)
-                               : fmt::format("{}.push({} == {} ? {} : nullptr, {} != nullptr);",
-                                             name, elements, fresh, sample, elements));
+        print_wrapped(
+            out, narrow->hold == 0
+                     ? fmt::format("{}.push({} != nullptr ? {} : nullptr);", name, elements, sample)
+                     : fmt::format("{}.push({} == {} ? {} : nullptr, {} != nullptr);", name,
+                                   elements, fresh, sample, elements));
     }
     out.gap();
 }
@@ -143,9 +143,9 @@ std::vector<Member> earlier_members(const Context& context) {
          plan::earlier_points(context.model, context.plan.distances)) {
         const check::Point& point = context.model.points[earlier.point];
         const check::Input* const narrow = narrow_input(context, earlier.point);
-        const char* const type = narrow == nullptr                 ? "float"
+        const char* const type = narrow == nullptr               ? "float"
                                  : narrow->type == InputType::i8 ? "int8_t"
-                                                                   : "uint16_t";
+                                                                 : "uint16_t";
         const std::string& name = context.names.earlier_member.at(earlier.point);
         result.push_back(
             {fmt::format("etlmon::Earlier<{}, {}, {}>", type, point.dimension, earlier.steps), name,

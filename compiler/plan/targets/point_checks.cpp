@@ -59,8 +59,7 @@ std::vector<Index> points_of(const check::Model& model, const std::vector<Index>
 
 std::vector<Index> projected_points(const check::Model& model,
                                     const std::vector<Index>& distances) {
-    return points_where(model, distances,
-                        [&](Index p) { return model.points[p].is_projected(); });
+    return points_where(model, distances, [&](Index p) { return model.points[p].is_projected(); });
 }
 
 std::vector<Index> built_points(const check::Model& model, const std::vector<Index>& distances) {
@@ -72,7 +71,7 @@ std::vector<Index> built_points(const check::Model& model, const std::vector<Ind
 }
 
 std::vector<EarlierPoint> earlier_points(const check::Model& model,
-                                   const std::vector<Index>& distances) {
+                                         const std::vector<Index>& distances) {
     std::map<Index, std::uint32_t> longest;
     for (const Index p : points_of(model, distances)) {
         const Point& point = model.points[p];

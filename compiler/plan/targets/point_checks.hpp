@@ -22,7 +22,8 @@ struct EarlierPoint {
     std::uint32_t steps = 0;
 };
 /// Returns what the delayed ones among the points need, by point.
-std::vector<EarlierPoint> earlier_points(const check::Model& model, const std::vector<Index>& distances);
+std::vector<EarlierPoint> earlier_points(const check::Model& model,
+                                         const std::vector<Index>& distances);
 /// Returns the bytes of an element of a point as it is kept.
 std::uint64_t earlier_element_bytes(const check::Model& model, Index point);
 

@@ -52,8 +52,7 @@ std::optional<Why> expected(const Observations& observations, const Explanation&
     why.threshold = predicate.threshold.value;
     const bool has_rows = predicate.plain_distance() &&
                           !check::measured_targets(observations.model(), predicate).empty();
-    if (has_rows && !observations.is_missing(sample))
-        why.row = observations.nearest(sample, 0);
+    if (has_rows && !observations.is_missing(sample)) why.row = observations.nearest(sample, 0);
     return why;
 }
 

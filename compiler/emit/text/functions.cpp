@@ -1,4 +1,4 @@
-#include "emit/functions.hpp"
+#include "emit/text/functions.hpp"
 
 #include <fmt/format.h>
 

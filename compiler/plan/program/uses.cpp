@@ -1,4 +1,4 @@
-#include "plan/program/scalar_uses.hpp"
+#include "plan/program/uses.hpp"
 
 namespace etlc::plan {
 
@@ -15,6 +15,16 @@ std::map<Index, int> scalar_uses(const Plan& plan) {
         for (const Index point : {model.distances[d].point, model.distances[d].other})
             if (point != check::kNone)
                 for (const Index i : model.points[point].inputs) uses[i] += 2;
+    return uses;
+}
+
+std::map<Index, int> distance_uses(const Plan& plan) {
+    std::map<Index, int> uses;
+    for (const Index p : plan.predicates) {
+        const check::Predicate& predicate = plan.model->predicates[p];
+        const int weight = predicate.plain_distance() ? 1 : 2;
+        check::for_each_distance(predicate.expression, [&](Index d) { uses[d] += weight; });
+    }
     return uses;
 }
 
