@@ -119,7 +119,7 @@ private:
         }
     }
 
-    /// What is fitted is taken from recorded samples, then projected: a projection stands outside.
+    /// Recorded samples are fitted, and projected after that: a projection stands outside.
     bool is_of_recorded(Index point) {
         Index at = point;
         while (c_.model.points[at].is_projected()) at = c_.model.points[at].inner;
