@@ -183,15 +183,6 @@ Cost point_cost(const check::Model& model, const check::Point& point) {
             .distance_operations = std::uint64_t{map.rows} * map.dimension};
 }
 
-/// Returns the cost of the samples that are kept for a point.
-Cost earlier_cost(const check::Model& model, const EarlierPoint& earlier) {
-    return {
-        .state_bytes = etlmon::earlier_bytes(earlier_element_bytes(model, earlier.point),
-                                             model.points[earlier.point].dimension, earlier.steps),
-        .code_bytes = kCodePerRing,
-        .operations = 1};
-}
-
 std::uint64_t bytes_of_element(check::InputType type) {
     if (type == check::InputType::i8) return sizeof(std::int8_t);
     return type == check::InputType::f16 ? sizeof(std::uint16_t) : sizeof(float);
@@ -250,7 +241,7 @@ public:
         for (Index p : built_points(model, distances))
             sum = sum + point_cost(model, model.points[p]);
         for (const EarlierPoint& earlier : earlier_points(model, distances))
-            sum = sum + earlier_cost(model, earlier);
+            sum = sum + cost_of(model, earlier);
         for (Index d : distances_) {
             sum = sum + distance_cost(model, model.distances[d]);
             if (searches(plan_, d))
@@ -333,6 +324,14 @@ std::string in_words(const Cost& cost) {
                                   : fmt::format(" and {} on the stack of a step", cost.stack_bytes);
     return fmt::format("{} bytes of state{}, {} bytes of code (estimated), {} operations a step",
                        cost.state_bytes, stack, cost.code_bytes, cost.operations);
+}
+
+Cost cost_of(const check::Model& model, const EarlierPoint& earlier) {
+    return {
+        .state_bytes = etlmon::earlier_bytes(earlier_element_bytes(model, earlier.point),
+                                             model.points[earlier.point].dimension, earlier.steps),
+        .code_bytes = kCodePerRing,
+        .operations = 1};
 }
 
 Cost cost_of(const Stream& stream, Values kind) {

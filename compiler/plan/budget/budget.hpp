@@ -12,6 +12,7 @@
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
 #include "plan/program/program.hpp"
+#include "plan/targets/point_checks.hpp"
 
 namespace etlc::plan {
 
@@ -34,6 +35,8 @@ std::string in_words(const Cost& cost);
 Cost cost_of(const Stream& stream, check::Values values);
 Cost cost_of(const Reading& reading, check::Values values);
 Cost cost_of(const check::Past& past);
+/// Returns the cost of the samples that are kept for a point.
+Cost cost_of(const check::Model& model, const EarlierPoint& earlier);
 /// Returns the target elements that a predicate measures.
 std::uint64_t measured_elements(const check::Model& model, Index predicate);
 /// Returns the same, with those of its projections.

@@ -88,6 +88,12 @@ std::vector<Part> costly_parts(const Plan& plan, const Limits& limits) {
         const check::Past& past = plan.model->pasts[p];
         parts.push_back({past.span, past.text, cost_of(past)});
     }
+    const check::Model& model = *plan.model;
+    for (const EarlierPoint& earlier : earlier_points(model, plan.distances)) {
+        const check::Point& point = model.points[earlier.point];
+        parts.push_back({model.inputs[point.inputs[0]].span,
+                         fmt::format("{}@{}", point.text, earlier.steps), cost_of(model, earlier)});
+    }
     std::stable_sort(parts.begin(), parts.end(),
                      [&](const Part& a, const Part& b) { return weight(a.cost) > weight(b.cost); });
     parts.resize(std::min(parts.size(), kMostNamed));
