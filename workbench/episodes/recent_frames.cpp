@@ -4,21 +4,16 @@
 #include <cmath>
 #include <set>
 
-namespace etlc::episodes {
+#include "check/points/project.hpp"
 
-std::uint32_t longest_delay(const check::Model& model, Index index) {
-    const check::Point& point = model.points[index];
-    std::uint32_t longest = point.inner == check::kNone ? 0 : longest_delay(model, point.inner);
-    for (const Index part : point.parts) longest = std::max(longest, longest_delay(model, part));
-    return longest + point.steps;
-}
+namespace etlc::episodes {
 
 RecentFrames::RecentFrames(const check::Model& model, const std::vector<Index>& points)
     : model_(model) {
     std::set<Index> inputs;
     for (const Index point : points) {
         inputs.insert(model.points[point].inputs.begin(), model.points[point].inputs.end());
-        most_ = std::max<std::size_t>(most_, longest_delay(model, point));
+        most_ = std::max<std::size_t>(most_, check::longest_delay(model, point));
     }
     inputs_.assign(inputs.begin(), inputs.end());
 }

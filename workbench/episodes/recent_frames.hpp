@@ -35,7 +35,4 @@ private:
     std::deque<std::vector<plan::Sample>> frames_;  ///< the last one first
 };
 
-/// Returns the steps between a point and the earliest sample that it needs.
-std::uint32_t longest_delay(const check::Model& model, Index point);
-
 }  // namespace etlc::episodes

@@ -73,7 +73,7 @@ TruthEvaluator::TruthEvaluator(const check::Model& model, const std::vector<Inde
         check::for_each_distance(model.predicates[formula.index].expression, [&](Index d) {
             for (const Index point : {model.distances[d].point, model.distances[d].other})
                 if (point != check::kNone)
-                    longest_delay_ = std::max(longest_delay_, longest_delay(model, point));
+                    longest_delay_ = std::max(longest_delay_, check::longest_delay(model, point));
         });
     }
     std::reverse(order_.begin(), order_.end());

@@ -36,6 +36,12 @@ std::uint64_t steps_back(const Model& model, const Expr& expression) {
     std::uint64_t back = 0;
     for (const Expr& argument : expression.arguments)
         back = std::max(back, steps_back(model, argument));
+    if (expression.kind == Expr::Kind::distance) {
+        const Distance& distance = model.distances[expression.index];
+        back = longest_delay(model, distance.point);
+        if (distance.is_between_points())
+            back = std::max<std::uint64_t>(back, longest_delay(model, distance.other));
+    }
     if (expression.kind != Expr::Kind::past) return back;
     const Past& past = model.pasts[expression.index];
     return back + past.steps - (past.kind == Past::Kind::ago ? 0 : 1);

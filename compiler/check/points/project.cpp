@@ -116,6 +116,13 @@ bool rests_on_fitted(const Model& model, const Distance& distance) {
            (distance.is_between_points() && rests_on_fitted(model, distance.other));
 }
 
+std::uint32_t longest_delay(const Model& model, Index index) {
+    const Point& point = model.points[index];
+    std::uint32_t longest = point.inner == kNone ? 0 : longest_delay(model, point.inner);
+    for (const Index part : point.parts) longest = std::max(longest, longest_delay(model, part));
+    return longest + point.steps;
+}
+
 Index as_of_now(const Model& model, Index index) {
     const Point& point = model.points[index];
     if (point.is_joined()) return kNone;

@@ -32,6 +32,9 @@ std::optional<Index> fill(Model& model, Index fitted, const Filling& filling);
 /// Whether the distance depends on something fitted.
 bool rests_on_fitted(const Model& model, const Distance& distance);
 
+/// Returns the steps between a point and the earliest sample that it needs.
+std::uint32_t longest_delay(const Model& model, Index point);
+
 /// Returns the point of the model that a delayed one is the earlier value of, also inside of
 /// projections; kNone for points put together.
 Index as_of_now(const Model& model, Index point);
