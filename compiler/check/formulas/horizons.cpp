@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "check/points/project.hpp"
+
 namespace etlc::check {
 
 namespace {
