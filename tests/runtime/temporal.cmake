@@ -38,7 +38,8 @@ if(NOT ETLC_TEMPORAL_OTHER)
   etlc_missing_tool(${temporal_other} ${temporal_package})
 else()
   file(GLOB temporal_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/temporal/*
-    ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/past/* ${CMAKE_CURRENT_SOURCE_DIR}/*.hpp ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+    ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/past/*
+    ${CMAKE_CURRENT_SOURCE_DIR}/*.hpp ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   set(objects)
   foreach(source ${float_sources})
     get_filename_component(object ${source} NAME)

@@ -193,8 +193,7 @@ private:
         if (meant == nullptr || meant->kind != NameKind::constant ||
             constants_[meant->index]->unit.empty())
             return;
-        const auto kind =
-            e.kind == ast::ExprKind::min ? ast::PastKind::min : ast::PastKind::max;
+        const auto kind = e.kind == ast::ExprKind::min ? ast::PastKind::min : ast::PastKind::max;
         const ast::Number number{last.text, last.span, last.text};
         e.past = std::make_unique<ast::Past>(
             ast::Past{kind, nullptr, ast::Bound{number, "", last.span}});
