@@ -96,9 +96,10 @@ std::string name_words(const Stuck& stuck) {
             if (stuck.parent_rule == EtlParser::RuleDistance &&
                 is(stuck.previous, {EtlParser::COMMA}))
                 return "the name of a target, or another point";
-            return stuck.expects(EtlParser::LBRACKET)
-                       ? "the name of an input or a projection, or a vector [x, y] of scalar inputs"
-                       : "the name of a scalar input";
+            if (stuck.parent_rule == EtlParser::RulePoint &&
+                !is(stuck.previous, {EtlParser::LPAREN}))
+                return "a scalar input or a point";
+            return "the name of an input or a projection, or a vector [x, y] of scalar inputs";
         case EtlParser::RuleWeights:
             return "load(\"FILE\"), a matrix, a diagonal [...], fitted(...) or the name of a "
                    "target";

@@ -244,8 +244,8 @@ def completions():
     assert labels("predicate p = min |")[:7] == [
         "l2", "l2sq", "l1", "linf", "cosine", "angular", "mahalanobis"]
     assert labels("predicate p = min l2(|") == ["z"]
-    assert labels("predicate p = min l2(z, |") == ["bay"]
-    assert labels("predicate p = l2([|") == ["grip"]
+    assert set(labels("predicate p = min l2(z, |")) == {"bay", "z"}  # a target, or another point
+    assert set(labels("predicate p = l2([|")) == {"grip", "z"}
     numbers = labels("predicate p = grip <= |")
     assert "limit" in numbers and "calibrated" in numbers and "at_bay" not in numbers
     assert labels("predicate p = grip <= calibrated(|")[0] == "conformal"

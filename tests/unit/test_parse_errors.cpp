@@ -188,8 +188,9 @@ TEST(Places, MessagesNameWhatWasExpected) {
          "after '(', found "
          "'3'"},
         {"let f = l2([x, 3], t) < 1;",
-         "2:16 expected the name of a scalar input after ',', found '3'"},
-        {"let f = l2(z, 3) < 1;", "2:15 expected the name of a target after ',', found '3'"},
+         "2:16 expected a scalar input or a point after ',', found '3'"},
+        {"let f = l2(z, 3) < 1;",
+         "2:15 expected the name of a target, or another point after ',', found '3'"},
         {"let f = l2 z < 1;", "2:12 expected an operator or ';' after 'l2', found 'z'"},
         {"let f = a = b;", "2:11 expected an operator or ';' after 'a', found '='"},
         {"let f = \"a\";", "2:9 expected a formula after '=', found \"a\""},
