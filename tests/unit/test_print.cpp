@@ -64,7 +64,7 @@ public:
     ast::ExprPtr expression(int depth) {
         using Kind = ast::Expr::Kind;
         auto e = std::make_unique<ast::Expr>();
-        e->kind = depth == 0 ? static_cast<Kind>(below(3)) : static_cast<Kind>(below(12));
+        e->kind = depth == 0 ? static_cast<Kind>(below(3)) : static_cast<Kind>(below(13));
         const auto arguments = [&](int n) {
             for (int i = 0; i < n; ++i) e->arguments.push_back(expression(depth - 1));
         };
@@ -72,6 +72,13 @@ public:
             case Kind::number: e->text = number(); break;
             case Kind::name: e->text = name(); break;
             case Kind::distance: e->distance = distance(); break;
+            case Kind::past: {
+                arguments(1);
+                ast::Past past{static_cast<ast::PastKind>(below(4)), nullptr, time()};
+                if (past.kind != ast::PastKind::ago) past.time.unit = "s";
+                e->past = std::make_unique<ast::Past>(std::move(past));
+                break;
+            }
             case Kind::negate:
             case Kind::abs:
             case Kind::sqrt: arguments(1); break;

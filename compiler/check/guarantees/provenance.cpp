@@ -30,21 +30,31 @@ void add_encoder(const Model& model, Index input, Hashes& hashes) {
         hashes[model.encoders[encoder].name] = model.encoders[encoder].fingerprint;
 }
 
-/// Adds the projections on the way to the point.
-void add_projections(const Model& model, Index point, Hashes& hashes) {
-    for (Index at = point; model.points[at].is_projected(); at = model.points[at].inner) {
-        const Projection& projection = model.projections[model.points[at].projection];
+/// Adds the projections that a point went through, and those of its parts.
+void add_projections(const Model& model, Index index, Hashes& hashes) {
+    const Point& point = model.points[index];
+    if (point.is_projected()) {
+        const Projection& projection = model.projections[point.projection];
         hashes[projection.name] = projection.hash;
     }
+    if (point.inner != kNone) add_projections(model, point.inner, hashes);
+    for (const Index part : point.parts) add_projections(model, part, hashes);
+}
+
+void add_target(const Model& model, Index index, Hashes& hashes) {
+    const Target& target = model.targets[index];
+    const Target& declared = target.source == kNone ? target : model.targets[target.source];
+    hashes[declared.name] = declared.hash;
 }
 
 void add_predicate(const Model& model, Index predicate, Hashes& hashes) {
     for_each_distance(model.predicates[predicate].expression, [&](Index index) {
         const Distance& distance = model.distances[index];
-        const Target& target = model.targets[distance.target];
-        const Target& declared = target.source == kNone ? target : model.targets[target.source];
-        hashes[declared.name] = declared.hash;
         add_projections(model, distance.point, hashes);
+        if (distance.is_between_points())
+            add_projections(model, distance.other, hashes);
+        else
+            add_target(model, distance.target, hashes);
         if (!distance.weights.empty()) hashes[distance.text] = weights_hash(distance);
     });
     for (const Index input : model.predicates[predicate].inputs) {
