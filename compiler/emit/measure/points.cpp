@@ -118,7 +118,10 @@ void print_point(Printer& out, const Context& context, Index index) {
 void print_kept_points(Printer& out, const Context& context) {
     if (context.names.earlier_member.empty()) return;
     out.gap();
-    for (const auto& [point, name] : context.names.earlier_member) {
+    // Outer points first: evaluated on demand, one may still have to read what an inner one kept.
+    const auto& kept = context.names.earlier_member;
+    for (auto member = kept.rbegin(); member != kept.rend(); ++member) {
+        const auto& [point, name] = *member;
         const std::string elements = elements_of(context, point);
         const check::Input* const narrow = narrow_input(context, point);
         if (narrow == nullptr) {
