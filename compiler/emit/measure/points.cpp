@@ -118,7 +118,7 @@ void print_point(Printer& out, const Context& context, Index index) {
 void print_kept_points(Printer& out, const Context& context) {
     if (context.names.earlier_member.empty()) return;
     out.gap();
-    // Outer points first: evaluated on demand, one may still have to read what an inner one kept.
+    // Outer points first: on demand, one may be computed here from what an inner one has kept.
     const auto& kept = context.names.earlier_member;
     for (auto member = kept.rbegin(); member != kept.rend(); ++member) {
         const auto& [point, name] = *member;
