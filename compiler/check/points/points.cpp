@@ -151,9 +151,19 @@ std::optional<std::uint32_t> sum_of(Context& c, const std::vector<ast::Bound>& d
         if (!steps) return std::nullopt;
         sum += *steps;
     }
-    if (sum <= kMaxBound) return static_cast<std::uint32_t>(sum);
+    if (sum <= kMaxPast) return static_cast<std::uint32_t>(sum);
     return c.no_value(Code::bound_too_large, delays.back().span,
-                      fmt::format("{} steps ago in all; the largest time is {}", sum, kMaxBound));
+                      fmt::format("{} steps ago; the longest time is {} steps", sum, kMaxPast));
+}
+
+/// Returns the point as it was `steps` ago, or kNone after reporting that this is too long ago.
+Index limited_ago(Context& c, Index index, std::uint32_t steps, Span span) {
+    const Index point = ago(c, index, steps);
+    const std::uint32_t longest = point == kNone ? 0 : longest_delay(c.model, point);
+    if (longest <= kMaxPast) return point;
+    c.report(Code::bound_too_large, span,
+             fmt::format("{} steps ago; the longest time is {} steps", longest, kMaxPast));
+    return kNone;
 }
 
 /// Returns the elements of [a, b@3, z]; nothing after an error.
@@ -164,14 +174,13 @@ std::optional<std::vector<Element>> elements_of(Context& c, const ast::Point& ve
         Element element;
         const bool is_input = !part.is_vector && part.parts.empty();
         const Index input = is_input ? input_of(c, part.name, true) : kNone;
-        const auto steps = sum_of(c, part.delays);
-        if (input != kNone && c.model.inputs[input].type == InputType::scalar)
-            element = {input, kNone, steps.value_or(0)};
-        else if (!is_input)
+        if (input != kNone && c.model.inputs[input].type == InputType::scalar) {
+            const auto steps = sum_of(c, part.delays);
+            if (steps) element = {input, kNone, *steps};
+        } else if (input != kNone || !is_input) {
             element.point = check_point(c, part);
-        else if (input != kNone)
-            element.point = ago(c, embedding(c, input), steps.value_or(0));
-        good = good && steps && (element.scalar != kNone || element.point != kNone);
+        }
+        good = good && (element.scalar != kNone || element.point != kNone);
         elements.push_back(element);
     }
     return good ? std::optional(std::move(elements)) : std::nullopt;
@@ -295,7 +304,7 @@ Index check_point(Context& c, const ast::Point& written) {
         if (input != kNone) point = embedding(c, input);
     }
     const auto steps = sum_of(c, written.delays);
-    return steps ? ago(c, point, *steps) : kNone;
+    return steps ? limited_ago(c, point, *steps, written.span) : kNone;
 }
 
 Index without_delay(Context& c, Index point) {
