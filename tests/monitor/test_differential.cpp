@@ -98,6 +98,25 @@ TEST_P(PastExhaustive, TwoInputsWithGaps) {
     }
 }
 
+// The verdicts of a prefix bound those of every continuation, whatever its samples are.
+TEST_P(PastExhaustive, BoundsHoldForEveryContinuation) {
+    for (const std::size_t inputs : {1, 2}) {
+        const PastShape shape{.points = GetParam(), .inputs = inputs};
+        const auto model = load(exhaustive_past_spec("earlier", shape));
+        ASSERT_TRUE(model);
+        PlanRunner runner(*model, kRoomy);
+        for (std::uint64_t n = 0; n < 400; ++n) {
+            reference::Trace trace = random_trace(*model, n / 20, {.steps = 1 + n / 20 % 6});
+            const double missing = n % 3 == 0 ? 0.2 : 0;
+            for (const reference::Step& step :
+                 random_trace(*model, 1000 + n, {.steps = 6, .missing = missing, .extreme = 0.4}))
+                trace.push_back(step);
+            expect_agreement(*model, runner, trace, kRounding);
+            if (HasFatalFailure()) return;
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(NumbersAndPoints, PastExhaustive, testing::Bool(),
                          [](const auto& points) { return points.param ? "Points" : "Numbers"; });
 
