@@ -305,10 +305,19 @@ FormulaShape formula_shape(const SpecShape& shape, bool sliding) {
     return result;
 }
 
+/// Returns another number for other shapes, so that they have other predicates, too.
+std::uint64_t seed_of(std::uint64_t seed, const SpecShape& shape) {
+    std::uint64_t result = static_cast<std::uint64_t>(shape.formulas);
+    for (const int part : {shape.monitors, shape.depth, shape.window, shape.exact ? 1 : 0,
+                           shape.restarts > 0 ? 1 : 0, shape.missing > 0 ? 1 : 0})
+        result = 64 * result + static_cast<std::uint64_t>(part);
+    return seed + (result << 20U);
+}
+
 }  // namespace
 
 std::string random_spec(std::uint64_t seed, const SpecShape& shape) {
-    Random random(seed);
+    Random random(seed_of(seed, shape));
     Declarations declarations(random, shape);
     std::string result = fmt::format("spec random_{};\n", seed) + declarations.text();
     const auto comparison = [&] { return declarations.comparison(); };
