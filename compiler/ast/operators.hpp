@@ -37,6 +37,7 @@ inline constexpr std::array kOperators = std::to_array<Operator>({
 #define OPERATOR(name, token, symbol, word, level, looks) {symbol, word, level, Looks::looks},
 #include "ast/operators.def"
 #undef OPERATOR
+    {"count", "count", kAtom, Looks::back},  // in the model alone; as written it is a comparison
 });
 
 /// Returns the row of an operator; null for atoms. `Kind` is that of the syntax tree or of the

@@ -31,6 +31,9 @@ std::string type_of(const Context& context, const plan::Member& m) {
         case Kind::handover_window:
             return fmt::format("etlmon::Window<{}, {}>", aggregate(m, "Handover", "Covered"),
                                m.length);
+        case Kind::count_window:
+            return fmt::format("etlmon::{}<Value, {}, {}>", m.max ? "AtLeast" : "AllBut", m.count,
+                               m.length);
         case Kind::widening:
             return fmt::format("etlmon::Widening<{}, {}, {}>", aggregate(m, "Greatest", "Least"),
                                m.from_length, m.length);

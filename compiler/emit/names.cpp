@@ -201,6 +201,7 @@ private:
             case plan::StreamOp::widening:
             case plan::StreamOp::window_since:
             case plan::StreamOp::window_until:
+            case plan::StreamOp::window_count:
             case plan::StreamOp::window_handover: return fmt::format("_last_{}", stream.length);
             default: return "_value";
         }

@@ -104,6 +104,8 @@ std::string statement(const Context& context, Slot slot, const std::string& loca
             if (stream.length == 1)
                 return fmt::format("{}{};", local, guarded(context, stream, 0, none));
             return fmt::format("{}{}.push({});", local, kept(), guarded(context, stream, 0, none));
+        case StreamOp::window_count:
+            return fmt::format("{}{}.push({});", local, kept(), guarded(context, stream, 0, none));
         case StreamOp::window_handover:
             return fmt::format("{}{}.push(etlmon::{}<Value>::at({}, {})).value;", local, kept(),
                                max ? "Handover" : "Covered", at(0), at(1));

@@ -39,7 +39,12 @@ const OpInfo& info(Op op) {
 }
 
 bool takes_max(Op op) {
-    return op == Op::eventually || op == Op::until || op == Op::once || op == Op::since;
+    return op == Op::eventually || op == Op::until || op == Op::once || op == Op::since ||
+           op == Op::at_least;
+}
+
+bool counts(Op op) {
+    return op == Op::at_least || op == Op::all_but;
 }
 
 bool Node::same_as(const Node& other) const {
@@ -134,6 +139,19 @@ NodeId Graph::unary(Op op, Interval interval, NodeId operand, Span span) {
         if (exact) return unary(op, {low, high}, inner.operands.front(), span);
     }
     return intern({.op = op, .interval = interval, .operands = {operand}, .span = span});
+}
+
+NodeId Graph::count(Op op, std::uint32_t n, std::uint32_t high, NodeId operand, NodeId counted,
+                    Span span) {
+    const bool max = takes_max(op);
+    if (n == 1) return unary(max ? Op::once : Op::historically, {0, high}, operand, span);
+    if (operand == constant(!max)) return operand;
+    return intern({.op = op,
+                   .index = n,
+                   .interval = {0, high},
+                   .operands = {operand},
+                   .span = span,
+                   .counted = counted});
 }
 
 NodeId Graph::binary(Op op, Interval interval, NodeId left, NodeId right, Span span) {

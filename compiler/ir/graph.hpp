@@ -36,9 +36,12 @@ struct OpInfo {
     Op dual;
 };
 const OpInfo& info(Op op);
-/// Returns whether the operator is a max over positions, false over none: F, U, O and S. The other
-/// temporal operators are mins, true over none.
+/// Returns whether the operator is a max over positions, false over none: F, U, O and S, and the
+/// n-th greatest of at_least. The other temporal operators are mins, true over none.
 bool takes_max(Op op);
+/// Returns whether it is one of a count: its operand holds at n or more positions of the interval,
+/// or fails at fewer than n.
+bool counts(Op op);
 
 /// Steps from the present: [low, high], or [low, inf).
 struct Interval {
@@ -55,13 +58,15 @@ struct Interval {
 struct Node {
     Op op = Op::constant_true;
     bool negated = false;  ///< predicate and flag only
-    Index index = 0;       ///< predicate: of the model's predicates; flag: of its inputs
-    Interval interval{};   ///< of temporal operators
+    /// predicate: of the model's predicates; flag: of its inputs; at_least, all_but: n
+    Index index = 0;
+    Interval interval{};  ///< of temporal operators
     std::vector<NodeId> operands;
-    bool has_future = false;      ///< contains a future operator, or is one
-    bool unbounded_past = false;  ///< contains an unbounded past operator, or is one
-    std::uint32_t horizon = 0;    ///< steps of future that it needs; kUnbounded without bound
-    Span span{};                  ///< first mention in the spec; not part of its identity
+    bool has_future = false;        ///< contains a future operator, or is one
+    bool unbounded_past = false;    ///< contains an unbounded past operator, or is one
+    std::uint32_t horizon = 0;      ///< steps of future that it needs; kUnbounded without bound
+    Span span{};                    ///< first mention in the spec; not part of its identity
+    NodeId counted = check::kNone;  ///< of a count, f in count(f, D); not part of its identity
 
     bool same_as(const Node& other) const;
 };
@@ -80,6 +85,10 @@ public:
     /// absorbed operands.
     NodeId combine(Op op, std::vector<NodeId> operands, Span span);
     NodeId unary(Op op, Interval interval, NodeId operand, Span span);
+    /// Builds at_least or all_but: n of the positions of [0, high]. The operand says where
+    /// `counted` begins to hold or, for all_but, where it does not.
+    NodeId count(Op op, std::uint32_t n, std::uint32_t high, NodeId operand, NodeId counted,
+                 Span span);
     NodeId binary(Op op, Interval interval, NodeId left, NodeId right, Span span);
     /// Builds a temporal operator without applying laws: F[0,0] f is f, but an obligation for the
     /// next position also needs the value where the prefix ends before.

@@ -60,6 +60,7 @@ private:
             case Kind::rise: return edge(f, false, negated);
             case Kind::fall: return edge(f, true, negated);
             case Kind::held: return held(f, negated);
+            case Kind::count: return count(f, negated);
         }
         return check::kNone;
     }
@@ -109,6 +110,13 @@ private:
         const NodeId old = graph_.unary(turn(Op::once, negated), {f.high, f.high},
                                         graph_.constant(!negated), f.span);
         return graph_.combine(turn(Op::conjunction, negated), {all, old}, f.span);
+    }
+
+    /// Lowers count(f, n) >= k as rise f at k or more of the last n positions.
+    NodeId count(const check::Formula& f, bool negated) {
+        const NodeId begins = edge(f, false, negated);
+        const NodeId counted = lower(f.operands[0], false);
+        return graph_.count(turn(Op::at_least, negated), f.index, f.high, begins, counted, f.span);
     }
 
     const check::Model& model_;

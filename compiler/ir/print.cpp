@@ -19,6 +19,9 @@ std::string operator_text(const Node& node) {
     const bool one_step = node.interval == Interval{1, 1};
     if (node.op == Op::eventually && one_step) return "X";
     if (node.op == Op::once && one_step) return "Y";
+    if (counts(node.op))
+        return fmt::format("{}({}){}", info(node.op).symbol, node.index,
+                           interval_text(node.interval));
     return info(node.op).symbol + interval_text(node.interval);
 }
 
@@ -56,6 +59,11 @@ check::Phrase phrase(const Graph& graph, NodeId id) {
         result.separator = " S" + interval_text(node.interval) + " !";
         result.closing = ")";
     }
+    if (counts(node.op))
+        return {.opening = "count(",
+                .operands = {{node.counted, false}},
+                .closing = fmt::format(", {} steps) {} {}", node.interval.high + 1,
+                                       takes_max(node.op) ? ">=" : "<", node.index)};
     return result;
 }
 

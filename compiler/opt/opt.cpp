@@ -28,6 +28,9 @@ private:
         switch (ir::info(node.op).arity) {
             case ir::Arity::atom: return id;
             case ir::Arity::unary:
+                if (ir::counts(node.op))
+                    return graph_.count(node.op, node.index, node.interval.high, operands[0],
+                                        node.counted, node.span);
                 return graph_.unary(node.op, node.interval, operands[0], node.span);
             case ir::Arity::binary:
                 return graph_.binary(node.op, node.interval, operands[0], operands[1], node.span);

@@ -100,6 +100,17 @@ private:
                        {all, before(f.high, negated, literal(NodeKind::constant, negated))});
     }
 
+    /// Adds `count(f, n) >= k`: `rise f` at k or more of the last n positions; `k = 1` is
+    /// `O[0, n - 1] rise f`.
+    Index count(const Formula& f, bool negated) {
+        const Index begins = edge(f.operands[0], false, negated);
+        return add({.kind = f.index == 1 ? NodeKind::once : NodeKind::at_least,
+                    .negated = negated,
+                    .index = f.index,
+                    .operands = {begins},
+                    .high = f.high});
+    }
+
     Index make(const Formula& f, bool negated) {
         switch (f.kind) {
             case FormulaKind::constant_true: return literal(NodeKind::constant, negated);
@@ -128,6 +139,7 @@ private:
             case FormulaKind::rise: return edge(f.operands[0], false, negated);
             case FormulaKind::fall: return edge(f.operands[0], true, negated);
             case FormulaKind::held: return held(f, negated);
+            case FormulaKind::count: return count(f, negated);
         }
         return literal(NodeKind::constant, negated);
     }

@@ -21,6 +21,7 @@ struct Node {
         until,       ///< operands f, g; its dual is R
         once,        ///< O[low, high]; Y is O[1, 1]; its dual is H
         since,       ///< operands f, g; its dual is !(!f S !g)
+        at_least,    ///< at `index` or more positions of [0, high]; its dual is !(... of !f)
     };
     Kind kind = Kind::constant;
     bool negated = false;  ///< the negation of a constant or atom, the dual of an operator

@@ -1,6 +1,7 @@
 #include "reference/prefix.hpp"
 
 #include <algorithm>
+#include <functional>
 
 namespace etlc::reference {
 namespace {
@@ -89,9 +90,10 @@ Value Prefix::evaluate(const Node& node, Index index, std::uint64_t k) {
     // "`true`, `false`: +inf, -inf"
     if (node.kind == Node::Kind::constant) return all_of(node.negated ? -kInfinity : kInfinity);
     if (node.is_atom()) return literals_.values[index][k];
-    const Value result = node.kind == Node::Kind::any ? greatest(node, k)
-                         : looks_ahead(node)          ? future(node, k)
-                                                      : past(node, k);
+    const Value result = node.kind == Node::Kind::any        ? greatest(node, k)
+                         : looks_ahead(node)                 ? future(node, k)
+                         : node.kind == Node::Kind::at_least ? often(node, k)
+                                                             : past(node, k);
     return node.negated ? negate(result) : result;
 }
 
@@ -142,6 +144,26 @@ Value Prefix::past(const Node& node, std::uint64_t k) {
     return result;
 }
 
+/// "`count(f, D) >= n`: the n-th greatest of rho(rise f, j, i) over the last positions; fewer than
+/// n positions: -inf"
+Value Prefix::often(const Node& node, std::uint64_t k) {
+    const Past window(node, k);
+    std::vector<double> lowers, rhos, highs, uppers;
+    for (std::uint64_t j = window.first; j <= window.last; ++j) {
+        const Value value = operand(node, 0, j);
+        lowers.push_back(value.lower);
+        rhos.push_back(value.rho);
+        highs.push_back(value.rho_high);
+        uppers.push_back(value.upper);
+    }
+    const auto nth = [&](std::vector<double>& values) {
+        if (values.size() < node.index) return -kInfinity;
+        std::sort(values.begin(), values.end(), std::greater<>());
+        return values[node.index - 1];
+    };
+    return {nth(lowers), nth(rhos), nth(highs), nth(uppers)};
+}
+
 /// "The lowest and highest unseen value of a formula, at a position after i that some longer prefix
 /// has".
 ///
@@ -169,10 +191,11 @@ Unseen Prefix::find_unseen(const Node& node, Index index) {
     // "F, O, U, S: lowest that of the (last) operand if a = 0, else -inf, highest the operand's"
     const std::size_t last = node.operands.size() - 1;
     result = unseen_operand(node, last);
-    if (node.low > 0) result.lowest = -kInfinity;
+    if (node.low > 0 || node.kind == Node::Kind::at_least) result.lowest = -kInfinity;
     // "O and S have a highest of at least [...] what is known of their (last) operand; and an
     // unbounded O with a = 0 has a lowest of at least the greatest known lower"
-    const bool never_forgets = last == 0 && node.low == 0 && node.high == check::kUnbounded;
+    const bool never_forgets = node.kind != Node::Kind::at_least && last == 0 && node.low == 0 &&
+                               node.high == check::kUnbounded;
     for (std::uint64_t j = 0; !looks_ahead(node) && j <= end_; ++j) {
         const Value known = operand(node, last, j);
         result.highest = std::max(result.highest, known.upper);

@@ -58,6 +58,7 @@ private:
     Value greatest(const Node& node, std::uint64_t k);
     Value future(const Node& node, std::uint64_t k);
     Value past(const Node& node, std::uint64_t k);
+    Value often(const Node& node, std::uint64_t k);
     Unseen find_unseen(const Node& node, Index index);
     Value operand(const Node& node, std::size_t n, std::uint64_t position);
     Unseen unseen_operand(const Node& node, std::size_t n);

@@ -197,9 +197,8 @@ void visit(check::Model& model, check::Expr& of, Changing& changing) {
 
 void visit(check::Model& model, check::Past& of, Changing& changing) {
     changing.of("Past");
-    auto& [kind, expression, formula, steps, text, range, span] = of;
+    auto& [kind, expression, steps, text, range, span] = of;
     field(changing, "kind", kind);
-    field(changing, "formula", Place{formula, model.formulas.size()});
     field(changing, "steps", steps);
     field(changing, "text", text);
     field(changing, "range", range);
@@ -229,6 +228,7 @@ void visit(check::Model& model, check::Formula& of, Changing& changing) {
         field(changing, "index", Place{index, model.predicates.size()});
     if (kind == check::Formula::Kind::boolean_input)
         field(changing, "index", Place{index, model.inputs.size()});
+    if (kind == check::Formula::Kind::count) field(changing, "number", index);
     field(changing, "operands", operands);
     field(changing, "low", low);
     field(changing, "high", high);

@@ -31,7 +31,7 @@ std::string past_formula(Random& random, int depth) {
         return random.word({"", fmt::format("[{}, {}]", low, low + random.between(0, 3)),
                             fmt::format("[{}, inf]", low)});
     };
-    switch (random.between(0, 10)) {
+    switch (random.between(0, 11)) {
         case 0: return operand() + " && " + operand();
         case 1: return operand() + " || " + operand();
         case 2: return operand() + " -> " + operand();
@@ -41,6 +41,9 @@ std::string past_formula(Random& random, int depth) {
         case 6: return "H" + interval() + " " + operand();
         case 7: return "Y " + operand();
         case 8: return random.word({"rise ", "fall "}) + operand();
+        case 10:
+            return fmt::format("count({}, {} steps) >= {}", operand(), random.between(5, 7),
+                               random.between(1, 3));
         case 9: return fmt::format("held[{}] ", random.between(0, 3)) + operand();
         default: return operand() + " S" + interval() + " " + operand();
     }

@@ -48,7 +48,7 @@ PHRASES = {
     "min": "predicate p = min l2(z, t) < 1;", "max": "predicate p = max(x, y) < 1;",
     "mean": "predicate p = mean l2(z, t) < 1;", "kth": "predicate p = kth(2) l2(z, t) < 1;",
     "abs": "predicate p = abs(x) < 1;", "sqrt": "predicate p = sqrt(x) < 1;",
-    "count": "predicate p = count(a && b, 2 s) < 1;",
+    "count": "let p = count(a && b, 2 s) < 1;",
 }
 
 

@@ -131,6 +131,23 @@ const Formulas kSlidingNestings = {
     "H p || G[0, 2] q",
 };
 
+/// Some with a window that is longer than the trace, and all with more than one answer.
+const Formulas kCounts = {
+    "count(p, 2) >= 1",     "count(p, 3) >= 2",         "count(p, 5) >= 2",
+    "count(p, 9) >= 3",     "count(p, 4) < 2",          "count(p, 3) == 1",
+    "count(p, 5) != 1",     "!(count(q, 3) > 1)",       "count(p && !q, 5 steps) >= 2",
+    "count(p S q, 3) >= 2", "2 <= count(O[0, 1] p, 4)",
+};
+const Formulas kCountsAhead = {
+    "F count(p, 3) >= 2",
+    "G count(p, 3) < 2",
+    "X count(p, 5) >= 2",
+    "p U count(q, 3) >= 2",
+    "G (count(p, 4) < 2 || F[0, 2] q)",
+    "F (p && F count(q, 3) >= 2)",
+    "G[1, 3] count(p <-> q, 3) < 2",
+};
+
 /// How a chain continues after `{0}`, its operand, with `{1}`, its rest; the last one is its end.
 struct ChainKind {
     const char* link;
@@ -237,8 +254,8 @@ std::string exhaustive_spec(const std::string& name, const std::string& kind) {
     append(formulas, kWithoutInterval);
     for (const Formulas* intervals : {&kBounded, &kUnbounded})
         append_operators(formulas, *intervals, {"F", "G", "O", "H"}, {"U", "R", "S"});
-    for (const Formulas* more :
-         {&kOverConstants, &kWeakUntil, &kUnboundedNestings, &kBoundedNestings, &kOverThePast})
+    for (const Formulas* more : {&kOverConstants, &kWeakUntil, &kUnboundedNestings,
+                                 &kBoundedNestings, &kOverThePast, &kCounts, &kCountsAhead})
         append(formulas, *more);
     return spec(name, kind, formulas);
 }
@@ -250,6 +267,8 @@ std::string exhaustive_sliding_spec(const std::string& name) {
     append_operators(formulas, kUnbounded, {"O", "H"}, {"S"});
     append(formulas, kOverConstants);
     append(formulas, kSlidingNestings);
+    append(formulas, kCounts);
+    append(formulas, {"count(X p, 3) >= 2", "count(F[0, 2] p, 4) < 2"});
     return spec(name, "sliding monitor", formulas);
 }
 

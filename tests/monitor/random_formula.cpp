@@ -140,7 +140,7 @@ RandomFormula::Piece RandomFormula::past(int depth, Allowed allowed) {
     if (!shape_.nested) allowed = {false, false};
     if (!shape_.past_over_future) allowed.future = false;
     const Piece operand = grow(depth - 1, allowed);
-    switch (random_.between(0, 7)) {
+    switch (random_.between(0, 8)) {
         case 0:
         case 1: return unary(random_.word({"O", "once"}), past_interval(), operand);
         case 2: return unary(random_.word({"H", "historically"}), past_interval(), operand);
@@ -149,8 +149,25 @@ RandomFormula::Piece RandomFormula::past(int depth, Allowed allowed) {
             return binary(operand, random_.word({"S", "since"}), past_interval(),
                           grow(depth - 1, allowed), until);
         case 5: return unary(random_.word({"rise", "fall"}), "", operand);
-        case 6: return unary("held", fmt::format("[{}]", random_.between(0, 4)), operand);
+        case 6: return count(operand);
+        case 7: return unary("held", fmt::format("[{}]", random_.between(0, 4)), operand);
         default: return unary(random_.word({"Y", "previous"}), "", operand);
+    }
+}
+
+/// A comparison of a count that is neither always true nor always false.
+RandomFormula::Piece RandomFormula::count(const Piece& operand) {
+    const int steps = random_.between(1, 8);
+    const int most = (steps + 1) / 2;
+    const std::string counted = fmt::format("count({}, {} steps)", operand.text, steps);
+    const int n = random_.between(1, most);
+    switch (random_.between(0, 5)) {
+        case 0: return {fmt::format("{} > {}", counted, n - 1), atom};
+        case 1: return {fmt::format("{} < {}", counted, n), atom};
+        case 2: return {fmt::format("{} >= {}", n - 1, counted), atom};
+        case 3: return {fmt::format("{} == {}", counted, random_.between(0, most)), atom};
+        case 4: return {fmt::format("{} != {}", counted, n), atom};
+        default: return {fmt::format("{} >= {}", counted, n), atom};
     }
 }
 

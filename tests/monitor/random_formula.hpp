@@ -67,6 +67,7 @@ private:
     Piece past(int depth, Allowed allowed);
     Piece response_in_two(int depth, Allowed allowed);
     Piece chain(int phases, bool max);
+    Piece count(const Piece& operand);
     Piece named(Piece piece);
     Piece unary(const std::string& word, const std::string& interval, const Piece& operand);
     Piece binary(const Piece& left, const std::string& word, const std::string& interval,

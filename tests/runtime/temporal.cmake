@@ -4,7 +4,8 @@
 etlc_joined(float_sources temporal_floats
   test_adaptation.cpp test_past.cpp test_recorder.cpp test_stale.cpp test_temporal_truth.cpp
   test_temporal_values.cpp)
-etlc_joined(integer_sources temporal_integers test_temporal_costs.cpp test_temporal_formulas.cpp)
+etlc_joined(integer_sources temporal_integers test_temporal_costs.cpp test_temporal_count.cpp
+  test_temporal_formulas.cpp)
 list(APPEND integer_sources ${CMAKE_CURRENT_SOURCE_DIR}/test_temporal_windows.cpp)
 set(temporal_warnings -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror)
 

@@ -54,6 +54,18 @@ TEST(Canonical, WordsAndIntervals) {
               "H[0, 0] p && F (p S q) && O true R false");
 }
 
+TEST(Canonical, Counts) {
+    EXPECT_EQ(canonical("F count((p && q), 9 steps) >= 3"), "F count(p && q, 9 steps) >= 3");
+    EXPECT_EQ(canonical("count(p, 9) > 3"), "count(p, 9 steps) >= 4");
+    EXPECT_EQ(canonical("count(p, 9) < 3 && p"), "count(p, 9 steps) < 3 && p");
+    EXPECT_EQ(canonical("!count(p, 9) <= 3"), "!count(p, 9 steps) < 4");
+    EXPECT_EQ(canonical("3 > count(rise p, 9)"), "count(rise p, 9 steps) < 3");
+    EXPECT_EQ(canonical("count(p, 9) == 0"), "count(p, 9 steps) < 1");
+    EXPECT_EQ(canonical("count(p, 9) == 2"), "count(p, 9 steps) >= 2 && count(p, 9 steps) < 3");
+    EXPECT_EQ(canonical("count(p, 9) == 5"), "count(p, 9 steps) >= 5");
+    EXPECT_EQ(canonical("2 != count(p, 9)"), "!(count(p, 9 steps) >= 2 && count(p, 9 steps) < 3)");
+}
+
 TEST(Canonical, Expressions) {
     const Checked checked(
         "spec t; input x, y : f32; input z : f32[2]; target t1 = [[1, 2]]; target t2 = [[1, 2], "
@@ -264,10 +276,11 @@ TEST(Constancy, FindsConstantsThatNoInputEnters) {
     for (const char* formula :
          {"true", "p || F true", "G true", "false U p && false", "Y p", "H[1, 3] p", "p R true",
           "p W true", "true W p", "!(O[1, 1] p)", "p S[1, 2] q", "(false S[1, 2] p) && q",
-          "true <-> G true", "p -> true", "rise p", "F fall true", "held[1] p"})
+          "true <-> G true", "p -> true", "rise p", "F fall true", "held[1] p", "count(p, 3) >= 1"})
         EXPECT_NE(monitor(formula).codes().find("W0503"), std::string::npos) << formula;
-    for (const char* formula : {"F[1, inf] true", "X true", "p", "G (O[1, 1] true)", "F p",
-                                "p <-> q", "F held[1] true", "held[0] p", "F rise p"})
+    for (const char* formula :
+         {"F[1, inf] true", "X true", "p", "G (O[1, 1] true)", "F p", "p <-> q", "F held[1] true",
+          "held[0] p", "F rise p", "F count(p, 3) >= 1"})
         EXPECT_EQ(monitor(formula).codes().find("W0503"), std::string::npos) << formula;
 }
 

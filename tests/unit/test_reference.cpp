@@ -132,6 +132,7 @@ TEST(Reference, PastOperators) {
         const Index a = spec.sample();
         const Index b = spec.sample();
         Index formula = spec.f(kind, binary ? std::vector{a, b} : std::vector{a}, low, high);
+        if (kind == Kind::count) spec.model.formulas[formula].index = 2;
         if (negated) formula = spec.f(Kind::negation, {formula});
         spec.monitor(formula, true);
         return robustness(evaluate(spec.model, scalars(p, q)));
@@ -144,6 +145,9 @@ TEST(Reference, PastOperators) {
     EXPECT_EQ(at_each(Kind::rise, false), (List{-kInf, -2, 2, -3}));  // min(x, -x before)
     EXPECT_EQ(at_each(Kind::fall, false), (List{-kInf, 1, -3, 0}));   // min(-x, x before)
     EXPECT_EQ(at_each(Kind::fall, false, 0, 0, true), (List{kInf, -1, 3, 0}));
+    // The second best of the rises -inf, -2, 2, -3 at the last three steps.
+    EXPECT_EQ(at_each(Kind::count, false, 0, 2), (List{-kInf, -kInf, -2, -2}));
+    EXPECT_EQ(at_each(Kind::count, false, 0, 2, true), (List{kInf, kInf, 2, 2}));
     EXPECT_EQ(at_each(Kind::held, false, 0, 2), (List{-kInf, -kInf, -2, -2}));
     EXPECT_EQ(at_each(Kind::held, false, 0, 0), (List{1, -2, 3, 0}));
     EXPECT_EQ(at_each(Kind::held, false, 0, 1, true), (List{kInf, 2, 2, 0}));

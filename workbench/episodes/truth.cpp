@@ -168,6 +168,7 @@ Label TruthEvaluator::value(Index index) {
             const Label broken = in_the_past(formula, memories_[index], Label::yes, negate(at(0)));
             return both(negate(broken), label_of(frame_ > formula.high));
         }
+        case count: return count_of(formula, memories_[index], at(0));
         case next:
         case eventually:
         case always:
@@ -176,6 +177,23 @@ Label TruthEvaluator::value(Index index) {
         case release: break;  // truths have no future operators
     }
     return Label::unknown;
+}
+
+/// "count(f, D) >= n": yes where f surely began to hold at n of the last frames, no where it did at
+/// fewer, however often it may have.
+Label TruthEvaluator::count_of(const Formula& formula, Memory& memory, Label f) {
+    const auto add = [&](Label began, int sign) {
+        if (began == Label::yes) memory.yes += sign;
+        if (began != Label::no) memory.possible += sign;
+    };
+    memory.begins.push_back(std::min(f, negate(std::exchange(memory.before, f))));
+    add(memory.begins.back(), 1);
+    if (memory.begins.size() > formula.high + std::size_t{1}) {
+        add(memory.begins.front(), -1);
+        memory.begins.pop_front();
+    }
+    if (memory.yes >= formula.index) return Label::yes;
+    return memory.possible >= formula.index ? Label::unknown : Label::no;
 }
 
 /// "f S[a,b] g: max over j in [max(0, k-b), k-a] of min(rho(g, j), min of rho(f, m) over m in (j,

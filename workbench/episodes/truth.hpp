@@ -43,6 +43,11 @@ private:
         std::uint64_t last_possible = 0;  ///< the same for yes or unknown
         std::uint64_t f_not_yes = 0;      ///< last frame at which f was no or unknown
         std::uint64_t f_no = 0;
+        // Of a count:
+        Label before = Label::yes;  ///< f at the last frame; before the first nothing begins
+        std::deque<Label> begins;   ///< where f began to hold, in the last frames
+        std::int64_t yes = 0;       ///< how many of these are yes,
+        std::int64_t possible = 0;  ///< and yes or unknown
     };
 
     void take_inputs(const Frame& frame);
@@ -52,6 +57,7 @@ private:
     double measure(const check::Distance& distance) const;
     std::vector<double> elements(Index point, std::size_t ago) const;
     void take_pasts();
+    static Label count_of(const check::Formula& formula, Memory& memory, Label f);
     Label in_the_past(const check::Formula& formula, Memory& memory, Label f, Label g) const;
 
     const check::Model& model_;

@@ -181,7 +181,7 @@ bool Claim::combination(const ir::Node& node, std::uint64_t position) const {
 /// Evaluates the position that stands for the unseen future, as Values does.
 bool Claim::unseen(const ir::Node& node) const {
     const bool one = statement_.takes_one(node);
-    if (one && node.interval.low > 0) return false;
+    if (one && (node.interval.low > 0 || ir::counts(node.op))) return false;
     const std::vector<bool>& operand = true_[node.operands.back()];
     const bool never_forgets = node.operands.size() == 1 && !node.interval.bounded();
     const bool now = operand[statement_.unseen()];
@@ -191,8 +191,26 @@ bool Claim::unseen(const ir::Node& node) const {
 }
 
 bool Claim::search(NodeId id, std::uint64_t position, std::uint64_t from) {
+    if (ir::counts(graph_[id].op)) return count(id, position);
     return statement_.takes_one(graph_[id]) ? find_witness(id, position, from)
                                             : find_release(id, position, from);
+}
+
+/// Counts the positions of the window at which the operand is true; where one position would not
+/// suffice, those at which it is not.
+bool Claim::count(NodeId id, std::uint64_t position) {
+    const ir::Node& node = graph_[id];
+    const bool one = statement_.takes_one(node);
+    const Window w = window(node, position);
+    std::uint64_t counted = 0;
+    for (std::uint64_t o = w.low; o <= w.high; ++o)
+        counted += true_[node.operands[0]][at(node, position, o)] == one ? 1 : 0;
+    offsets_[id][position] = counted;
+    return has_enough(node, counted);
+}
+
+bool Claim::has_enough(const ir::Node& node, std::uint64_t counted) const {
+    return (counted >= node.index) == statement_.takes_one(node);
 }
 
 /// Finds the first offset of the window, at or after `from`, at which the last operand is true,
@@ -309,6 +327,13 @@ void Claim::reconsider(const Parent& parent, std::uint64_t position, std::uint64
     const NodeId id = parent.node;
     const std::uint64_t known = offsets_[id][position];
     const bool one = statement_.takes_one(graph_[id]);
+    if (ir::counts(graph_[id].op)) {
+        const std::uint64_t counted = one ? known - 1 : known + 1;
+        if (!has_enough(graph_[id], counted)) return refute(id, position);
+        changes_.push_back({id, position, known});
+        offsets_[id][position] = counted;
+        return;
+    }
     if (parent.is_last != one) {  // an operand that has to be true up to the known offset
         if (one ? offset < known : offset <= known) refute(id, position);
         return;

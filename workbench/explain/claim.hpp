@@ -81,6 +81,8 @@ private:
     bool unseen(const ir::Node& node) const;
     bool search(NodeId id, std::uint64_t position, std::uint64_t from);
     bool find_witness(NodeId id, std::uint64_t position, std::uint64_t from);
+    bool count(NodeId id, std::uint64_t position);
+    bool has_enough(const ir::Node& node, std::uint64_t counted) const;
     bool find_release(NodeId id, std::uint64_t position, std::uint64_t from);
 
     bool withdraw(const std::vector<Evidence>& evidence);
@@ -94,7 +96,8 @@ private:
     const ir::Graph& graph_;
     std::vector<std::vector<bool>> true_;  ///< [node][position]; false also where out of reach
     /// [node][position] of temporal operators: the offset of the first witness of an until; of a
-    /// release, that of the first true left operand, up to which the window has to hold.
+    /// release, that of the first true left operand, up to which the window has to hold. Of a
+    /// count: at how many positions of the window the operand is true, or is not.
     std::vector<std::vector<std::uint64_t>> offsets_;
     std::vector<std::vector<Parent>> parents_;
     std::vector<std::uint64_t> first_;  ///< per node: the first and last seen position within reach

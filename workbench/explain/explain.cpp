@@ -23,6 +23,7 @@ Polarities polarities(const Formula& formula, std::size_t n) {
         case Kind::negation: return {false, true};
         case Kind::implication: return {n == 1, n == 0};
         case Kind::equivalence:
+        case Kind::count:
         case Kind::rise:
         case Kind::fall: return {true, true};
         default: return {};
@@ -40,7 +41,7 @@ Span looked_at(const Formula& formula, std::uint64_t position, std::uint64_t see
         return {position, std::min<std::uint64_t>(seen, position + formula.high)};
     if (!check::looks_back(formula.kind)) return {position, position};
     if (position == seen) return {0, seen};
-    return {position - std::min<std::uint64_t>(position, formula.high), position};
+    return {position - std::min<std::uint64_t>(position, check::steps_back(formula)), position};
 }
 
 /// Builds the chain from the monitor's formula down, always to an operand that has the monitor's

@@ -20,6 +20,24 @@ Sourced sourced(etlmon::Key key, std::uint64_t sample) {
 
 using Lattice = etlmon::Lattice<Bounds>;
 
+/// The last values in order, of which the n-th greatest is asked for, or the n-th least.
+class Sorted {
+public:
+    void add(Sourced value) {
+        values_.insert(std::upper_bound(values_.begin(), values_.end(), value), value);
+    }
+    void remove(Sourced value) {
+        values_.erase(std::lower_bound(values_.begin(), values_.end(), value));
+    }
+    Sourced nth(bool max, std::size_t n) const {
+        if (n > values_.size()) return max ? kFalseItself : kTrueItself;
+        return max ? values_[values_.size() - n] : values_[n - 1];
+    }
+
+private:
+    std::vector<Sourced> values_;
+};
+
 Bounds best_of(bool max, Bounds a, Bounds b) {
     return max ? max_of(a, b) : min_of(a, b);
 }
@@ -88,7 +106,29 @@ Bounds Values::combined(const ir::Node& node, std::size_t position) const {
     return result;
 }
 
+/// Returns the n-th greatest of the last values at each position, or the n-th least.
+Values::Column Values::counted(const ir::Node& node) const {
+    const Column& operand = values_[node.operands[0]];
+    const bool max = ir::takes_max(node.op);
+    const std::size_t length = node.interval.high + std::size_t{1};
+    Sorted lower;
+    Sorted upper;
+    Column result;
+    for (std::size_t k = 0; k < seen_; ++k) {
+        lower.add(operand[k].lower);
+        upper.add(operand[k].upper);
+        if (k >= length) {
+            lower.remove(operand[k - length].lower);
+            upper.remove(operand[k - length].upper);
+        }
+        result.push_back({lower.nth(max, node.index), upper.nth(max, node.index)});
+    }
+    if (reading_ == Reading::for_good) result.push_back(unseen(node));
+    return result;
+}
+
 Values::Column Values::temporal(const ir::Node& node) const {
+    if (ir::counts(node.op)) return counted(node);
     const bool past = ir::info(node.op).tense == ir::Tense::past;
     // The past is the future of the trace backwards.
     const auto in_order = [&](Column column) {
@@ -126,9 +166,10 @@ Bounds Values::unseen(const ir::Node& node) const {
     if (ir::info(node.op).tense == ir::Tense::past)
         for (const Bounds& known : operand) ever = best_of(max, ever, known);
     const bool never_forgets = node.operands.size() == 1 && !node.interval.bounded();
-    const Bounds kept = node.interval.low > 0 ? (max ? Lattice::bottom() : Lattice::top())
-                        : never_forgets       ? ever
-                                              : next;
+    const bool may_lack = node.interval.low > 0 || ir::counts(node.op);
+    const Bounds kept = may_lack        ? (max ? Lattice::bottom() : Lattice::top())
+                        : never_forgets ? ever
+                                        : next;
     return max ? Bounds{kept.lower, ever.upper} : Bounds{ever.lower, kept.upper};
 }
 

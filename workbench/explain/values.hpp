@@ -87,6 +87,7 @@ private:
                                const Altered* altered) const;
     Bounds combined(const ir::Node& node, std::size_t position) const;
     Column temporal(const ir::Node& node) const;
+    Column counted(const ir::Node& node) const;
     Bounds unseen(const ir::Node& node) const;
 
     void set(NodeId node, std::size_t position, Bounds value);

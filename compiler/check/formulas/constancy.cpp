@@ -64,6 +64,7 @@ Constancy of(const Formula& formula, const Operands& operands) {
         case Kind::previous:
         case Kind::eventually:
         case Kind::once: return some(operands[0], present);
+        case Kind::count:
         case Kind::rise:
         case Kind::fall: return operands[0] == varies ? varies : never;
         case Kind::held: return operands[0] == never || formula.high == 0 ? operands[0] : varies;
@@ -79,6 +80,7 @@ Constancy of(const Formula& formula, const Operands& operands) {
 
 /// At position 0 past operators see only that position, or nothing.
 Constancy past_at_start(const Formula& formula, const Operands& operands) {
+    if (formula.kind == Kind::count) return never;
     if (formula.kind == Kind::held) return formula.high == 0 ? operands[0] : never;
     if (formula.low == 0) return operands.back();
     return formula.kind == Kind::historically ? always : never;

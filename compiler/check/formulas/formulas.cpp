@@ -28,8 +28,10 @@ public:
 
     Index build(const ast::Formula& written) {
         if (written.kind == ast::Formula::Kind::name) return named(written);
-        if (written.kind == ast::Formula::Kind::comparison)
+        if (written.kind == ast::Formula::Kind::comparison) {
+            if (is_count(*written.left) || is_count(*written.right)) return counted(written);
             return leaf(Kind::predicate, comparison_predicate(c_, written), written);
+        }
         Formula formula;
         formula.kind = kind_of(written.kind);
         formula.span = written.span;
@@ -44,16 +46,24 @@ public:
                 depth = std::max(depth, c_.depths[index]);
         }
         if (!good) return kNone;
-        if (depth >= kMaxDepth) {
-            c_.report(Code::formula_too_deep, written.span,
-                      fmt::format("a formula of more than {} levels with its lets written out",
-                                  kMaxDepth));
-            return kNone;
-        }
+        if (is_too_deep(depth, written)) return kNone;
         return add_formula(c_, std::move(formula), written.operator_span, depth + 1);
     }
 
 private:
+    bool is_too_deep(std::uint32_t depth, const ast::Formula& written) {
+        if (depth < kMaxDepth) return false;
+        c_.report(
+            Code::formula_too_deep, written.span,
+            fmt::format("a formula of more than {} levels with its lets written out", kMaxDepth));
+        return true;
+    }
+
+    Index counted(const ast::Formula& written) {
+        const Index index = check_count(c_, written);
+        return index == kNone || is_too_deep(c_.depths[index] - 1, written) ? kNone : index;
+    }
+
     /// Adds an atom; kNone for kNone.
     Index leaf(Kind kind, Index index, const ast::Formula& written) {
         if (index == kNone) return kNone;
@@ -67,7 +77,9 @@ private:
     bool set_interval(Formula& formula, const ast::Formula& written) {
         if (looks_one_step_away(formula.kind)) formula.low = formula.high = 1;
         if (!written.interval) return true;
-        if (formula.kind == Kind::held && !is_finite_duration(c_, written.interval->high))
+        if (formula.kind == Kind::held &&
+            !is_finite_duration(c_, written.interval->high, "a formula is held for a finite time",
+                                "for what has held since the first step, write 'H f'"))
             return false;
         const auto steps = interval_steps(c_, *written.interval);
         if (!steps) return false;

@@ -9,6 +9,12 @@ namespace etlc::check {
 /// Returns the index of the formula's node; kNone after an error, or if it names something broken.
 Index check_formula(Context& context, const ast::Formula& formula);
 
+/// Whether the expression is count(f, D).
+bool is_count(const ast::Expr& expression);
+/// Returns the index of the formula for a comparison with a count on one side: how often a formula
+/// began to hold; kNone after an error.
+Index check_count(Context& context, const ast::Formula& comparison);
+
 /// Adds a node and returns its index. `depth`: levels of the formula with its lets written out.
 Index add_formula(Context& context, Formula formula, Span operator_span, std::uint32_t depth);
 

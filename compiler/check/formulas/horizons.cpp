@@ -63,7 +63,8 @@ std::vector<Reading> readings(const Model& model) {
         }
         if (looks_back(formula.kind))
             reading.back =
-                sum(reading.back, formula.high == kUnbounded ? Gap::kForGood : formula.high);
+                sum(reading.back,
+                    steps_back(formula) == kUnbounded ? Gap::kForGood : steps_back(formula));
     }
     return result;
 }

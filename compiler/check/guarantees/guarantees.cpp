@@ -24,9 +24,10 @@ struct Polarity {
     bool negative = false;
 };
 
-/// p <-> q and edges of p contain both p and !p.
+/// p <-> q, edges of p and their number contain both p and !p.
 bool has_both_polarities(Kind kind) {
-    return kind == Kind::equivalence || kind == Kind::rise || kind == Kind::fall;
+    return kind == Kind::equivalence || kind == Kind::rise || kind == Kind::fall ||
+           kind == Kind::count;
 }
 
 /// Returns the operands with their polarity in the negation normal form; an operand with both

@@ -155,9 +155,8 @@ private:
 
     void add_past(Index index) {
         // Expressions contain the text, which describes it in words.
-        const auto& [kind, expression, formula, steps, text, range, span] = model_.pasts[index];
-        if (formula == kNone) return add_expression(expression);
-        add("count " + text, hash_of(formula, Atoms::compared));
+        const auto& [kind, expression, steps, text, range, span] = model_.pasts[index];
+        add_expression(expression);
     }
 
     void add_expression(const Expr& expression) {
@@ -213,7 +212,10 @@ private:
         std::map<Index, std::string> hashes;
         for (const Index i : parts) {
             const auto& [kind, index, operands, low, high, span] = model_.formulas[i];
-            std::string text = fmt::format("{} [{}, {}]", static_cast<int>(kind), low, high);
+            // The number of a count would change with every new row of operators.def.
+            std::string text = kind == Formula::Kind::count
+                                   ? fmt::format("count {} [{}, {}]", index, low, high)
+                                   : fmt::format("{} [{}, {}]", static_cast<int>(kind), low, high);
             if (kind == Formula::Kind::predicate) text += ' ' + add_atom(index, atoms);
             if (kind == Formula::Kind::boolean_input) text += ' ' + add_input(index);
             for (const Index operand : operands) text += ' ' + hashes[operand];

@@ -48,13 +48,12 @@ void for_each_distance(const Expr& expression, const Visit& visit) {
     });
 }
 
-/// A number that earlier steps have a part in: EXPR@n, mean(EXPR, n), count(FORMULA, n), where n
-/// counts steps. In a predicate it is an Expr of kind `past`, whose argument is EXPR.
+/// A number that earlier steps have a part in: EXPR@n, mean(EXPR, n), where n counts steps. In a
+/// predicate it is an Expr of kind `past`, whose argument is EXPR.
 struct Past {
     using Kind = ast::PastKind;
     Kind kind = Kind::ago;
-    Expr expression;        ///< EXPR; may contain earlier elements of Model::pasts
-    Index formula = kNone;  ///< of a count, without future
+    Expr expression;  ///< EXPR; may contain earlier elements of Model::pasts
     std::uint32_t steps = 1;
     std::string text;  ///< canonical text: "mean(x, 60 steps)"
     Range range;       ///< of the number

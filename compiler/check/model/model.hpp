@@ -182,9 +182,10 @@ struct Formula {
 #define OPERATOR(name, ...) name,
 #include "ast/operators.def"
 #undef OPERATOR
+        count,  ///< count(f, D) >= n: rise f at n or more of the positions of [0, high]
     };
     Kind kind = Kind::constant_true;
-    Index index = 0;              ///< of the predicate or boolean input
+    Index index = 0;              ///< of the predicate or boolean input; n of a count
     std::vector<Index> operands;  ///< two or more for conjunction and disjunction
     std::uint32_t low = 0;        ///< interval in steps; [1, 1] for next, previous, rise, fall
     std::uint32_t high = kUnbounded;
@@ -200,6 +201,12 @@ constexpr bool looks_ahead(Formula::Kind kind) {
 }
 constexpr bool looks_back(Formula::Kind kind) {
     return looks(kind, ast::Looks::back);
+}
+
+/// Returns how many steps back the operator reads its operands; kUnbounded for no limit.
+constexpr std::uint32_t steps_back(const Formula& formula) {
+    if (!looks_back(formula.kind)) return 0;
+    return formula.kind == Formula::Kind::count ? formula.high + 1 : formula.high;
 }
 
 /// Whether the interval is an implicit [1, 1]: X, Y, rise and fall.

@@ -1,5 +1,7 @@
 // Prints formulas and expressions as canonical text with symbols, and parentheses only where the
 // grammar needs them.
+#include <fmt/format.h>
+
 #include <string_view>
 #include <unordered_map>
 
@@ -24,6 +26,8 @@ public:
         const Formula& formula = model_.formulas[index];
         const ast::Operator* const op = ast::operator_of(formula.kind);
         if (op == nullptr) return {.opening = atom(formula)};
+        if (formula.kind == Kind::count) return count(formula, ">=");
+        if (is_below(formula)) return count(model_.formulas[formula.operands[0]], "<");
         const std::string symbol = std::string(op->symbol) + interval(formula);
         Phrase phrase;
         if (op->level < ast::kPrefix)
@@ -54,6 +58,19 @@ private:
         const bool right_associative = level == ast::kImplies || level == ast::kBinary;
         const bool tighter = (right_associative && first) || (left_associative && !first);
         return level + (tighter ? 1 : 0);
+    }
+
+    static Phrase count(const Formula& formula, std::string_view comparison) {
+        return {.opening = "count(",
+                .operands = {{formula.operands[0], false}},
+                .closing =
+                    fmt::format(", {} steps) {} {}", formula.high + 1, comparison, formula.index)};
+    }
+
+    /// Whether it is the negation of a count, which `<` says.
+    bool is_below(const Formula& formula) const {
+        return formula.kind == Kind::negation && let_name(formula.operands[0]) == nullptr &&
+               model_.formulas[formula.operands[0]].kind == Kind::count;
     }
 
     std::string atom(const Formula& formula) const {

@@ -86,7 +86,8 @@ std::optional<Expr> check_past(Context& c, const ast::Expr& written) {
     past.span = written.span;
     if (past.kind == PastKind::count)
         return c.no_value(Code::past_form, written.span,
-                          "'count', how often a formula began to hold, is not available yet");
+                          "a count stands alone on one side of a comparison in a formula, as in "
+                          "'let often = count(f, 60 s) >= 3;'");
     std::uint64_t steps = 0;
     const ast::Expr* of = written.arguments[0].get();
     if (past.kind == PastKind::ago) {

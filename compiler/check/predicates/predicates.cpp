@@ -57,18 +57,6 @@ struct Sides {
     std::optional<Threshold> threshold;
 };
 
-Comparison mirrored(Comparison comparison) {
-    switch (comparison) {
-        case Comparison::less_equal: return Comparison::greater_equal;
-        case Comparison::less: return Comparison::greater;
-        case Comparison::greater_equal: return Comparison::less_equal;
-        case Comparison::greater: return Comparison::less;
-        case Comparison::equal:
-        case Comparison::not_equal: break;
-    }
-    return comparison;
-}
-
 Sides sides(Context& c, const ast::Expr& left, Comparison comparison, const ast::Expr& right) {
     if (const auto number = lone_number(right))
         return {check_expression(c, left), comparison, literal_threshold(c, *number)};
@@ -162,6 +150,18 @@ Range robustness_of(const Predicate& predicate) {
 }
 
 }  // namespace
+
+Comparison mirrored(Comparison comparison) {
+    switch (comparison) {
+        case Comparison::less_equal: return Comparison::greater_equal;
+        case Comparison::less: return Comparison::greater;
+        case Comparison::greater_equal: return Comparison::less_equal;
+        case Comparison::greater: return Comparison::less;
+        case Comparison::equal:
+        case Comparison::not_equal: break;
+    }
+    return comparison;
+}
 
 /// The answer of an ordering changes at most once along a range, so the ends have all answers.
 std::optional<bool> Predicate::constant_answer() const {

@@ -12,6 +12,9 @@ namespace etlc::check {
 /// Returns the index of the predicate for a comparison in a formula; kNone after an error.
 Index comparison_predicate(Context& context, const ast::Formula& comparison);
 
+/// Returns the comparison with its sides exchanged.
+Comparison mirrored(Comparison comparison);
+
 /// Returns the typed expression; nothing after an error.
 std::optional<Expr> check_expression(Context& context, const ast::Expr& expression);
 /// Returns a number that earlier steps have a part in, as an expression; nothing after an error.

@@ -188,12 +188,12 @@ void check_rate(Context& c) {
     if (first->durations != ast::Rounding::exact) c.model.rounding = in_words(first->durations);
 }
 
-bool is_finite_duration(Context& c, const ast::Bound& bound) {
+bool is_finite_duration(Context& c, const ast::Bound& bound, std::string_view why,
+                        std::string_view instead) {
     if (!is_infinite(bound)) return true;
-    c.report(Code::bound_not_finite, bound.span,
-             fmt::format("{} is not allowed here; a formula is held for a finite time",
-                         bound_text(bound)))
-        .note("for what has held since the first step, write 'H f'");
+    auto& error = c.report(Code::bound_not_finite, bound.span,
+                           fmt::format("{} is not allowed here; {}", bound_text(bound), why));
+    if (!instead.empty()) error.note(std::string(instead));
     return false;
 }
 

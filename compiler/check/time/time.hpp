@@ -21,8 +21,9 @@ bool is_duration(const ast::Bound& bound);
 /// Returns the bound in steps; nothing after an error.
 std::optional<std::uint32_t> bound_steps(Context& context, const ast::Bound& bound);
 
-/// Whether the bound of `held` is finite; reports an error otherwise.
-bool is_finite_duration(Context& context, const ast::Bound& bound);
+/// Whether the bound is finite; reports an error with the reason otherwise.
+bool is_finite_duration(Context& context, const ast::Bound& bound, std::string_view why,
+                        std::string_view instead = "");
 
 /// Returns the interval in steps; nothing after an error.
 std::optional<Steps> interval_steps(Context& context, const ast::Interval& interval);

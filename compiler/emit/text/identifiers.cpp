@@ -114,6 +114,16 @@ std::string name_of_one(const ir::Graph& graph, const std::vector<ir::NodeId>& o
     return shortest.empty() ? name_of(graph, operands[0], room) : shortest;
 }
 
+/// Returns "count_grasp_from_3", or "count_grasp_below_3".
+std::string name_of_count(const ir::Graph& graph, const ir::Node& node, std::size_t room) {
+    const std::string head = "count";
+    const std::string tail =
+        fmt::format("_{}_{}", ir::takes_max(node.op) ? "from" : "below", node.index);
+    if (head.size() + tail.size() + 1 >= room) return head;
+    const std::string of = name_of(graph, node.counted, room - head.size() - tail.size() - 1);
+    return head + (of.empty() ? "" : '_' + of) + tail;
+}
+
 }  // namespace
 
 std::string name_of(const ir::Graph& graph, ir::NodeId id, std::size_t room) {
@@ -127,6 +137,7 @@ std::string name_of(const ir::Graph& graph, ir::NodeId id, std::size_t room) {
         const std::string one = room > more ? name_of_one(graph, node.operands, room - more) : "";
         return one.empty() ? "" : with_more(one, max);
     }
+    if (ir::counts(node.op)) return name_of_count(graph, node, room);
     const std::string head = identifier(head_of(node), "");
     if (head.size() > room) return "";
     const std::size_t left = room - head.size();

@@ -24,6 +24,7 @@ constexpr std::uint64_t kKeysPerValue = 2;
 /// For a window whose highs and lows differ: finding the blocks with highs of their own
 /// (etlmon::Parting).
 constexpr std::uint64_t kPartingComparisons = 6;
+constexpr std::uint64_t kListsOnStack = 6;
 
 // Estimated code, measured on x86-64 and Cortex-M4 at -O2 and -Os and rounded up.
 constexpr std::uint64_t kCodePerValueOperation = 24;
@@ -42,6 +43,16 @@ constexpr std::uint64_t kStateBytes = sizeof(std::uint32_t) + sizeof(etlmon::Obl
 Cost values(std::uint64_t kept, std::uint64_t combined) {
     return {.code_bytes = (kept + combined) * kCodePerValueOperation,
             .operations = combined * kKeysPerValue};
+}
+
+/// Costs of a window that keeps the n greatest values: each combination merges two lists, on the
+/// stack.
+Cost count_cost(std::uint32_t n, std::uint32_t length, const ValueType& of) {
+    const std::uint64_t combined = std::uint64_t{n} * etlmon::window_operations(length);
+    if (of.on_demand) return {.code_bytes = kCodePerRing, .operations = 4};
+    return {.stack_bytes = kListsOnStack * n * of.value,
+            .code_bytes = 2 * kCodePerWindow,
+            .operations = combined * kKeysPerValue + kPartingComparisons};
 }
 
 Cost window_cost(std::uint32_t length, std::uint64_t sides) {
@@ -119,7 +130,7 @@ Cost table_cost(const Table& table) {
 }
 
 /// Returns code and work of a stream.
-Cost work_of(const Stream& stream) {
+Cost work_of(const Stream& stream, Values kind) {
     switch (stream.op) {
         case StreamOp::constant:
         case StreamOp::predicate:
@@ -134,6 +145,8 @@ Cost work_of(const Stream& stream) {
         case StreamOp::window: return window_cost(stream.length, 1);
         case StreamOp::window_since:
         case StreamOp::window_until: return window_cost(stream.length, 2);
+        case StreamOp::window_count:
+            return count_cost(stream.index, stream.length, value_type(kind));
         case StreamOp::window_handover: return window_cost(stream.length, 3);
         case StreamOp::widening: return Cost{.code_bytes = kCodePerRing} + values(0, 1);
     }
@@ -335,7 +348,7 @@ Cost cost_of(const check::Model& model, const EarlierPoint& earlier) {
 }
 
 Cost cost_of(const Stream& stream, Values kind) {
-    return keeping(work_of(stream), members_of(stream), kind);
+    return keeping(work_of(stream, kind), members_of(stream), kind);
 }
 
 Cost cost_of(const Reading& reading, Values kind) {

@@ -69,6 +69,8 @@ Slot StreamBuilder::of(NodeId id) {
         case Op::historically: slot = past_unary(node, id); break;
         case Op::since:
         case Op::trigger: slot = past_binary(node, id); break;
+        case Op::at_least:
+        case Op::all_but: slot = count(node, id); break;
         case Op::eventually:
         case Op::always: slot = future_unary(node, id); break;
         case Op::until:
@@ -241,6 +243,19 @@ Slot StreamBuilder::past_binary(const Node& node, NodeId id) {
     return since(ir::takes_max(node.op), operands, node.interval, lag, id, kNone);
 }
 
+Slot StreamBuilder::count(const Node& node, NodeId id) {
+    const Slot operand = of(node.operands[0]);
+    const std::uint32_t lag = streams_[operand].lag;
+    return intern({.op = StreamOp::window_count,
+                   .max = ir::takes_max(node.op),
+                   .operands = {operand},
+                   .index = node.index,
+                   .length = node.interval.high + 1,
+                   .lag = lag,
+                   .operand_lag = lag,
+                   .node = id});
+}
+
 Slot StreamBuilder::since(bool max, const std::vector<Slot>& operands, ir::Interval interval,
                           std::uint32_t lag, NodeId id, std::uint32_t begins_with) {
     const auto [low, high] = interval;
@@ -327,7 +342,8 @@ Slot StreamBuilder::unseen_temporal(const Node& node, NodeId id) {
     const bool max = ir::takes_max(node.op);
     const Slot operand = unseen(node.operands.back());
     Slot slot = operand;
-    if (node.interval.low > 0)
+    // Where it is asked, fewer positions than those counted may exist or hold.
+    if (node.interval.low > 0 || ir::counts(node.op))
         slot = combine(!max, {operand, constant(kAnything)});  // one end becomes infinite
     if (ir::info(node.op).tense != ir::Tense::past) return slot;
     const bool unary = ir::info(node.op).arity == ir::Arity::unary;

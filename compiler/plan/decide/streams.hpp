@@ -67,6 +67,7 @@ private:
     Slot aligned_combination(const ir::Node& node, NodeId id);
     Slot past_unary(const ir::Node& node, NodeId id);
     Slot past_binary(const ir::Node& node, NodeId id);
+    Slot count(const ir::Node& node, NodeId id);
     /// Returns the stream `steps` positions earlier, `before` where there is none.
     Slot shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before, NodeId node,
                std::uint32_t begins_with);

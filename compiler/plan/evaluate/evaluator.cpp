@@ -276,6 +276,26 @@ Value Evaluator::advance_window(const Stream& stream, StreamState& state) const 
                : pushed(etlmon::Until<Value>(), etlmon::Release<Value>());
 }
 
+namespace {
+
+/// Returns the n-th greatest of the sorted values, or the n-th least, after an exchange of one.
+Key exchanged(std::vector<Key>& sorted, Key leaves, Key enters, bool max, std::uint32_t n) {
+    sorted.erase(std::lower_bound(sorted.begin(), sorted.end(), leaves));
+    sorted.insert(std::upper_bound(sorted.begin(), sorted.end(), enters), enters);
+    if (n > sorted.size()) return max ? kBottom : kTop;
+    return max ? sorted[sorted.size() - n] : sorted[n - 1];
+}
+
+}  // namespace
+
+Value Evaluator::advance_count(const Stream& stream, StreamState& state) const {
+    const Value enters = operand(stream, 0, neutral(stream.max));
+    const Value leaves =
+        etlmon::delay_push(state.values.data(), state.cursor, stream.length, enters);
+    return {exchanged(state.lows, leaves.low, enters.low, stream.max, stream.index),
+            exchanged(state.highs, leaves.high, enters.high, stream.max, stream.index)};
+}
+
 Value Evaluator::advance(const Stream& stream, StreamState& state) const {
     const bool max = stream.max;
     const auto at = [&](std::size_t i) { return streams_[stream.operands[i]]; };
@@ -313,6 +333,7 @@ Value Evaluator::advance(const Stream& stream, StreamState& state) const {
         case StreamOp::window_since:
         case StreamOp::window_until:
         case StreamOp::window_handover: return advance_window(stream, state);
+        case StreamOp::window_count: return advance_count(stream, state);
     }
     return kAnything;
 }
@@ -337,6 +358,11 @@ void Evaluator::reset_member(const Member& member, StreamState& state) {
         case Member::Kind::handover_window:
             state.flanks.assign(etlmon::window_elements(member.length),
                                 {neutral(member.max), neutral(!member.max), neutral(!member.max)});
+            break;
+        case Member::Kind::count_window:
+            state.values.assign(member.length, neutral(member.max));
+            state.lows.assign(member.length, neutral(member.max).low);
+            state.highs = state.lows;
             break;
         case Member::Kind::widening:
             state.values.assign(member.length - member.from_length, neutral(member.max));

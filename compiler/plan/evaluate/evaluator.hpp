@@ -137,6 +137,8 @@ private:
     struct StreamState {
         std::vector<Member> members;  ///< members with their first values
         std::vector<Value> values;
+        std::vector<Key> lows;  ///< of the last values of a count, sorted
+        std::vector<Key> highs;
         std::vector<etlmon::Since<Value>::Element> pairs;
         std::vector<etlmon::Handover<Value>::Element> flanks;
         std::uint32_t cursor = 0;
@@ -176,6 +178,7 @@ private:
     float expression(const check::Expr& e) const;
     void advance_streams();
     Value advance(const Stream& stream, StreamState& state) const;
+    Value advance_count(const Stream& stream, StreamState& state) const;
     Value advance_window(const Stream& stream, StreamState& state) const;
     Value operand(const Stream& stream, std::size_t i, Value where_none) const;
     bool exists(std::uint32_t lag) const { return steps_ >= lag && finished_ <= lag; }

@@ -25,6 +25,7 @@ std::uint64_t bytes_of(const Member& member, check::Values values) {
         case Kind::since_window: return of.since(member.length);
         case Kind::until_window: return of.until(member.length);
         case Kind::handover_window: return of.handover(member.length);
+        case Kind::count_window: return of.count(member.count, member.length);
         case Kind::widening: return of.delay(member.length - member.from_length);
         case Kind::machine: return in_storage(2 * member.length * of.value);
         case Kind::recent: return in_storage(member.length * of.value);

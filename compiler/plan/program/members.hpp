@@ -22,6 +22,7 @@ struct Member {
         window,           ///< a sliding aggregate over the last `length`
         since_window,     ///< the same of two signals
         until_window,     ///< the same towards the future
+        count_window,     ///< the n-th greatest of the last `length`, n being `count`
         handover_window,  ///< the same of two signals that meet
         widening,         ///< what a window of `length` adds to one of `from_length`
         machine,          ///< `length` registers, and those of the next step
@@ -33,6 +34,7 @@ struct Member {
     std::uint32_t length = 0;
     std::uint32_t from_length = 0;
     std::uint32_t guards = 0;
+    std::uint32_t count = 0;
     Value first{};         ///< of values and delays
     std::string suffix{};  ///< what its name has behind that of its reading: "_guard"
     // The comment is these words around the formulas.

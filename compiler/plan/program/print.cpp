@@ -30,6 +30,7 @@ const char* name(const Stream& stream) {
         case StreamOp::shift: return "shift";
         case StreamOp::running: return either("running max", "running min");
         case StreamOp::window: return either("window max", "window min");
+        case StreamOp::window_count: return either("window at least", "window all but");
         case StreamOp::widening: return either("widening max", "widening min");
         case StreamOp::since: return either("since", "trigger");
         case StreamOp::window_since: return either("window since", "window trigger");
@@ -58,6 +59,7 @@ std::string stream_text(const Plan& plan, const ir::Graph& graph, Slot slot) {
     if (s.op == StreamOp::constant) text += " " + value_text(s.value);
     if (s.op == StreamOp::predicate) text += " " + model.predicates[s.index].name;
     if (s.op == StreamOp::flag) text += " " + model.inputs[s.index].name;
+    if (s.op == StreamOp::window_count) text += fmt::format(" {} of", s.index);
     text += slots(s.operands);
     if (s.length != 0) text += fmt::format(" over {}", s.length);
     if (s.op == StreamOp::within)

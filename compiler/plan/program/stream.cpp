@@ -28,6 +28,10 @@ std::vector<Member> members_of(const Stream& stream) {
         case StreamOp::since: return {member};
         case StreamOp::widening: member.kind = Kind::widening; return {member};
         case StreamOp::window: member.kind = Kind::window; break;
+        case StreamOp::window_count:
+            member.kind = Kind::count_window;
+            member.count = stream.index;
+            return {member};
         case StreamOp::window_since: member.kind = Kind::since_window; break;
         case StreamOp::window_until: member.kind = Kind::until_window; break;
         case StreamOp::window_handover: member.kind = Kind::handover_window; break;

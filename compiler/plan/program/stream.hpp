@@ -26,6 +26,8 @@ enum class StreamOp : std::uint8_t {
     since,            ///< v = max(g, min(v, f))
     window_since,     ///< since, over the last `length` positions
     window_until,     ///< until, at the first of the last `length` positions
+    window_count,     ///< whether the operand holds at `index` or more of the last `length`
+                      ///< positions: the n-th greatest value; the dual is the n-th least
     window_handover,  ///< over the last `length` positions: the first operand up to some position,
                       ///< the second after it
 };
@@ -34,7 +36,7 @@ struct Stream {
     StreamOp op = StreamOp::constant;
     bool max = true;  ///< else the dual, with min for max and so on
     std::vector<Slot> operands;
-    Index index = 0;                ///< predicate or flag
+    Index index = 0;                ///< predicate or flag; n of a count
     std::uint32_t length = 0;       ///< of delays, shifts, windows and widenings
     std::uint32_t from_length = 0;  ///< widening: of the operand's window
     ir::Interval interval;          ///< within: of positions

@@ -22,7 +22,8 @@ constexpr ValueType row(bool on_demand, bool sourced) {
             .window = etlmon::window_bytes<etlmon::Greatest<V>>,
             .since = etlmon::window_bytes<etlmon::Since<V>>,
             .until = etlmon::window_bytes<etlmon::Until<V>>,
-            .handover = etlmon::window_bytes<etlmon::Handover<V>>};
+            .handover = etlmon::window_bytes<etlmon::Handover<V>>,
+            .count = etlmon::count_bytes<V>};
 }
 
 }  // namespace

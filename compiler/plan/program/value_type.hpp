@@ -26,6 +26,7 @@ struct ValueType {
     std::uint32_t (*since)(std::uint32_t length);
     std::uint32_t (*until)(std::uint32_t length);
     std::uint32_t (*handover)(std::uint32_t length);
+    std::uint32_t (*count)(std::uint32_t n, std::uint32_t length);
 };
 
 const ValueType& value_type(check::Values values);

@@ -50,7 +50,8 @@ reference::NormalForm form_of(const ir::Program& program) {
         {Kind::boolean, false},    {Kind::any, true},        {Kind::any, false},
         {Kind::eventually, false}, {Kind::eventually, true}, {Kind::until, false},
         {Kind::until, true},       {Kind::once, false},      {Kind::once, true},
-        {Kind::since, false},      {Kind::since, true}};
+        {Kind::since, false},      {Kind::since, true},      {Kind::at_least, false},
+        {Kind::at_least, true}};
     reference::NormalForm form;
     for (ir::NodeId id = 0; id < program.graph.size(); ++id) {
         const ir::Node& node = program.graph[id];

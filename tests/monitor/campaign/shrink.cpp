@@ -21,6 +21,7 @@ using Kind = Formula::Kind;
 /// A formula as a separate tree, whose parts can be exchanged.
 struct Tree {
     Kind kind = Kind::constant_true;
+    Index number = 0;  ///< of a count
     std::string atom;
     std::uint32_t low = 0;
     std::uint32_t high = kUnbounded;
@@ -29,7 +30,8 @@ struct Tree {
 
 Tree tree_of(const check::Model& model, Index index) {
     const Formula& formula = model.formulas[index];
-    Tree tree{.kind = formula.kind, .low = formula.low, .high = formula.high};
+    Tree tree{
+        .kind = formula.kind, .number = formula.index, .low = formula.low, .high = formula.high};
     if (formula.operands.empty()) tree.atom = "(" + check::print(model, index) + ")";
     if (formula.operands.empty() && formula.kind == Kind::predicate &&
         !model.predicates[formula.index].name.empty())
@@ -71,6 +73,7 @@ bool has_interval(Kind kind) {
         case Kind::once:
         case Kind::historically:
         case Kind::since:
+        case Kind::count:
         case Kind::held: return true;
         default: return false;
     }
@@ -85,6 +88,9 @@ std::string interval_text(const Tree& tree) {
 
 std::string text(const Tree& tree) {
     if (tree.operands.empty()) return tree.atom;
+    if (tree.kind == Kind::count)
+        return fmt::format("count({}, {} steps) >= {}", text(tree.operands[0]), tree.high + 1,
+                           tree.number);
     const std::string word = symbol(tree.kind) + interval_text(tree);
     if (tree.operands.size() == 1) return word + " (" + text(tree.operands[0]) + ")";
     std::string result = "(" + text(tree.operands[0]) + ")";

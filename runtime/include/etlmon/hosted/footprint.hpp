@@ -5,6 +5,7 @@
 #pragma once
 
 #include "etlmon/temporal/boolean_window.hpp"
+#include "etlmon/temporal/count.hpp"
 #include "etlmon/temporal/delay.hpp"
 #include "etlmon/temporal/sourced.hpp"
 #include "etlmon/temporal/window.hpp"
@@ -70,6 +71,19 @@ struct WindowBytes<Until<Truth>> {
 };
 template <>
 struct WindowBytes<Release<Truth>> : WindowBytes<Until<Truth>> {};
+
+/// Returns sizeof(AtLeast<V, n, length>), and of its dual.
+template <class V>
+constexpr uint32_t count_bytes(uint32_t n, uint32_t length) noexcept {
+  const uint32_t ends = 2 * window_elements(length) * n;
+  return storage_bytes(ends * static_cast<uint32_t>(sizeof(typename Lattice<V>::End))) +
+         static_cast<uint32_t>(sizeof(Parting));
+}
+
+template <>
+constexpr uint32_t count_bytes<Truth>(uint32_t, uint32_t length) noexcept {
+  return delay_bytes<Truth>(length) + 8;
+}
 
 /// Returns sizeof(Window<Monoid, n>).
 template <class Monoid>

@@ -74,6 +74,7 @@ constexpr SourcedKey min_of(SourcedKey a, SourcedKey b) noexcept {
 constexpr SourcedKey max_of(SourcedKey a, SourcedKey b) noexcept {
   return SourcedKey::of(a.order < b.order ? b.order : a.order);
 }
+constexpr bool exceeds(SourcedKey a, SourcedKey b) noexcept { return b.order < a.order; }
 constexpr Sourced min_of(Sourced a, Sourced b) noexcept {
   return {min_of(a.low, b.low), min_of(a.high, b.high)};
 }
