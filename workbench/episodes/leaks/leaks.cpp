@@ -170,7 +170,7 @@ void Leaks::watch_near(Index predicate, Index index) {
     if (space != point) add_near({predicate, index}, point, distance.target);
 }
 
-/// Of rows that are points put together, watches the parts that an embedding may be by itself.
+/// Watches the parts of points put together that are frames, perhaps projected.
 void Leaks::watch_parts(Index predicate, Index index) {
     const Distance& distance = model_.distances[index];
     if (declared_target(model_, distance).space != check::kNone) return;
