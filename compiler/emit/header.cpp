@@ -78,7 +78,7 @@ std::set<std::string> runtime_headers(const Context& context) {
         headers.insert("temporal/shift");
     if (any_stream(plan, {StreamOp::window, StreamOp::window_since, StreamOp::window_until}))
         headers.insert(words.windows);
-    if (any_stream(plan, {StreamOp::window_count})) headers.insert("temporal/count");
+    if (any_stream(plan, {StreamOp::window_count})) headers.insert("past/count");
     if (any_stream(plan, {StreamOp::window_handover}))
         headers.insert({"temporal/handover", "temporal/window"});
     if (any_stream(plan, {StreamOp::widening})) headers.insert("temporal/widening");

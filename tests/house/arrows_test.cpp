@@ -92,7 +92,7 @@ const std::map<std::string, Names> kHouses = {
     {"past", {"etlmon", "temporal", "past"}},
     {"params", {"etlmon", "distance", "params"}},
     {"vectors", {"etlmon", "distance", "vectors"}},
-    {"hosted", {"etlmon", "temporal", "distance", "hosted"}}};
+    {"hosted", {"etlmon", "temporal", "distance", "past", "hosted"}}};
 
 /// The places where firmware's half of the runtime includes the other.
 const Names kGates = {"views.hpp", "best.hpp"};

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "etlmon/temporal/count.hpp"
+#include "etlmon/past/count.hpp"
 #include "temporal_streams.hpp"
 
 namespace {

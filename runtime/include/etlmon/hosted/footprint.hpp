@@ -5,7 +5,7 @@
 #pragma once
 
 #include "etlmon/temporal/boolean_window.hpp"
-#include "etlmon/temporal/count.hpp"
+#include "etlmon/past/count.hpp"
 #include "etlmon/temporal/delay.hpp"
 #include "etlmon/temporal/sourced.hpp"
 #include "etlmon/temporal/window.hpp"
