@@ -7,7 +7,7 @@ etlc=$1 runtime=$2 out=$3
 shift 3
 here=$(cd "$(dirname "$0")" && pwd)
 mkdir -p "$out"
-for spec in grasp dock hover belt gauge sort; do
+for spec in grasp dock hover belt gauge sort drift; do
     "$etlc" "$here/$spec.etl" ${ETLC_OPTIONS:-} -o "$out/$spec.hpp"
 done
 "$etlc" "$here/dock.etl" ${ETLC_OPTIONS:-} --recorder 5,3,4 --namespace dock_recorded \

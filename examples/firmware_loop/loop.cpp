@@ -1,5 +1,5 @@
-// Six monitors in firmware-like loops: no heap, no operating system, reused input buffers. Writes a
-// line per step: the monitor class, the step, and for every verdict its status, lower bound,
+// Seven monitors in firmware-like loops: no heap, no operating system, reused input buffers. Writes
+// a line per step: the monitor class, the step, and for every verdict its status, lower bound,
 // robustness and upper bound, as the bits of the floats. The lines are the same on all platforms,
 // which tests/firmware checks.
 #include <stdint.h>
@@ -7,6 +7,7 @@
 #include "belt.hpp"
 #include "board.hpp"
 #include "dock.hpp"
+#include "drift.hpp"
 #include "gauge.hpp"
 #include "grasp.hpp"
 #include "hover.hpp"
@@ -35,6 +36,9 @@ void show(const gauge::Verdicts& v, Line& to) noexcept {
 }
 void show(const sort::Verdicts& v, Line& to) noexcept {
     to.verdict(v.sorted), to.verdict(v.found);
+}
+void show(const drift::Verdicts& v, Line& to) noexcept {
+    to.verdict(v.stops), to.verdict(v.slips), to.verdict(v.eases);
 }
 
 // Like a driver: fills buffers that live as long as the loop, and passes views of them.
@@ -75,6 +79,12 @@ void sample(Recording& from, sort::Inputs& in) noexcept {
     from.fill(z, 12, 0.25f, 0.75f);
     if (!from.once_in(9)) in.z = z;
 }
+void sample(Recording& from, drift::Inputs& in) noexcept {
+    static uint16_t z[4];
+    from.fill(z, 4);
+    if (!from.once_in(9)) in.z = z;
+    in.force = 2.0f + 2.125f * from.noise();  // sometimes outside its range
+}
 
 /// Runs all episodes of one monitor class. Returns the average number of instructions per step.
 template <class Monitor, class Inputs>
@@ -114,11 +124,13 @@ int main() {
     const uint32_t belts = run<belt::Monitor, belt::Inputs>("belt");
     const uint32_t gauges = run<gauge::Monitor, gauge::Inputs>("gauge");
     const uint32_t sorts = run<sort::Monitor, sort::Inputs>("sort");
+    const uint32_t drifts = run<drift::Monitor, drift::Inputs>("drift");
     report("instructions grasp", grasps);
     report("instructions dock", docks);
     report("instructions hover", hovers);
     report("instructions belt", belts);
     report("instructions gauge", gauges);
     report("instructions sort", sorts);
+    report("instructions drift", drifts);
     return 0;
 }

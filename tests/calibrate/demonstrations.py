@@ -26,7 +26,9 @@ class World:
         self.p = self.random.normal(size=(3, 4)).astype(np.float32)
         self.line = self.random.normal(size=(1, D)).astype(np.float32)
         self.m = self.random.normal(size=D).astype(np.float32)
-        for name, array in (("q", self.q), ("p", self.p), ("l", self.line), ("m", self.m)):
+        self.w = self.random.normal(size=(5, 2 * D)).astype(np.float32)
+        for name, array in (("q", self.q), ("p", self.p), ("l", self.line), ("m", self.m),
+                            ("w", self.w)):
             np.save(folder / f"{name}.npy", array)
 
     def episode(self, steps=STEPS):

@@ -47,6 +47,11 @@ def multiple(of, factor):
     return lambda world, z: factor * of(world, z).astype(np.float64)
 
 
+def put_together(first, second):
+    """Rows of which both parts are frames, though not of one episode."""
+    return lambda world, z: np.hstack([first(world, z), second(world, z[::-1])])
+
+
 def beside_the_map(world, z):
     """Frames that only Q makes equal."""
     null = np.linalg.svd(world.q.astype(np.float64))[2][len(world.q):]
@@ -78,6 +83,13 @@ TARGETS = [
     ("P(Q(z))", " of P(Q(z))", {"cosine", "angular"}, multiple(by_float32("q", "p"), 7)),
     ("L(z)", " of L(z)", {"l2"}, by_float64("line")),
     ("L(z)", " of L(z)", {"l1"}, by_float32("line")),
+    ("Q(z@1)", "", {"l2"}, as_recorded),
+    ("P(Q(z@1)@2)", " of Q(z)", {"l1"}, by_float32("q")),
+    ("[z, z@2]", "", {"l2", f"mahalanobis([{', '.join('12345678' * 2)}])"},
+     put_together(as_recorded, as_recorded)),
+    ("[z, z@2]@1", "", {"cosine"}, multiple(put_together(as_recorded, beside_the_map), 3)),
+    ("[Q(z@1), z]", "", {"linf"}, put_together(by_float32("q"), beside_the_map)),
+    ("B([z, z@1])", "", {"l2"}, put_together(beside_the_map, as_recorded)),
 ]
 STORED = ["<f8", "<f4", "<f2", "fortran", "npz", "literal"]
 
@@ -102,8 +114,9 @@ def target_spec(kind, space, point, metrics, rows, monitor):
     return (f"spec t; input z : {kind};\n"
             'projection Q = load("q.npy"); projection P = load("p.npy");\n'
             'projection L = load("l.npy"); projection C = load("q.npy") offset load("m.npy");\n'
+            'projection B = load("w.npy");\n'
             f"target g = {rows}{space};\n"
-            f"{predicates}monitor m = F ({' & '.join(names)}){WHOLE if monitor else ''};\n")
+            f"{predicates}monitor m = F ({' && '.join(names)}){WHOLE if monitor else ''};\n")
 
 
 def told_of_targets(world, spec):

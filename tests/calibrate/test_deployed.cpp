@@ -10,7 +10,9 @@
 
 #include "calibrate/bounds.hpp"
 #include "check/guarantees/conformal.hpp"
+#include "check/points/project.hpp"
 #include "generated_program.hpp"
+#include "ir/lower.hpp"
 #include "loading.hpp"
 #include "plan/evaluate/evaluator.hpp"
 #include "plan/plan.hpp"
@@ -71,6 +73,17 @@ std::string spec_text() {
         "mean(min l2(P(z), g), 5 steps) <= 1",
         "max(min cosine(z, g), 4 steps) - min(s * 3.1, 3 steps)@2 <= 1",
         "mean(mean(s, 3 steps) - min l1(z, g)@1, 2 steps) > 0",
+        "l2(z, z@2) <= 1",
+        "cosine(z, z@1) <= 1",
+        "angular(v@3, v) > 1",
+        "min l2(P(z@2), g) <= 1",
+        "min cosine(P(z)@1, g) < 1",
+        "mean l1(Q(P(z@1)@2), g) <= 1",
+        "l1(P(z), P(z)@3) <= 1",
+        "cosine(P(z), P(z)@2) <= 1",
+        "mahalanobis([[2, 1.5, 0], [1.5, 2, 0.5], [0, 0.5, 1]])(P(z), P(z@1)) <= 1",
+        "linf([v, P(z)], [v@1, P(z@2)]@1) <= 1",
+        "max(l2(P(z), P(z@1)), 4 steps) - l2sq([s, v], [s@2, v@1]) <= 1",
     };
     std::string text = fmt::format(
         "spec deployed; input z : f32[{}]; input v : f32[3]; input s : f32;\n", kDimension);
@@ -184,10 +197,14 @@ struct Deployed : testing::Test {
 };
 
 /// Returns whether frames depend on earlier ones, which leaves no exchangeable demonstrations.
-bool looks_back(const check::Predicate& predicate) {
+bool looks_back(const check::Model& model, const check::Predicate& predicate) {
     bool found = false;
     check::for_each(predicate.expression, [&](const check::Expr& e) {
         found = found || e.kind == check::Expr::Kind::past;
+        if (e.kind != check::Expr::Kind::distance) return;
+        const check::Distance& distance = model.distances[e.index];
+        found = found || check::longest_delay(model, distance.point) > 0 ||
+                (distance.is_between_points() && check::longest_delay(model, distance.other) > 0);
     });
     return found;
 }
@@ -216,7 +233,7 @@ TEST_F(Deployed, EveryBuildStaysWithinItsIntervalAndCovers) {
     for (int draw = 0; draw < kDraws; ++draw) {
         const std::size_t begin = static_cast<std::size_t>(draw) * (kDemonstrations + 1) * kFrames;
         for (Index p = 0; p < model.predicates.size(); ++p) {
-            if (looks_back(model.predicates[p])) continue;
+            if (looks_back(model, model.predicates[p])) continue;
             std::vector<double> reaches;
             for (int d = 0; d < kDemonstrations; ++d)
                 reaches.push_back(reach(*this, p, begin + static_cast<std::size_t>(d) * kFrames));
@@ -240,6 +257,35 @@ TEST_F(Deployed, EveryBuildStaysWithinItsIntervalAndCovers) {
     for (const auto& [which, count] : covered)
         EXPECT_GE(static_cast<double>(count) / kDraws, least)
             << which.first << " " << model.predicates[which.second].text;
+}
+
+/// The calibration of whole monitors asks for the intervals before the step is over.
+TEST_F(Deployed, IntervalsWithinAStepAreThoseAfterIt) {
+    measure();
+    ir::Program program = ir::lower(model);
+    diag::Sink sink;
+    const auto plan = plan::plan(program, {}, sink, check::Values::robustness);
+    ASSERT_TRUE(plan);
+    plan::Evaluator evaluator(*plan);
+    calibrate::PastIntervals pasts(model, *plan);
+    std::size_t frame = 0;
+    std::size_t compared = 0;
+    evaluator.after_pasts([&] { pasts.step(evaluator); });
+    evaluator.replace_predicate_values([&](Index p) {
+        const auto interval = calibrate::interval_of(model, p, evaluator, pasts);
+        EXPECT_TRUE(interval) << model.predicates[p].text;
+        EXPECT_EQ(interval->low, intervals[frame][p].low) << model.predicates[p].text;
+        EXPECT_EQ(interval->high, intervals[frame][p].high) << model.predicates[p].text;
+        ++compared;
+        return plan::Value{};
+    });
+    for (frame = 0; frame < kSteps && !HasFailure(); ++frame) {
+        std::vector<plan::Sample> samples;
+        for (const auto& values : trace[frame])
+            samples.push_back({true, {values.begin(), values.end()}});
+        evaluator.step(samples);
+    }
+    EXPECT_GT(compared, kSteps * model.predicates.size() - 100);
 }
 
 /// Whether it has its own kernels, projections included.

@@ -103,7 +103,7 @@ done
 objects() {  # PREFIX FLAG...: lists symbols and sections of a monitor's object
     local prefix=$1
     shift
-    for spec in grasp dock hover belt gauge sort dock_retargetable; do
+    for spec in grasp dock hover belt gauge sort drift dock_retargetable; do
         cat >"$box/$spec.cpp" <<END
 #include "$spec.hpp"
 $spec::Verdicts step(${spec}::Monitor& m, const $spec::Inputs& in);

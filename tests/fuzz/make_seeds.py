@@ -184,6 +184,17 @@ for name, text in {
     + "".join(f"let a{i + 1} = F a{i} && !(G a{i});\n" for i in range(40))
     + "monitor m = a40;\n",
     "long_windows.etl": "monitor m = G F[1000, 100000] (p U q);\n",
+    "earlier.etl": "rate 10 Hz;\ninput z : f16[3] hold 1 step;\ninput w : i8[3] scale 0.25;\n"
+    "projection P = [[1, 0, 2], [0, 1, 0]] offset [1, 1, 0];\n"
+    "target own = [[1, 2]] of P(z);\ntarget both = [[1, 0, 2, 1, 0, 2]];\n"
+    "predicate still = l2(z, z@3s) <= 0.05;\n"
+    "predicate apart = cosine(P(z@1s)@2, P(w)) > 0.2 missing false;\n"
+    "predicate was = min l1([z, z@0.5s]@1, both) - min l2(P(z)@2 steps, own) <= 1;\n"
+    "let calm = max(mean(x, 2 s), 20 steps)@1s - (x - x@3)@4 <= 1;\n"
+    "repeating monitor m = F (still && apart U[0s, 1s] was);\n"
+    "sliding monitor n = calm -> F[0s, 2s] l2([x, x@1], [x@2, x]) < 1;\n",
+    "long_ago.etl": "input z : f32[1000];\nmonitor m = F (l2(z, z@16777216) < 1 && "
+    "max(x@16777000, 200 steps)@16 < 1);\n",
 }.items():
     seed("fuzz_compile", name, (HEAD + text).encode())
 CHOICES = random.Random(15)

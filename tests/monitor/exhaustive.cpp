@@ -170,6 +170,70 @@ const std::map<std::string, ChainKind> kChains = {
     {"delayed", {"F[2, inf] ({0} && F[3, 3] {1})", "G[1, inf] {0}"}},
 };
 
+const Formulas kNumbersOfOneInput = {
+    "x@1 >= 0",
+    "x@2 > x",
+    "x@3 - x >= 0",
+    "x@1@2 == -1",
+    "x@2 != 2",
+    "abs(x - x@1) <= 1",
+    "mean(x, 1 step) > 0",
+    "mean(x, 2 steps) > 0",
+    "mean(x, 3 steps) >= 1",
+    "mean(x, 4 steps) - x@1 <= 0",
+    "mean(x@2, 2 steps) < 1",
+    "mean(abs(x - x@1), 2 steps) <= 1.5",
+    "min(x, 2 steps) >= 0",
+    "min(x, 4 steps) > -1",
+    "max(x, 3 steps) > 0",
+    "max(x, 2 steps) == 2",
+    "max(x, 2 steps) - min(x, 3 steps) <= 1",
+    "min(max(x, 2 steps), 2 steps)@1 >= 0",
+    "max(mean(x, 2 steps), 3 steps) <= 1",
+};
+const Formulas kNumbersOfTwoInputs = {
+    "(x - y)@1 >= 0",
+    "(x - y@1)@2 < 1",
+    "mean(x - y, 2 steps) > 0",
+    "max(x, y)@2 >= 1",
+    "max(max(x, y), 2 steps) > 1",
+    "l1([x, y], [x, y]@1) <= 1",
+    "linf([x@2, y], [y@1, x]) <= 1",
+    "min l1([x, y@2], spots) <= 1",
+    "min(min l1([x, y]@1, spots), 2 steps) <= 1",
+};
+const Formulas kPointsOfOneInput = {
+    "l2(z, z@1) <= 1",
+    "l2(z, z@3) > 1",
+    "l1(z@1, z@4) <= 1",
+    "cosine(z, z@2) <= 1",
+    "l2(P(z), P(z@2)) <= 2",
+    "l2(P(z)@2, P(z)) < 2",
+    "l2(P(z@1)@1, P(z)@3) < 2",
+    "linf([z, z@1], [z, z@1]@2) <= 1",
+    "l2sq([z, z@1], [z@3, z]) <= 9",
+    "min l1([z, z@2], corners) <= 1",
+    "min l1([z, z@1]@1, corners) <= 1",
+    "min l1(z@2, goal) <= 1",
+    "min l2(P(z@1), own) <= 1",
+    "min l2(P(z)@3, own) <= 1",
+    "min l1(z, goal)@2 > 0",
+    "l2(z, z@1)@2 <= 1",
+    "max(l2(z, z@1), 2 steps) <= 1",
+    "mean(l1(z, z@2), 2 steps) <= 1",
+    "min l1(z, goal) < min l1(z, goal)@1",
+};
+const Formulas kPointsOfTwoInputs = {
+    "l2(z, w@1) <= 1",
+    "l1(z@2, w) < 2",
+    "l2(w, w@1) <= 1",
+    "l2(P(z), P(w@1)) <= 2",
+    "linf([z, w@1], [w, z@2]) <= 1",
+    "min l1([z@1, w], corners) <= 1",
+    "min l1([w, z]@2, corners) <= 1",
+    "mean(l1(z, w), 2 steps) <= 1",
+};
+
 std::string spec(const std::string& name, const std::string& kind, const Formulas& formulas) {
     std::string result = fmt::format(
         "spec {};\n"
@@ -238,8 +302,40 @@ std::string exhaustive_chains_spec(const std::string& name, const std::string& k
     return spec(name, kind, formulas);
 }
 
-AllTraces::AllTraces(std::size_t steps, bool gaps) : steps_(steps), values_(gaps ? 3 : 2) {
-    for (std::size_t n = 0; n < 2 * steps; ++n) size_ *= values_;
+std::string exhaustive_past_spec(const std::string& name, const PastShape& shape) {
+    const std::string& more = shape.of_inputs;
+    std::string result = fmt::format("spec {};\n", name);
+    int monitors = 0;
+    if (shape.points)
+        result += fmt::format(
+            "input z : f16[1]{0};\n{1}"
+            "projection P = [[2]] offset [1];\n"
+            "target goal = [[2]];\n"
+            "target own = [[4]] of P(z);\n"
+            "target corners = [[2, 2], [-1, 2]];\n",
+            more, shape.inputs > 1 ? "input w : i8[1] scale 1;\n" : "");
+    else
+        result += fmt::format(
+            "input x : f32 in [-4, 4]{0};\n{1}"
+            "target spots = [[2, 1], [-1, -2]];\n",
+            more, shape.inputs > 1 ? "input y : f32 in [-8, 8];\n" : "");
+    Formulas comparisons = shape.points ? kPointsOfOneInput : kNumbersOfOneInput;
+    if (shape.inputs > 1) comparisons = shape.points ? kPointsOfTwoInputs : kNumbersOfTwoInputs;
+    const std::string now = shape.points ? "min l1(z, goal) > 1" : "x > 0";
+    result += fmt::format("predicate now = {};\n", now);
+    for (std::size_t n = 0; n < comparisons.size(); ++n) {
+        result += fmt::format("predicate p{0} = {1};\n", n, comparisons[n]);
+        for (const char* formula : {"G p{0}", "F (now && p{0})", "now U p{0}"})
+            result += fmt::format("{} m{} = {};\n", shape.kind, monitors++,
+                                  fmt::format(fmt::runtime(formula), n));
+        result += fmt::format("sliding monitor s{0} = p{0} -> F[0, 1] Y p{0};\n", n);
+    }
+    return result;
+}
+
+AllTraces::AllTraces(std::size_t steps, bool gaps, std::size_t inputs)
+    : steps_(steps), values_(gaps ? 3 : 2), inputs_(inputs) {
+    for (std::size_t n = 0; n < inputs * steps; ++n) size_ *= values_;
 }
 
 reference::Trace AllTraces::operator[](std::size_t number) const {
@@ -251,8 +347,8 @@ reference::Trace AllTraces::operator[](std::size_t number) const {
     reference::Trace trace;
     for (std::size_t n = 0; n < steps_; ++n) {
         auto x = sample({-1, 2});
-        auto y = sample({-2, 1});
-        trace.push_back({std::move(x), std::move(y)});
+        trace.push_back({std::move(x)});
+        if (inputs_ > 1) trace.back().push_back(sample({-2, 1}));
     }
     return trace;
 }

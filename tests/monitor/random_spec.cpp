@@ -50,6 +50,9 @@ private:
     Random& random_;
     bool exact_;
     double missing_share_;
+    /// Writes an operand of a difference: a large number would round by more than the difference
+    /// may be off.
+    bool in_difference_ = false;
     int dimension_ = 1;
     int projected_ = 1;                ///< of P(v)
     std::map<std::string, int> rows_;  // of each target
@@ -153,6 +156,7 @@ private:
 
     std::string metric(int columns) {
         if (exact_) return random_.word({"l1", "linf", "l2sq"});
+        if (in_difference_) return random_.word({"linf", "l2", "cosine", "angular"});
         const std::string name =
             random_.word({"l1", "linf", "l2sq", "l2", "l2", "cosine", "angular", "mahalanobis"});
         return name == "mahalanobis" ? weights(columns) : name;
@@ -166,6 +170,7 @@ private:
     /// Between points that may be zero.
     std::string metric_of_any(int columns) {
         if (exact_) return metric(columns);
+        if (in_difference_) return random_.word({"linf", "l2"});
         const std::string name = random_.word({"l1", "linf", "l2sq", "l2", "mahalanobis"});
         return name == "mahalanobis" ? weights(columns) : name;
     }
@@ -268,14 +273,20 @@ private:
         return result;
     }
 
+    std::string difference(bool of_past) {
+        in_difference_ = true;
+        const std::string result = of_past ? fmt::format("{} - {}", past(distance()),
+                                                         random_.chance(0.5) ? "y" : distance())
+                                           : fmt::format("{} - {}", distance(), distance());
+        in_difference_ = false;
+        return result;
+    }
+
     std::string predicate() {
         const int kind = random_.between(0, 9);
         if (kind < 5) return fmt::format("{} {} {}", distance(), compare(), number(0, 6));
-        if (kind < 6)
-            return fmt::format("{} - {} {} {}", distance(), distance(), compare(), number(-2, 2));
         if (kind < 7)
-            return fmt::format("{} - {} {} {}", past(distance()),
-                               random_.chance(0.5) ? "y" : distance(), compare(), number(-2, 2));
+            return fmt::format("{} {} {}", difference(kind == 6), compare(), number(-2, 2));
         return fmt::format("{} {} {}", expression(random_.between(1, 3)), compare(), number(-3, 3));
     }
 };
@@ -294,10 +305,19 @@ FormulaShape formula_shape(const SpecShape& shape, bool sliding) {
     return result;
 }
 
+/// Returns another number for other shapes, so that they have other predicates, too.
+std::uint64_t seed_of(std::uint64_t seed, const SpecShape& shape) {
+    std::uint64_t result = static_cast<std::uint64_t>(shape.formulas);
+    for (const int part : {shape.monitors, shape.depth, shape.window, shape.exact ? 1 : 0,
+                           shape.restarts > 0 ? 1 : 0, shape.missing > 0 ? 1 : 0})
+        result = 64 * result + static_cast<std::uint64_t>(part);
+    return seed + (result << 20U);
+}
+
 }  // namespace
 
 std::string random_spec(std::uint64_t seed, const SpecShape& shape) {
-    Random random(seed);
+    Random random(seed_of(seed, shape));
     Declarations declarations(random, shape);
     std::string result = fmt::format("spec random_{};\n", seed) + declarations.text();
     const auto comparison = [&] { return declarations.comparison(); };

@@ -47,6 +47,23 @@ TEST(BooleanExhaustive, PrefixAndSlidingMonitorsWithGaps) {
     }
 }
 
+TEST(BooleanExhaustive, EarlierNumbersAndPointsWithGaps) {
+    for (const bool points : {false, true})
+        for (const char* kind : {"monitor", "repeating monitor"})
+            for (const std::size_t inputs : {1, 2}) {
+                const auto model = load(exhaustive_past_spec(
+                    "earlier", {.points = points, .inputs = inputs, .kind = kind}));
+                ASSERT_TRUE(model);
+                PlanRunner runner(*model, kRoomy, Values::boolean);
+                ASSERT_EQ(runner.refusal(), "");
+                const AllTraces traces(inputs == 1 ? 6 : 3, true, inputs);
+                for (std::size_t n = 0; n < traces.size(); ++n) {
+                    expect_agreement(*model, runner, traces[n]);
+                    if (HasFatalFailure()) return;
+                }
+            }
+}
+
 struct RandomCase {
     const char* name;
     SpecShape shape;

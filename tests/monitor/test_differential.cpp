@@ -36,12 +36,13 @@ void expect_agreement(const check::Model& model, PlanRunner& runner, const refer
                            << to_csv(model, trace);
 }
 
-void expect_agreement_on_all(const std::string& spec, std::size_t steps, bool gaps) {
+void expect_agreement_on_all(const std::string& spec, std::size_t steps, bool gaps,
+                             std::size_t inputs = 2) {
     const auto model = load(spec);
     ASSERT_TRUE(model);
     PlanRunner runner(*model, kRoomy);
     ASSERT_EQ(runner.refusal(), "");
-    const AllTraces traces(steps, gaps);
+    const AllTraces traces(steps, gaps, inputs);
     for (std::size_t n = 0; n < traces.size(); ++n) {
         expect_agreement(*model, runner, traces[n], 0);
         if (testing::Test::HasFatalFailure()) return;
@@ -69,6 +70,55 @@ TEST(PlanExhaustive, Chains) {
         expect_agreement_on_all(exhaustive_chains_spec("chains", kind), 3, true);
     }
 }
+
+/// Predicates over earlier numbers or earlier points.
+class PastExhaustive : public testing::TestWithParam<bool> {};
+
+TEST_P(PastExhaustive, OneInputWithGaps) {
+    for (const char* more : {"", " hold 1", " hold 2, stale after 2"}) {
+        const PastShape shape{.points = GetParam(), .of_inputs = more};
+        expect_agreement_on_all(exhaustive_past_spec("earlier", shape), 6, true, 1);
+    }
+    for (const char* kind : {"restartable monitor", "repeating monitor"}) {
+        const PastShape shape{.points = GetParam(), .kind = kind};
+        expect_agreement_on_all(exhaustive_past_spec("earlier", shape), 6, true, 1);
+    }
+}
+
+// Long enough for every ring to come round twice.
+TEST_P(PastExhaustive, OneInput) {
+    const PastShape shape{.points = GetParam()};
+    expect_agreement_on_all(exhaustive_past_spec("earlier", shape), 10, false, 1);
+}
+
+TEST_P(PastExhaustive, TwoInputsWithGaps) {
+    for (const char* more : {"", " hold 1"}) {
+        const PastShape shape{.points = GetParam(), .inputs = 2, .of_inputs = more};
+        expect_agreement_on_all(exhaustive_past_spec("earlier", shape), 4, true);
+    }
+}
+
+// The verdicts of a prefix bound those of every continuation, whatever its samples are.
+TEST_P(PastExhaustive, BoundsHoldForEveryContinuation) {
+    for (const std::size_t inputs : {1, 2}) {
+        const PastShape shape{.points = GetParam(), .inputs = inputs};
+        const auto model = load(exhaustive_past_spec("earlier", shape));
+        ASSERT_TRUE(model);
+        PlanRunner runner(*model, kRoomy);
+        for (std::uint64_t n = 0; n < 400; ++n) {
+            reference::Trace trace = random_trace(*model, n / 20, {.steps = 1 + n / 20 % 6});
+            const double missing = n % 3 == 0 ? 0.2 : 0;
+            for (const reference::Step& step :
+                 random_trace(*model, 1000 + n, {.steps = 6, .missing = missing, .extreme = 0.4}))
+                trace.push_back(step);
+            expect_agreement(*model, runner, trace, kRounding);
+            if (HasFatalFailure()) return;
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(NumbersAndPoints, PastExhaustive, testing::Bool(),
+                         [](const auto& points) { return points.param ? "Points" : "Numbers"; });
 
 /// Operations, bytes of state and bytes of code of a chain of p0, p1, ...
 std::vector<std::uint64_t> cost_of_chain(const std::string& kind, int phases) {

@@ -33,7 +33,26 @@ struct Subject {
     bool exact = true;
     bool exhaustive = false;
     check::Values values = check::Values::robustness;
+    bool of_one_input = false;
 };
+
+/// Predicates over earlier numbers and earlier points.
+std::vector<Subject> past_subjects() {
+    std::vector<Subject> result;
+    for (const bool points : {false, true})
+        for (const check::Values values : {check::Values::robustness, check::Values::boolean})
+            for (const std::size_t inputs : {1, 2}) {
+                PastShape shape{.points = points, .inputs = inputs};
+                if (values == check::Values::boolean) shape.kind = "repeating monitor";
+                if (inputs == 2) shape.of_inputs = " hold 1";
+                const std::string name =
+                    fmt::format("earlier_{}_{}_{}", points ? "points" : "numbers", inputs,
+                                values == check::Values::boolean ? "boolean" : "robustness");
+                result.push_back(
+                    {exhaustive_past_spec(name, shape), true, true, values, inputs == 1});
+            }
+    return result;
+}
 
 std::vector<Subject> subjects() {
     std::vector<Subject> result{{exhaustive_spec(), true, true},
@@ -69,6 +88,7 @@ std::vector<Subject> subjects() {
         {exhaustive_sliding_spec("boolean_sliding"), true, true, check::Values::boolean});
     result.push_back({exhaustive_chains_spec("boolean_chains", "repeating monitor", 5), true, true,
                       check::Values::boolean});
+    for (const Subject& subject : past_subjects()) result.push_back(subject);
     for (std::size_t n = 0; n < shapes.size(); ++n)
         if (shapes[n].exact)
             result.push_back(
@@ -82,7 +102,8 @@ std::vector<Request> requests_for(const check::Model& model, std::uint32_t spec,
     std::vector<Request> result;
     if (subject.exhaustive) {
         for (const bool gaps : {false, true}) {
-            const AllTraces traces(gaps ? 3 : 5, gaps);
+            const AllTraces traces = subject.of_one_input ? AllTraces(gaps ? 5 : 9, gaps, 1)
+                                                          : AllTraces(gaps ? 3 : 5, gaps);
             for (std::size_t n = 0; n < traces.size(); n += 2)
                 result.push_back({spec, traces[n], traces[std::min(n + 1, traces.size() - 1)]});
         }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "exhaustive.hpp"
 #include "loading.hpp"
 #include "random.hpp"
 #include "random_spec.hpp"
@@ -37,6 +38,26 @@ Trace continued(const Trace& trace, std::size_t steps, const Trace& other) {
     return result;
 }
 
+/// Continues a trace after every third step by samples of that shape.
+void expect_bounds_of_continuations(const check::Model& model, const Trace& trace,
+                                    const TraceShape& shape, std::uint64_t seed) {
+    const auto run = evaluate(model, trace);
+    for (std::size_t i = 0; i < trace.size(); i += 3) {
+        const auto other =
+            evaluate(model, continued(trace, i + 1, random_trace(model, seed + i, shape)));
+        for (std::size_t later = i; later < other.verdicts.size(); ++later)
+            for (std::size_t m = 0; m < model.monitors.size(); ++m) {
+                if (model.monitors[m].sliding) continue;
+                const Verdict& now = run.verdicts[i][m];
+                const Verdict& then = other.verdicts[later][m];
+                ASSERT_LE(now.lower, then.robustness)
+                    << model.file.text() << i << ", " << later << ": m" << m;
+                ASSERT_GE(now.upper, then.robustness_high)
+                    << model.file.text() << i << ", " << later << ": m" << m;
+            }
+    }
+}
+
 TEST(ReferenceProperties, BoundsHoldForEveryContinuation) {
     for (int n = 0; n < kSpecs; ++n) {
         const auto model = load(random_spec(1000 + n, shape_of(n, Formulas::prefix)));
@@ -44,22 +65,26 @@ TEST(ReferenceProperties, BoundsHoldForEveryContinuation) {
         TraceShape shape{
             .steps = kSteps, .missing = n % 2 == 0 ? 0 : 0.15, .invalid = n % 3 == 0 ? 0.05 : 0};
         const Trace trace = random_trace(*model, n, shape);
-        const auto run = evaluate(*model, trace);
-        for (std::size_t i = 0; i < kSteps; i += 3) {
-            shape.steps = 6;
-            const auto other =
-                evaluate(*model, continued(trace, i + 1, random_trace(*model, 77 * n + i, shape)));
-            for (std::size_t later = i; later < other.verdicts.size(); ++later)
-                for (std::size_t m = 0; m < model->monitors.size(); ++m) {
-                    const Verdict& now = run.verdicts[i][m];
-                    const Verdict& then = other.verdicts[later][m];
-                    ASSERT_LE(now.lower, then.robustness)
-                        << model->file.text() << i << ", " << later << ": m" << m;
-                    ASSERT_GE(now.upper, then.robustness_high)
-                        << model->file.text() << i << ", " << later << ": m" << m;
-                }
-        }
+        shape.steps = 6;
+        expect_bounds_of_continuations(*model, trace, shape, 77 * n);
+        if (HasFatalFailure()) return;
     }
+}
+
+TEST(ReferenceProperties, BoundsOfEarlierStepsHoldForEveryContinuation) {
+    for (const bool points : {false, true})
+        for (const std::size_t inputs : {1, 2}) {
+            const auto model =
+                load(exhaustive_past_spec("earlier", {.points = points, .inputs = inputs}));
+            ASSERT_TRUE(model);
+            for (int n = 0; n < kSpecs; ++n) {
+                const Trace trace =
+                    random_trace(*model, n, {.steps = kSteps, .missing = n % 2 == 0 ? 0 : 0.15});
+                const TraceShape extreme{.steps = 6, .extreme = n % 3 == 0 ? 0.9 : 0.3};
+                expect_bounds_of_continuations(*model, trace, extreme, 77 * n);
+                if (HasFatalFailure()) return;
+            }
+        }
 }
 
 /// Fills the gaps with random valid samples; `hold` must be off for the filled trace to contain the

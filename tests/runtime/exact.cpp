@@ -73,14 +73,19 @@ std::string report(Real got, Interval want) {
 
 }  // namespace
 
-Judge::Judge(const Case& c, bool flushes_denormals)
+Judge::Judge(const Case& c, bool flushes_denormals, Rows rows)
     : metric_(c.metric),
       denormals_(flushes_denormals ? etlmon::Denormals::flushed : etlmon::Denormals::kept) {
     const auto is_zero = [&](float x) {
         return flushes_denormals ? std::fabs(x) < FLT_MIN : x == 0;
     };
-    unknown_ =
-        etlmon::distance(c.metric).zero_is_unknown && std::all_of(c.z.begin(), c.z.end(), is_zero);
+    const auto is_zero_vector = [&](const std::vector<float>& v) {
+        return std::all_of(v.begin(), v.end(), is_zero);
+    };
+    const bool of_directions = etlmon::distance(c.metric).zero_is_unknown;
+    unknown_ = of_directions &&
+               (is_zero_vector(c.z) || (rows == Rows::point && is_zero_vector(c.targets)));
+    const double times = of_directions && rows == Rows::point ? 4 : 1;
     const Vector z = vector(c.z.data(), c.dimension);
     const Matrix w = weights_of(c);
     for (std::uint32_t row = 0; row < c.rows && !unknown_; ++row) {
@@ -89,8 +94,9 @@ Judge::Judge(const Case& c, bool flushes_denormals)
         const Vector size = (z - g).cwiseAbs();
         const Real magnitude =
             c.metric == MetricId::mahalanobis ? size.dot(w.cwiseAbs() * size) : 0;
-        const Real bound = etlmon::rounding_bound(c.metric, c.dimension, static_cast<double>(d),
-                                                  static_cast<double>(magnitude), denormals_);
+        const Real bound =
+            times * etlmon::rounding_bound(c.metric, c.dimension, static_cast<double>(d),
+                                           static_cast<double>(magnitude), denormals_);
         low_.push_back(std::max<Real>(0, d - bound));
         exact_.push_back(d);
         high_.push_back(d + bound);

@@ -28,6 +28,10 @@ struct Case {
     std::vector<float> weights;
 };
 
+/// Whether the rows are targets, or the one row is a point as z is: then it may be zero, too, and a
+/// kernel scales it to length 1 in float32, so the bounds of directions are four times as wide.
+enum class Rows : std::uint8_t { targets, point };
+
 struct Aggregate {
     etlmon::AggregationId id = etlmon::AggregationId::min;
     std::uint32_t n = 1;  ///< n of kth, from 1
@@ -36,7 +40,7 @@ struct Aggregate {
 /// The exact distances of a case, computed once for all aggregations.
 class Judge {
 public:
-    Judge(const Case& c, bool flushes_denormals);
+    Judge(const Case& c, bool flushes_denormals, Rows rows = Rows::targets);
     /// Returns "" if `delta` (as bits, so that no flag affects it) and `nearest` are within the
     /// bounds; otherwise the error.
     std::string mismatch(Aggregate aggregate, std::uint32_t delta_bits,

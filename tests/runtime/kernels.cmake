@@ -2,7 +2,8 @@
 # compiler that could change them.
 find_package(Eigen3 REQUIRED)
 etlc_joined(checks kernel_checks
-  test_distances.cpp test_enclosed.cpp test_expression.cpp test_not_finite.cpp test_views.cpp)
+  test_between.cpp test_distances.cpp test_enclosed.cpp test_expression.cpp test_not_finite.cpp
+  test_views.cpp)
 set(here ${CMAKE_CURRENT_SOURCE_DIR})
 set(kernel_sources ${here}/row_kernels_f32.cpp ${checks})
 set(twins ${here}/test_kernel_twins.cpp)

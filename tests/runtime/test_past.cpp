@@ -1,5 +1,6 @@
-// Checks the numbers of earlier steps under any flags: the delay and the windows against a search
-// of the whole stream, and means against integers in which neither sums nor products round.
+// Checks the numbers and samples of earlier steps under any flags: the delays and the windows
+// against a search of the whole stream, and means against integers in which neither sums nor
+// products round.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "etlmon/past/numbers.hpp"
+#include "etlmon/past/points.hpp"
 
 namespace {
 
@@ -276,6 +278,91 @@ TEST(Past, AResetForgets) {
         EXPECT_EQ(bits(max.push(1)), bits(4));
         EXPECT_EQ(bits(ago.push(1)), bits(4));
     }
+}
+
+/// The bytes of a sample; none: it is missing.
+template <class Element>
+using Sample = std::vector<Element>;
+
+/// Returns the sample that a monitor gets: the last one again where a missing one is held.
+template <class Element>
+Sample<Element> taken(const std::vector<Sample<Element>>& before, const Sample<Element>& sample,
+                      bool is_held) {
+    return sample.empty() && is_held && !before.empty() ? before.back() : sample;
+}
+
+/// Holds every sample of up to Steps steps ago to those that came, in episodes that begin in
+/// memory full of ones.
+template <class Element, std::uint32_t Dim, std::uint32_t Steps>
+void expect_earlier() {
+    using Ring = etlmon::Earlier<Element, Dim, Steps>;
+    static_assert(sizeof(Ring) == etlmon::earlier_bytes(sizeof(Element), Dim, Steps));
+    std::mt19937 random(5 + Dim + Steps);
+    static Ring ring;
+    for (const std::uint32_t missing_of_8 : {0u, 1u, 4u, 7u}) {
+        std::memset(static_cast<void*>(&ring), 0xff, sizeof ring);
+        ring.reset();
+        std::vector<Sample<Element>> past;
+        for (std::size_t step = 0; step < 3 * Steps + 5; ++step) {
+            for (std::uint32_t ago = 1; ago <= Steps; ++ago) {
+                const Element* found = ring.at(ago);
+                const bool expected = ago <= step && !past[step - ago].empty();
+                ASSERT_EQ(found != nullptr, expected) << "step " << step << ", " << ago << " ago";
+                if (!expected) continue;
+                ASSERT_EQ(std::memcmp(found, past[step - ago].data(), Dim * sizeof(Element)), 0)
+                    << "step " << step << ", " << ago << " ago";
+            }
+            Sample<Element> sample(any(random) % 8 < missing_of_8 ? 0 : Dim);
+            for (Element& element : sample) {
+                const std::uint32_t drawn = any(random);
+                std::memcpy(&element, &drawn, sizeof element);
+            }
+            const bool is_held = any(random) % 2 != 0;
+            const Element* given = sample.empty() ? nullptr : sample.data();
+            if (is_held || step % 2 != 0)
+                ring.push(given, is_held);
+            else
+                ring.push(given);
+            past.push_back(taken(past, sample, is_held));
+        }
+    }
+}
+
+template <class Element>
+void expect_earlier_of_all_sizes() {
+    expect_earlier<Element, 1, 1>();
+    expect_earlier<Element, 3, 2>();
+    expect_earlier<Element, 5, 3>();
+    expect_earlier<Element, 1, 31>();
+    expect_earlier<Element, 2, 32>();
+    expect_earlier<Element, 3, 33>();
+    expect_earlier<Element, 7, 64>();
+    expect_earlier<Element, 1, 65>();
+    expect_earlier<Element, 33, 100>();
+}
+
+TEST(Past, SamplesAsTheyCame) {
+    expect_earlier_of_all_sizes<float>();
+    expect_earlier_of_all_sizes<std::uint16_t>();
+    expect_earlier_of_all_sizes<std::int8_t>();
+}
+
+TEST(Past, AHeldSampleIsMissingIfNoneCame) {
+    etlmon::Earlier<float, 2, 3> ring{};
+    ring.reset();
+    ring.push(nullptr, true);
+    EXPECT_EQ(ring.at(1), nullptr);
+    const float sample[] = {1, 2};
+    ring.push(sample, false);
+    ring.push(nullptr, true);
+    ring.push(nullptr, false);
+    ring.push(nullptr, true);  // nothing is held any more
+    EXPECT_EQ(ring.at(1), nullptr);
+    EXPECT_EQ(ring.at(2), nullptr);
+    ASSERT_NE(ring.at(3), nullptr);
+    EXPECT_EQ(bits(ring.at(3)[1]), bits(2));
+    ring.reset();
+    for (std::uint32_t ago = 1; ago <= 3; ++ago) EXPECT_EQ(ring.at(ago), nullptr);
 }
 
 }  // namespace

@@ -98,8 +98,10 @@ Index ago(Context& c, Index index, std::uint32_t steps) {
     return add(c, std::move(point));
 }
 
-/// P(POINT)
+/// P(POINT). Of P(z@3), P(z) becomes a point, too: calibration compares rows with it.
 Index through(Context& c, Index projection, Index inner) {
+    const Index now = as_of_now(c.model, inner);
+    if (now != kNone && now != inner) through(c, projection, now);
     const Projection& map = c.model.projections[projection];
     Point point;
     point.kind = Point::Kind::projected;

@@ -110,7 +110,8 @@ public:
     float operand_of(Index past) const { return past_operands_[past]; }
     /// Returns the elements of a point of the model that is measured; null where unknown.
     const float* point(Index point) const { return point_at_[point]; }
-    /// Returns the elements that it had `ago` steps before, where a point of the model needs them.
+    /// Returns the elements that it had `ago` steps before, where a point of the model needs them;
+    /// after a step as well as within it.
     const float* point(Index point, std::uint32_t ago) const;
     /// Returns the rows that may be nearest to z, for a distance by full weights to its nearest row
     /// (near_rows.hpp).
@@ -199,6 +200,7 @@ private:
     std::vector<const float*> point_at_;      ///< per point: its elements; null: unknown
     std::vector<float> centred_;              ///< scratch of a projection
     std::vector<EarlierSamples> earlier_;     ///< of the points that some point delays
+    bool points_are_kept_ = false;            ///< those of this step are among the earlier ones
     /// Per target and distance: prepared rows.
     std::vector<std::vector<float>> prepared_;
     /// For distances by full weights to the nearest row: candidate rows, and room for their values.

@@ -77,11 +77,11 @@ void Evaluator::keep_for(Index index, std::uint32_t ago,
 }
 
 const float* Evaluator::point(Index point, std::uint32_t ago) const {
-    // The point of this step has been kept already.
-    return ago == 0 ? point_at_[point] : earlier_of(point).at(ago + 1);
+    return ago == 0 ? point_at_[point] : earlier_of(point).at(points_are_kept_ ? ago + 1 : ago);
 }
 
 void Evaluator::measure_points() {
+    points_are_kept_ = false;
     for (const Index p : measured_points_) point_at_[p] = take_point(p);
 }
 
@@ -124,6 +124,7 @@ const EarlierSamples& Evaluator::earlier_of(Index point) const {
 /// Adds the points of this step to those of earlier steps, after all have been measured.
 void Evaluator::keep_points() {
     for (EarlierSamples& earlier : earlier_) earlier.push(point_at_[earlier.point()]);
+    points_are_kept_ = true;
 }
 
 void Evaluator::measure_distances() {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "check/points/project.hpp"
 #include "data/files/file.hpp"
 #include "data/text/quote.hpp"
 #include "episodes/admission/overlaps.hpp"
@@ -295,8 +296,11 @@ private:
 }  // namespace
 
 std::string text(const check::Model& model, const Leak& leak) {
-    return fmt::format("step {} is row {} of target '{}', from which '{}' measures", leak.frame,
-                       leak.row, model.targets[model.distances[leak.distance].target].name,
+    const bool is_row =
+        check::as_of_now(model, model.distances[leak.distance].point) != check::kNone;
+    return fmt::format("step {} is {}row {} of target '{}', from which '{}' measures", leak.frame,
+                       is_row ? "" : "a part of ", leak.row,
+                       model.targets[model.distances[leak.distance].target].name,
                        model.predicates[leak.predicate].shown());
 }
 

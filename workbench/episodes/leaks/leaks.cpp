@@ -88,9 +88,16 @@ std::vector<float> gathered(const check::Model& model, const Distance& distance,
     return point;
 }
 
-/// Returns false between two points, and from points put together, of which no frame is a row.
+/// Returns false for points put together: frames are parts of rows, not rows.
 bool has_frames(const check::Model& model, const Distance& distance) {
-    return !distance.is_between_points() && point_of(model, distance) != check::kNone;
+    return point_of(model, distance) != check::kNone;
+}
+
+/// Returns the points put together that a distance measures, perhaps behind projections.
+const check::Point& joined_of(const check::Model& model, const Distance& distance) {
+    Index at = distance.point;
+    while (!model.points[at].is_joined()) at = model.points[at].inner;
+    return model.points[at];
 }
 
 /// Compares numbers of a row and a sample: they differ where rounding of the sample cannot explain
@@ -119,7 +126,11 @@ double rounding_of_length(const Input& input, const std::vector<float>& z, doubl
 Leaks::Leaks(const check::Model& model, const std::vector<Index>& predicates) : model_(model) {
     for (const Index predicate : predicates)
         check::for_each_distance(model.predicates[predicate].expression, [&](Index distance) {
-            if (!has_frames(model, model.distances[distance])) return;
+            if (model.distances[distance].is_between_points()) return;
+            if (!has_frames(model, model.distances[distance])) {
+                watch_parts(predicate, distance);
+                return;
+            }
             if (!may_be_recorded(model, model.distances[distance])) return;
             if (declared_target(model, model.distances[distance]).space == check::kNone)
                 watch(predicate, distance);
@@ -153,18 +164,33 @@ void Leaks::watch(Index predicate, Index index) {
 /// that only the projection makes alike.
 void Leaks::watch_near(Index predicate, Index index) {
     const Distance& distance = model_.distances[index];
-    const auto add = [&](Index point, Index target) {
-        if (model_.targets[target].values.empty() || !is_there(model_, point)) return;
-        RoundedRows rows(model_, index, point, target);
-        const bool known =
-            std::any_of(watched_near_.begin(), watched_near_.end(),
-                        [&](const WatchedNear& other) { return other.rows.same_as(rows); });
-        if (!known) watched_near_.push_back({predicate, index, std::move(rows)});
-    };
     const Index space = declared_space(model_, distance);
-    add(space, declared(model_, distance));
+    add_near({predicate, index}, space, declared(model_, distance));
     const Index point = point_of(model_, distance);
-    if (space != point) add(point, distance.target);
+    if (space != point) add_near({predicate, index}, point, distance.target);
+}
+
+/// Watches the parts of points put together that are frames, perhaps projected.
+void Leaks::watch_parts(Index predicate, Index index) {
+    const Distance& distance = model_.distances[index];
+    if (declared_target(model_, distance).space != check::kNone) return;
+    std::uint32_t offset = 0;
+    for (const Index part : joined_of(model_, distance).parts) {
+        const Index point = check::as_of_now(model_, part);
+        const bool embedding = model_.inputs[model_.points[part].inputs[0]].is_embedding();
+        if (embedding && point != check::kNone)
+            add_near({predicate, index}, point, declared(model_, distance), offset);
+        offset += model_.points[part].dimension;
+    }
+}
+
+void Leaks::add_near(Measuring by, Index point, Index target, std::uint32_t offset) {
+    if (model_.targets[target].values.empty() || !is_there(model_, point)) return;
+    RoundedRows rows(model_, by.distance, point, target, offset);
+    const bool known =
+        std::any_of(watched_near_.begin(), watched_near_.end(),
+                    [&](const WatchedNear& other) { return other.rows.same_as(rows); });
+    if (!known) watched_near_.push_back({by.predicate, by.distance, std::move(rows)});
 }
 
 void Leaks::find_near(const std::vector<plan::Sample>& samples, std::uint64_t frame,

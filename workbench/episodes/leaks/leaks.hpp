@@ -2,7 +2,7 @@
 // monitors: the first frame that is a row of a watched set, and those that may be one but for
 // rounding. Samples are compared as the monitor gets them, so a row matches the frame that it
 // becomes once rounded to the input's type, and in the space of the distance, so a row matches the
-// frame that is projected to it.
+// frame that is projected to it. A row of points put together matches a frame that is a part of it.
 #pragma once
 
 #include <cstdint>
@@ -77,6 +77,11 @@ private:
 
     void watch(Index predicate, Index distance);
     void watch_near(Index predicate, Index distance);
+    void watch_parts(Index predicate, Index distance);
+    struct Measuring {
+        Index predicate, distance;
+    };
+    void add_near(Measuring by, Index point, Index target, std::uint32_t offset = 0);
     std::optional<std::uint32_t> row_of(const Watched& watched,
                                         const std::vector<plan::Sample>& samples) const;
 

@@ -58,18 +58,23 @@ double length(const float* v, std::size_t n) {
     return std::sqrt(square);
 }
 
-RoundedRows::RoundedRows(const check::Model& model, Index distance, Index point, Index target)
-    : model_(model), point_(point), target_(target), norms_(model.projections.size()) {
+RoundedRows::RoundedRows(const check::Model& model, Index distance, Index point, Index target,
+                         std::uint32_t offset)
+    : model_(model),
+      point_(point),
+      target_(target),
+      offset_(offset),
+      norms_(model.projections.size()) {
     const check::Distance& of = model.distances[distance];
     const check::Target& rows = model.targets[target];
-    if (check::as_of_now(model, of.point) == point) {
-        by_direction_ = rows.dimension > 1 && check::is_of_directions(of.metric);
-        if (of.weights_diagonal) weights_ = of.weights;
+    if (check::as_of_now(model, of.point) == point || model.points[of.point].is_joined()) {
+        by_direction_ = dimension() > 1 && check::is_of_directions(of.metric);
+        if (of.weights_diagonal)
+            weights_.assign(of.weights.begin() + offset, of.weights.begin() + offset + dimension());
     }
     for (std::uint32_t row = 0; row < rows.rows; ++row) {
-        const float* g = rows.values.data() + std::size_t{row} * rows.dimension;
-        is_half_.push_back(is_half(g, rows.dimension));
-        if (by_direction_) per_length_.push_back(1 / length(g, rows.dimension));
+        is_half_.push_back(is_half(row_at(row), dimension()));
+        if (by_direction_) per_length_.push_back(1 / length(row_at(row), dimension()));
     }
     for (Index at = point; model.points[at].is_projected(); at = model.points[at].inner) {
         const Projection& map = model.projections[model.points[at].projection];
@@ -91,6 +96,11 @@ RoundedRows::RoundedRows(const check::Model& model, Index distance, Index point,
         }
     }
     if (rows.source != check::kNone) add_moves(rows);
+}
+
+const float* RoundedRows::row_at(std::size_t row) const {
+    const check::Target& rows = model_.targets[target_];
+    return rows.values.data() + row * rows.dimension + offset_;
 }
 
 /// Computes how far storing and then projecting moved each row: the maximum over its elements.
@@ -123,7 +133,7 @@ bool RoundedRows::may_be_near(const std::vector<float>& sample) const {
     const double least = kWideOfSize * size * per_length;
     const double grain = input.type == InputType::i8 ? static_cast<double>(input.scale) / 2 : 0;
     for (std::size_t row = 0; row < is_half_.size(); ++row) {
-        const float* g = model_.targets[target_].values.data() + row * n;
+        const float* g = row_at(row);
         const double per_row = by_direction_ ? per_length_[row] : 1;
         bool near = true;
         for (std::size_t i = 0; near && i < std::min(n, kProbes); ++i) {
@@ -247,7 +257,7 @@ RoundedRows::Found RoundedRows::find(const std::vector<plan::Sample>& samples) c
 void RoundedRows::add_row(const Rounded& at, double size, std::size_t largest, std::uint32_t row,
                           Found& found) const {
     const std::size_t n = at.elements.size();
-    const float* g = model_.targets[target_].values.data() + row * n;
+    const float* g = row_at(row);
     const double per_length = by_direction_ ? per_length_[row] : 1;
     bool within = true;
     bool close = true;

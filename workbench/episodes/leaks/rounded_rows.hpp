@@ -22,11 +22,13 @@ double length(const float* v, std::size_t n);
 class RoundedRows {
 public:
     /// `distance`: one whose point or target these are; its metric counts where it measures from
-    /// `point`. `target`: its rows are in the space of `point`. The model outlives this.
-    RoundedRows(const check::Model& model, Index distance, Index point, Index target);
+    /// `point`. `target`: its rows are in the space of `point`; or of points put together, of which
+    /// `point` is one, and `offset` its first element. The model outlives this.
+    RoundedRows(const check::Model& model, Index distance, Index point, Index target,
+                std::uint32_t offset = 0);
 
     bool same_as(const RoundedRows& other) const {
-        return point_ == other.point_ && target_ == other.target_ &&
+        return point_ == other.point_ && target_ == other.target_ && offset_ == other.offset_ &&
                by_direction_ == other.by_direction_ && weights_ == other.weights_;
     }
 
@@ -62,6 +64,9 @@ private:
     };
 
     void add_moves(const check::Target& rows);
+    std::uint32_t dimension() const { return model_.points[point_].dimension; }
+    /// Returns the elements of a row that are compared with the point.
+    const float* row_at(std::size_t row) const;
     /// Returns false where the first elements exclude all rows, as they mostly do.
     bool may_be_near(const std::vector<float>& sample) const;
     /// Projects `at`, the value of the point `from`, to `point`.
@@ -77,6 +82,7 @@ private:
     const check::Model& model_;
     Index point_;
     Index target_;
+    std::uint32_t offset_;
     bool by_direction_ = false;
     std::vector<float> weights_;      ///< diagonal weights
     std::vector<double> per_length_;  ///< by direction: 1 / |row|

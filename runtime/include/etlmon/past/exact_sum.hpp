@@ -27,16 +27,16 @@ class ExactSum {
   void add(uint32_t bits, bool take_away) noexcept {
     const uint32_t exponent = (bits >> kFraction) & 0xffu, fraction = bits & (kOne - 1);
     const uint32_t shift = exponent == 0 ? 0 : exponent - 1;
-    const uint64_t part = uint64_t{exponent == 0 ? fraction : fraction | kOne} << (shift % 32);
+    const uint32_t digits = exponent == 0 ? fraction : fraction | kOne;
     const bool negative = ((bits & kSignBit) != 0) != take_away;
     uint32_t at = shift / 32;
-    uint64_t rest = change(at, static_cast<uint32_t>(part), 0, negative);
-    rest = change(++at, static_cast<uint32_t>(part >> 32), rest, negative);
+    uint64_t rest = change(at, digits << (shift % 32), 0, negative);
+    rest = change(++at, (digits >> 1) >> (31 - shift % 32), rest, negative);
     while (rest != 0 && ++at < kWords) rest = change(at, 0, rest, negative);
   }
 
   /// Returns the bits of the sum divided by n, rounded to the nearest float, ties to even. Divides
-  /// bytes, since small processors divide 32 bits only.
+  /// bytes, and shifts words, since small processors divide and shift 32 bits only.
   uint32_t divided_by(uint32_t n) const noexcept {
     const bool negative = (words_[kWords - 1] & kSignBit) != 0;
     uint32_t size[kWords];
@@ -58,12 +58,12 @@ class ExactSum {
       rest = part % n;
     }
     const bool wide = quotient[0] != 0;
-    const uint64_t value = wide ? (uint64_t{quotient[0]} << 32) | quotient[1]
-                                : (uint64_t{quotient[1]} << 32) | quotient[2];
+    const uint32_t high = quotient[wide ? 0 : 1], low = quotient[wide ? 1 : 2];
     inexact = (wide && quotient[2] != 0) || rest != 0 || inexact;
     const uint32_t unit = (top - 2) * 32 + (wide ? 32 : 0);
-    const uint32_t bits =
-        unit == 0 && value < 2 * kOne ? least(value, rest, n) : nearest(value, unit, inexact);
+    const uint32_t bits = unit == 0 && high == 0 && low < 2 * kOne
+                              ? least(low, rest, n)
+                              : nearest(high, low, unit, inexact);
     return negative ? bits | kSignBit : bits;
   }
 
@@ -81,21 +81,30 @@ class ExactSum {
   }
 
   /// Rounds a quotient in units of the least float, and what is left of it.
-  static uint32_t least(uint64_t value, uint32_t rest, uint32_t n) noexcept {
+  static uint32_t least(uint32_t value, uint32_t rest, uint32_t n) noexcept {
     const bool up = 2 * rest > n || (2 * rest == n && value % 2 != 0);
-    return static_cast<uint32_t>(value) + (up ? 1u : 0u);
+    return value + (up ? 1u : 0u);
   }
 
-  /// Rounds value x 2^unit, and more if inexact, in units of the least float, to 24 of its bits.
-  static uint32_t nearest(uint64_t value, uint32_t unit, bool inexact) noexcept {
-    uint32_t high = 0;  // the highest bit
-    for (uint32_t step = 32; step != 0; step /= 2)
-      if (value >> (high + step) != 0) high += step;
-    const uint32_t dropped = high - kFraction;
-    const uint64_t kept = value >> dropped, lost = value - (kept << dropped);
-    const uint64_t half = uint64_t{1} << (dropped - 1);
-    const bool up = lost > half || (lost == half && (inexact || kept % 2 != 0));
-    return ((unit + dropped) << kFraction) + static_cast<uint32_t>(kept) + (up ? 1u : 0u);
+  /// Rounds a number of two words x 2^unit, and more if inexact, in units of the least float, to
+  /// its first 24 bits. It has more.
+  static uint32_t nearest(uint32_t high, uint32_t low, uint32_t unit, bool inexact) noexcept {
+    uint32_t dropped = 64 - 1 - kFraction;
+    if (high == 0) {
+      high = low;
+      low = 0;
+      dropped -= 32;
+    }
+    for (uint32_t step = 16; step != 0; step /= 2) {  // until the highest bit is the first
+      if (high >> (32 - step) != 0) continue;
+      high = (high << step) | (low >> (32 - step));
+      low <<= step;
+      dropped -= step;
+    }
+    const uint32_t kept = high >> 8, lost = high & 0xffu;
+    const bool more = low != 0 || inexact;
+    const bool up = lost > 0x80u || (lost == 0x80u && (more || kept % 2 != 0));
+    return ((unit + dropped) << kFraction) + kept + (up ? 1u : 0u);
   }
 
   uint32_t words_[kWords];
