@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """Compares a step of 1,000 environments from Python with numpy, and with a monitor for each.
 
-batch.py [ENVIRONMENTS [DIMENSION]]: milliseconds per step of `Batch.step`, of its distances alone in
-numpy (by differences, and by a matrix product, which rounds differently), and of so many monitors.
+batch.py [ENVIRONMENTS [DIMENSION]]: milliseconds per step of `Batch.step`, of its distances alone
+in numpy (by differences, and by a matrix product, which rounds differently), and of so many
+monitors.
 PYTHONPATH and ETLC_LIBRARY lead to the package.
 """
 

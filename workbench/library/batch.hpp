@@ -20,7 +20,7 @@ struct Grids {
     std::uint64_t steps = 0;
 };
 
-/// What a thread needs.
+/// Steps states in one thread.
 class Worker {
 public:
     explicit Worker(const Program& program);

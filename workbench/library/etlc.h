@@ -329,8 +329,8 @@ ETLC_EXPORT etlc_status etlc_load(etlc_session session, const void *bytes, size_
 /* ---- batches -------------------------------------------------------------------------------- */
 
 /* A batch steps many environments of one spec in one call. Its environments share nothing but the
- * spec; each has the verdicts that a session of its own would have. A batch is a session too: it has
- * a number, is used by one thread at a time, and describes its spec. */
+ * spec; each has the verdicts that a session of its own would have. A batch is a session too: it
+ * has a number, is used by one thread at a time, and describes its spec. */
 
 /* Opens a batch of `environments` >= 1 with the spec of a session, which may be closed before the
  * batch. All begin before their first step, with the thresholds of etlc_open(). There is no history

@@ -1,11 +1,11 @@
-// Samples in the memory of the caller: what is checked of them, and how the evaluator gets them.
+// Samples in the memory of the caller, and how the evaluator gets them.
 #pragma once
 
 #include <cstdint>
 
 #include "check/model/model.hpp"
 #include "library/etlc.h"
-#include "library/session.hpp"
+#include "plan/evaluate/inputs.hpp"
 
 namespace etlc::library {
 
@@ -20,16 +20,6 @@ inline std::uint32_t type_of(const check::Input& input) {
     }
     return ETLC_F32;
 }
-
-/// Refuses samples that are not one per input. `what`: their name in the message.
-etlc_status check_count(const Session& session, const void* samples, std::size_t count,
-                        const char* what);
-
-/// Return ETLC_OK, or refuse the samples of an input.
-etlc_status check_sample(const check::Input& input, const etlc_sample& sample);
-etlc_status check_column(const check::Input& input, const etlc_column& column, std::uint64_t steps);
-etlc_status check_grid(const check::Input& input, const etlc_grid& grid, std::uint64_t rows,
-                       std::uint64_t steps);
 
 /// Returns a sample; null where it is missing.
 inline const void* at(const etlc_column& column, std::uint64_t step) {

@@ -10,7 +10,7 @@
 
 namespace etlc::library {
 
-/// What a state belongs to.
+/// The session that a state belongs to.
 struct StateOrigin {
     std::uint64_t environments = 0;  ///< 0: no batch
     std::uint64_t history = 0;

@@ -36,7 +36,7 @@ struct KeptPoint {
     std::uint32_t steps = 0;
 };
 
-/// What states of a plan have in common: how each begins.
+/// How states of a plan begin.
 struct Shape {
     std::vector<KeptPoint> kept;                ///< points whose earlier samples are read
     std::vector<std::vector<Member>> streams;   ///< per stream: members with their first values

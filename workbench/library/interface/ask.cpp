@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "data/frames/reference.hpp"
-#include "library/call.hpp"
+#include "library/interface/call.hpp"
 
 namespace etlc::library {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "diag/render.hpp"
-#include "library/call.hpp"
+#include "library/interface/call.hpp"
 #include "library/open.hpp"
 #include "library/settings.hpp"
 #include "library/version.hpp"

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "library/batch.hpp"
-#include "library/call.hpp"
+#include "library/interface/call.hpp"
 #include "library/samples.hpp"
 
 namespace etlc::library {

@@ -4,7 +4,7 @@
 
 #include "check/model/fingerprint.hpp"
 #include "data/text/quote.hpp"
-#include "library/call.hpp"
+#include "library/interface/call.hpp"
 #include "library/samples.hpp"
 
 namespace etlc::library {

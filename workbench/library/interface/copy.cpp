@@ -1,8 +1,8 @@
 // Copies sessions, looks ahead of them, saves and loads their states.
 #include <vector>
 
-#include "library/call.hpp"
-#include "library/grids.hpp"
+#include "library/interface/call.hpp"
+#include "library/interface/grids.hpp"
 
 namespace etlc::library {
 

@@ -1,4 +1,4 @@
-#include "library/call.hpp"
+#include "library/interface/call.hpp"
 
 #include <exception>
 #include <new>

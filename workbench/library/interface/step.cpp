@@ -2,7 +2,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "library/call.hpp"
+#include "library/interface/call.hpp"
+#include "library/interface/checks.hpp"
 #include "library/samples.hpp"
 
 namespace etlc::library {

@@ -1,5 +1,6 @@
 // Batches of environments.
-#include "library/grids.hpp"
+#include "library/interface/checks.hpp"
+#include "library/interface/grids.hpp"
 
 namespace etlc::library {
 
