@@ -12,6 +12,7 @@ of all functions.
 """
 
 from ._library import library as _native
+from .batch import Batch
 from .commands import Evaluation, Written, calibrate, embed, evaluate, fit, incident
 from .errors import (
     AmbiguousError,
@@ -25,13 +26,27 @@ from .errors import (
     SpecError,
     UndecidedError,
 )
-from .monitor import REFERENCE_FRAMES, Input, Measurement, Monitor
-from .verdicts import Episode, EpisodeVerdicts, Explanation, Verdict, Verdicts
+from .description import REFERENCE_FRAMES, Input, Measurement, Measurements
+from .monitor import Monitor
+from .verdicts import (
+    BatchEpisode,
+    BatchVerdicts,
+    Episode,
+    EpisodeVerdicts,
+    Explanation,
+    RunVerdicts,
+    Verdict,
+    VerdictArrays,
+    Verdicts,
+)
 
 __version__: str = _native.etlc_version().decode()
 
 __all__ = [
     "AmbiguousError",
+    "Batch",
+    "BatchEpisode",
+    "BatchVerdicts",
     "BusyError",
     "ClosedError",
     "Diagnostic",
@@ -44,12 +59,15 @@ __all__ = [
     "Input",
     "InputError",
     "Measurement",
+    "Measurements",
     "Monitor",
     "NotKeptError",
     "REFERENCE_FRAMES",
+    "RunVerdicts",
     "SpecError",
     "UndecidedError",
     "Verdict",
+    "VerdictArrays",
     "Verdicts",
     "Written",
     "calibrate",

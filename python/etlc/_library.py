@@ -12,7 +12,7 @@ from typing import Any, Callable
 from .errors import BusyError, ClosedError, Error, InputError, NotKeptError, SpecError
 from .errors import UndecidedError, diagnostics_of
 
-API_VERSION = 3
+API_VERSION = 4
 
 F32, BOOL, F16, I8 = range(4)
 INPUTS, MONITORS, PREDICATES, LETS = range(4)
@@ -76,6 +76,13 @@ class Column(ctypes.Structure):
     ]  # fmt: skip
 
 
+class Grid(ctypes.Structure):
+    _fields_ = [
+        ("data", c_void_p), ("present", c_void_p), ("stride", c_int64), ("step_stride", c_int64),
+        ("count", c_uint32), ("type", c_uint32),
+    ]  # fmt: skip
+
+
 class VerdictStruct(ctypes.Structure):
     _fields_ = [
         ("robustness", c_float), ("lower", c_float), ("upper", c_float), ("status", c_uint32),
@@ -117,6 +124,20 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "etlc_incident": [c_uint64, c_uint32, POINTER(c_void_p), POINTER(c_size_t)],
     "etlc_close_incidents": [c_uint64],
     "etlc_forget_incidents": [c_uint64],
+    "etlc_copy": [c_uint64, POINTER(c_uint64)],
+    "etlc_ahead": [
+        c_uint64, c_void_p, c_size_t, c_uint64, c_uint64, c_uint32, c_void_p, c_size_t
+    ],  # fmt: skip
+    "etlc_save": [c_uint64, POINTER(c_void_p), POINTER(c_size_t)],
+    "etlc_load": [c_uint64, c_char_p, c_size_t],
+    "etlc_open_batch": [c_uint64, c_uint64, POINTER(c_uint64)],
+    "etlc_run_batch": [c_uint64, c_void_p, c_size_t, c_uint64, c_uint32, c_void_p, c_size_t],
+    "etlc_reset_batch": [c_uint64, c_void_p, c_uint64],
+    "etlc_restart_batch": [c_uint64, c_uint32, c_void_p, c_uint64],
+    "etlc_finish_batch": [c_uint64, c_void_p, c_uint64, c_void_p, c_size_t],
+    "etlc_steps_batch": [c_uint64, c_void_p, c_uint64],
+    "etlc_measure_batch": [c_uint64, c_uint32, c_void_p, c_uint64],
+    "etlc_copy_environment": [c_uint64, c_uint64, POINTER(c_uint64)],
     "etlc_explain": [c_uint64, c_uint32, c_uint32, POINTER(c_char_p)],
 }
 
@@ -170,6 +191,8 @@ _EXCEPTIONS: dict[int, type[Error]] = {
 def raise_for(status: int) -> None:
     """Raises the exception for the status of this thread's last call."""
     message = decoded(library.etlc_message())
+    if status == 3:
+        raise ClosedError("the monitor is closed")
     if status == 1:
         raise SpecError(message, diagnostics_of(library.etlc_message_json()))
     if status == 13:

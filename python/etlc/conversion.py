@@ -7,7 +7,8 @@ meaning, are refused: integers for float32 embeddings, floats for int8, numbers 
 from __future__ import annotations
 
 import math
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Union
 
 import numpy as np
 
@@ -50,28 +51,61 @@ def as_elements(name: str, value: Any, dtype: np.dtype, shape: tuple[int, ...]) 
     return _converted(name, array, dtype, isinstance(value, (list, tuple)))
 
 
-def as_rows(
-    name: str, value: Any, dtype: np.dtype, shape: tuple[int, ...]
-) -> tuple[np.ndarray | None, np.ndarray]:
-    """Returns which steps have the input (None: all), and its rows of elements.
+#: A leading axis of arrays: its length, or its name where any length will do.
+Axis = Union[int, str]
 
-    The elements of a row are contiguous and aligned. The rows are the caller's array if possible.
+
+@dataclass
+class Rows:
+    """The samples of an input at steps, the last axis but that of their elements.
+
+    Attributes:
+        lead: the lengths of the leading axes.
+        data: the elements; those of a sample are contiguous and aligned.
+        present: per sample whether it is there; None: all are.
+    """
+
+    lead: tuple[int, ...]
+    data: np.ndarray
+    present: np.ndarray | None
+
+
+def as_rows(
+    name: str, value: Any, dtype: np.dtype, shape: tuple[int, ...], *leads: tuple[Axis, ...]
+) -> Rows:
+    """Returns samples at steps: the caller's array if possible.
+
+    `leads` are the leading axes that it may have.
     """
     masked = isinstance(value, np.ma.MaskedArray)
     array = _array(name, value.data if masked else value)
-    if array.ndim != 1 + len(shape) or array.shape[1:] != shape:
-        expected = "(N,)" if shape == () else f"(N, {shape[0]})"
+    axes = array.ndim - len(shape)
+    lead = next((lead for lead in leads if len(lead) == axes), None)
+    if lead is None or array.shape[axes:] != shape:
+        expected = " or ".join(_shape_text((*lead, *shape)) for lead in leads)
         raise InputError(f"input {name!r} is {_shown(array)}, expected the shape {expected}")
+    for found, axis in zip(array.shape, lead):
+        if isinstance(axis, int) and found != axis:
+            raise InputError(
+                f"input {name!r} is {_shown(array)}, expected {axis} environments: a batch neither "
+                "grows nor shrinks"
+            )
     present = None
     if masked:
         mask = np.ma.getmaskarray(value)
-        present = np.ascontiguousarray(~mask.any(axis=tuple(range(1, mask.ndim)))).view("u1")
+        present = np.ascontiguousarray(~mask.any(axis=tuple(range(axes, mask.ndim)))).view("u1")
     is_list = isinstance(value, (list, tuple))
     rows = array if array.dtype == dtype else _converted(name, array, dtype, is_list, present)
-    is_packed = rows.ndim == 1 or rows.shape[1] == 1 or rows.strides[1] == dtype.itemsize
-    if not rows.flags.aligned or rows.strides[0] % dtype.itemsize != 0 or not is_packed:
+    is_packed = len(shape) == 0 or shape[0] == 1 or rows.strides[-1] == dtype.itemsize
+    if not rows.flags.aligned or not is_packed or any(
+        stride % dtype.itemsize != 0 for stride in rows.strides[:axes]
+    ):
         rows = rows.copy(order="C")
-    return present, rows
+    return Rows(array.shape[:axes], rows, present)
+
+
+def _shape_text(shape: tuple[Axis, ...]) -> str:
+    return f"({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
 
 
 def _array(name: str, value: Any) -> np.ndarray:
@@ -85,6 +119,12 @@ def _array(name: str, value: Any) -> np.ndarray:
     try:
         return np.asarray(value)
     except (ValueError, TypeError, RuntimeError) as error:
+        device = getattr(value, "device", None)
+        if device is not None and str(device) != "cpu":
+            raise InputError(
+                f"input {name!r} is on the device {device}, expected an array in the memory of "
+                "this process: pass x.detach().cpu().numpy()"
+            ) from None
         raise InputError(f"input {name!r} is no array: {error}") from None
 
 

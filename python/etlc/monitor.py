@@ -3,70 +3,25 @@
 from __future__ import annotations
 
 import ctypes
-import difflib
 import os
+import warnings
 from ctypes import POINTER, byref, c_char_p, c_double, c_float, c_size_t, c_uint32, c_uint64
 from ctypes import c_void_p
-from dataclasses import dataclass
 from typing import Any, Callable, Mapping
 
 import numpy as np
 
 from . import _library, conversion
-from ._ambiguous import Ambiguous
-from ._library import BOOL, F16, F32, I8, call, decoded, encoded, encoded_path, library
-from .errors import Error, EtlcWarning, InputError, diagnostics_of, warn, warn_of
-from .verdicts import VERDICT_DTYPE, Episode, Explanation, Verdicts
-
-_DTYPES = {F32: np.dtype("f4"), BOOL: np.dtype("u1"), F16: np.dtype("f2"), I8: np.dtype("i1")}
-
-REFERENCE_FRAMES = 4
-
-
-@dataclass(frozen=True)
-class Input:
-    """An input of the spec.
-
-    Attributes:
-        name: the name of the argument of `step`.
-        dtype: the type of its elements: float32, bool, float16 or int8.
-        shape: () for a scalar or bool, (D,) for an embedding.
-        hold: the number of missing samples in a row that the last one replaces.
-        stale_after: the number of equal samples in a row that count; 0: all of them.
-        low, high: the range of a scalar; values outside count as missing.
-        is_used: whether a monitor uses it.
-    """
-
-    name: str
-    dtype: np.dtype
-    shape: tuple[int, ...]
-    hold: int
-    stale_after: int
-    low: float
-    high: float
-    is_used: bool
+from ._library import call, decoded, encoded, encoded_path, library
+from .batch import Batch
+from .description import REFERENCE_FRAMES, Described, Input, Measurement
+from .errors import EtlcWarning, InputError, diagnostics_of, warn, warn_of
+from .grids import Grids, joined
+from .names import no_such
+from .verdicts import VERDICT_DTYPE, BatchEpisode, Episode, Explanation, Verdicts
 
 
-@dataclass(frozen=True, eq=False)
-class Measurement(Ambiguous):
-    """The values of a predicate at the last step.
-
-    Its truth value raises AmbiguousError: compare its distance with its threshold.
-
-    Attributes:
-        distance: the distance or expression; NaN if it is unknown, or no monitor needs it.
-        threshold: the number it is compared with.
-        nearest: the nearest row of the target for a plain distance, else None.
-    """
-
-    distance: float
-    threshold: float
-    nearest: int | None
-
-    _ask = "its .distance, .threshold or .nearest"
-
-
-class Monitor:
+class Monitor(Described):
     """The monitors of a spec. Only one thread may use it at a time.
 
     Args:
@@ -83,6 +38,7 @@ class Monitor:
         recorder: keep the steps around each alarm, for `incidents`: the numbers of steps before and
             after it, and of alarms, as (40, 20, 4) or, if the spec has a rate, "2s,1s,4".
         max_state, max_code, max_work: limits of the plan, as the options of etlc.
+        threads: the number of threads for `ahead` and for the calls of `batch`.
 
     Raises:
         SpecError: the spec does not compile; its `diagnostics` give the places.
@@ -114,8 +70,15 @@ class Monitor:
         max_state: int = 0,
         max_code: int = 0,
         max_work: int = 0,
+        threads: int = 1,
     ) -> None:
         self._session = c_uint64(0)
+        self._threads = _count("threads", threads)
+        if text is None and isinstance(spec, str) and ("\n" in spec or ";" in spec):
+            if not os.path.exists(spec):
+                raise InputError(
+                    "spec is the path of a spec, and this is the text of one: did you mean text=?"
+                )
         words = [
             encoded("a setting", f"{name}={value}") for name, value in (settings or {}).items()
         ]
@@ -137,71 +100,21 @@ class Monitor:
             history=_size("history", history),
             recorder=_recorder(recorder),
         )
+        #: The arguments, to open it again.
+        self._opened_with: dict[str, Any] = {
+            "spec": spec if spec is None else os.fspath(spec), "text": text,
+            "thresholds": thresholds if thresholds is None else os.fspath(thresholds),
+            "fitted": fitted if fitted is None else os.fspath(fitted),
+            "settings": None if settings is None else dict(settings), "values": values,
+            "targets_as": targets_as, "lets": lets, "history": history, "recorder": recorder,
+            "max_state": max_state, "max_code": max_code, "max_work": max_work,
+            "threads": threads,
+        }  # fmt: skip
         call(library.etlc_open, byref(options), byref(self._session))
         found = diagnostics_of(library.etlc_message_json())
         self._describe()
         self._make_room()
         warn_of(found)
-
-    def _describe(self) -> None:
-        spec = _described(_library.Description, library.etlc_describe, self._session)
-        #: The name of the spec.
-        self.name: str = spec.name.decode()
-        #: The length of a step in seconds; 0 if the spec has no rate.
-        self.step_seconds: float = spec.step_seconds
-        #: The warnings of etlc; empty if there are none.
-        self.warnings: str = decoded(spec.warnings)
-        #: The greatest delay of a sliding monitor, in steps.
-        self.horizon: int = spec.horizon
-        #: XXH64 of the spec, its data and its thresholds, as in the generated class.
-        self.fingerprint: tuple[int, int, int] = (
-            spec.spec_hash, spec.data_hash, spec.thresholds_hash
-        )  # fmt: skip
-        inputs = [
-            _described(_library.InputDescription, library.etlc_describe_input, self._session, i)
-            for i in range(spec.inputs)
-        ]
-        self._types: list[int] = [one.type for one in inputs]
-        self._counts: list[int] = [one.dimension for one in inputs]
-        #: The inputs by name, in the order of the spec.
-        self.inputs: dict[str, Input] = {
-            one.name.decode(): Input(
-                one.name.decode(),
-                np.dtype(bool) if one.type == BOOL else _DTYPES[one.type],
-                (one.dimension,) if one.is_embedding else (),
-                one.hold, one.stale_after, one.low, one.high, bool(one.is_used),
-            )
-            for one in inputs
-        }  # fmt: skip
-        monitors = [
-            _described(_library.MonitorDescription, library.etlc_describe_monitor, self._session, m)
-            for m in range(spec.monitors)
-        ]
-        #: The names of the monitors, in the order of the spec.
-        self.monitors: tuple[str, ...] = tuple(one.name.decode() for one in monitors)
-        #: The formulas as text, by name of the monitor.
-        self.formulas: dict[str, str] = {
-            one.name.decode(): decoded(one.formula) for one in monitors
-        }
-        predicates = [
-            _described(
-                _library.PredicateDescription, library.etlc_describe_predicate, self._session, p
-            )
-            for p in range(spec.predicates)
-        ]
-        #: The predicates as text, by name: "min l2(z, goal) <= 0.25".
-        self.predicates: dict[str, str] = {
-            decoded(one.name): decoded(one.text) for one in predicates
-        }
-        self._nearest = [bool(one.has_nearest) for one in predicates]
-        self._predicate_at = {decoded(one.name): p for p, one in enumerate(predicates)}
-        self._monitor_at = {name: m for m, name in enumerate(self.monitors)}
-        self._offsets = {name: 16 * m for m, name in enumerate(self.monitors)}
-        self._let_at = {}
-        for let in range(spec.lets):
-            name = c_char_p()
-            call(library.etlc_describe_let, self._session, let, byref(name))
-            self._let_at[(name.value or b"").decode()] = let
 
     def _make_room(self) -> None:
         """Allocates the samples and verdicts of a step."""
@@ -210,7 +123,7 @@ class Monitor:
         self._put: dict[str, Callable[[Any], None]] = {}
         self._missing = set(self.inputs)
         for at, one in enumerate(self.inputs.values()):
-            elements = np.zeros(self._counts[at], _DTYPES[self._types[at]])
+            elements = np.zeros(self._counts[at], self._elements_of[at])
             self._elements.append(elements)
             self._samples[at].count = self._counts[at]
             self._samples[at].type = self._types[at]
@@ -300,7 +213,7 @@ class Monitor:
         except KeyError:
             if name in put:
                 raise
-            raise InputError(self._no_such("input", name, tuple(self.inputs))) from None
+            raise InputError(no_such("input", name, tuple(self.inputs))) from None
         if len(samples) != len(put):
             for at, name in enumerate(put):
                 if name not in samples and name not in self._missing:
@@ -330,34 +243,10 @@ class Monitor:
         Warns:
             EtlcWarning: an input that a monitor uses is missing at every step, and not None.
         """
-        if arrays is not None and not isinstance(arrays, Mapping):
-            raise InputError(f"arrays is of {type(arrays).__name__}, expected a dict by input")
-        given = {**(arrays or {}), **more}
-        for name in given:
-            if name not in self.inputs:
-                raise InputError(self._no_such("input", name, tuple(self.inputs)))
-        columns = (_library.Column * len(self.inputs))()
-        kept: list[np.ndarray] = []
-        steps: int | None = None
-        for at, one in enumerate(self.inputs.values()):
-            value = given.get(one.name)
-            if value is None:
-                continue
-            present, rows = conversion.as_rows(one.name, value, self._elements[at].dtype, one.shape)
-            if steps is not None and steps != len(rows):
-                raise InputError(
-                    f"input {one.name!r} has {len(rows)} steps, others have {steps}"
-                )
-            steps = len(rows)
-            kept.append(rows)
-            column = columns[at]
-            column.data, column.stride = rows.ctypes.data, rows.strides[0]
-            column.count, column.type = self._counts[at], self._types[at]
-            if present is not None:
-                kept.append(present)
-                column.present = present.ctypes.data
-        if steps is None:
-            raise InputError("run() was given no input")
+        given = joined(arrays, more)
+        grids = Grids(self, given, ("N",))
+        (steps,) = grids.lead
+        columns = grids.columns()
         table = np.empty((steps, len(self.monitors)), VERDICT_DTYPE)
         self.reset()
         if steps > 0:
@@ -368,6 +257,68 @@ class Monitor:
         self._said += steps
         self._warn_of_missing(steps, given)
         return Episode(self.monitors, table)
+
+    def ahead(
+        self, arrays: Mapping[str, Any] | None = None, **more: Any
+    ) -> Episode | BatchEpisode:
+        """Returns the verdicts of a continuation that has not happened. The monitor stays as it is.
+
+        Args:
+            arrays: by the name of the input: its next samples, an array of shape (N,) for a scalar
+                or bool, (N, D) for an embedding, as in `run`; or those of K plans, each from the
+                present step on: (K, N) or (K, N, D).
+            **more: the same, as arguments.
+
+        Returns:
+            The verdicts of each monitor at each step of the continuation; of each plan, if there
+            are several. `history` and `recorder` take no part.
+
+        Raises:
+            InputError: as in `step`.
+            ClosedError: the monitor is closed, or `finish` was called.
+        """
+        grids = Grids(self, joined(arrays, more), ("N",), ("K", "N"))
+        table = np.empty((*grids.lead, len(self.monitors)), VERDICT_DTYPE)
+        plans = 1 if len(grids.lead) == 1 else grids.lead[0]
+        if table.size > 0:
+            call(
+                library.etlc_ahead, self._session, grids.place, len(grids), plans, grids.lead[-1],
+                self._threads, table.ctypes.data, table.size,
+            )  # fmt: skip
+        several = len(grids.lead) > 1
+        return BatchEpisode(self.monitors, table) if several else Episode(self.monitors, table)
+
+    def batch(self, n: int) -> Batch:
+        """Returns `n` environments that share this spec, each before its first step."""
+        session = c_uint64(0)
+        n = _count("n", n)
+        call(library.etlc_open_batch, self._session, n, byref(session))
+        return Batch(session, n, self._opened_with, self._threads)
+
+    def __copy__(self) -> Monitor:
+        """Copies the monitor with its state, history and incidents; the copy steps by itself."""
+        return self._of_session(self._copied(), self._opened_with, self._said, self._begin)
+
+    def __deepcopy__(self, _: object) -> Monitor:
+        return self.__copy__()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickles the arguments of the monitor and its state."""
+        return _reopened, (self._opened_with, self._saved(), self._said, self._begin)
+
+    @classmethod
+    def _of_session(
+        cls, session: c_uint64, opened_with: Mapping[str, Any], said: int, begin: int
+    ) -> Monitor:
+        """Takes an open session."""
+        monitor = cls.__new__(cls)
+        monitor._session = session
+        monitor._opened_with = dict(opened_with)
+        monitor._threads = opened_with["threads"]
+        monitor._describe()
+        monitor._make_room()
+        monitor._said, monitor._begin = said, begin
+        return monitor
 
     def _warn_of_missing(self, steps: int, given: Mapping[str, Any]) -> None:
         """Warns of inputs that monitors use and that have no sample in the episode."""
@@ -480,7 +431,7 @@ class Monitor:
             NotKeptError: the embeddings of the spec were made by an earlier version of etlc embed.
         """
         array = conversion.as_elements(
-            "embedding", embedding, _DTYPES[F32], (np.size(embedding),)
+            "embedding", embedding, np.dtype("f4"), (np.size(embedding),)
         )  # fmt: skip
         values = np.ascontiguousarray(array)
         if not 0 <= frame < REFERENCE_FRAMES:
@@ -555,42 +506,31 @@ class Monitor:
             said.append(decoded(text.value))
         return Explanation(said[0], json.loads(said[1]))
 
-    def close(self) -> None:
-        """Closes the monitor. Every later call except close() raises ClosedError."""
-        if self._session.value != 0:
-            session, self._session.value = self._session.value, 0
-            call(library.etlc_close, session)
-
     def __enter__(self) -> Monitor:
         return self
 
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def __del__(self) -> None:
-        try:
-            self.close()
-        except (Error, AttributeError, TypeError):  # in use, or the interpreter is exiting
-            pass
-
     def __repr__(self) -> str:
         return f"<etlc.Monitor {self.name}: {', '.join(self.monitors)}>"
-
-    def _at(self, places: Mapping[str, int], kind: str, name: str) -> int:
-        if name not in places:
-            raise InputError(self._no_such(kind, name, tuple(places)))
-        return places[name]
-
-    def _no_such(self, kind: str, name: str, names: tuple[str, ...]) -> str:
-        near = difflib.get_close_matches(str(name), names, 1)
-        hint = f"; did you mean {near[0]!r}?" if near else f", only {', '.join(names) or 'none'}"
-        return f"the spec has no {kind} {name!r}{hint}"
-
 
 def _choice(name: str, value: str, choices: tuple[str, ...]) -> int:
     if value not in choices:
         raise InputError(f"{name} is {value!r}, expected {' or '.join(choices)}")
     return choices.index(value)
+
+
+def _reopened(opened_with: dict[str, Any], state: bytes, said: int, begin: int) -> Monitor:
+    """Opens a pickled monitor. The spec and its files must be those that it was opened with."""
+    monitor = opened_again(opened_with)
+    monitor._load(state)
+    monitor._said, monitor._begin = said, begin
+    return monitor
+
+
+def opened_again(opened_with: Mapping[str, Any]) -> Monitor:
+    """Opens a monitor that was opened before, without its warnings."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", EtlcWarning)
+        return Monitor(**opened_with)
 
 
 def _recorder(given: str | tuple[int | str, int | str, int] | None) -> bytes | None:
@@ -605,7 +545,7 @@ def _size(name: str, value: int) -> int:
     return int(value)
 
 
-def _described(kind: Any, function: Any, *arguments: Any) -> Any:
-    description = kind(struct_size=ctypes.sizeof(kind))
-    call(function, *arguments, byref(description))
-    return description
+def _count(name: str, value: int) -> int:
+    if _size(name, value) == 0 or value > 0xFFFFFFFF:
+        raise InputError(f"{name} is {value!r}, expected a whole number from 1 on")
+    return int(value)

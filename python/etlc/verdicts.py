@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from struct import Struct
-from typing import TYPE_CHECKING, Any, Iterator
+from typing import Any, Generic, Iterator, TypeVar
 
 import numpy as np
 
 from ._ambiguous import Ambiguous
 from ._library import ALARM, DECIDED, FINAL, FULFILLED, SATISFIED, VIOLATED
 from .errors import AmbiguousError, InputError, NotKeptError
-
-if TYPE_CHECKING:
-    from .monitor import Monitor
+from .names import Names, names_of, no_such
 
 _VERDICT = Struct("=3fI")
 VERDICT_DTYPE = np.dtype(
@@ -54,7 +52,7 @@ class Verdict(Ambiguous):
     __slots__ = ("_monitor", "_said", "_status", "lower", "name", "robustness", "upper")
     _ask = "its .alarm, .fulfilled, .satisfied, .violated, .unknown or .status"
 
-    def __init__(self, monitor: Monitor, said: int, name: str, raw: bytes, at: int) -> None:
+    def __init__(self, monitor: Names, said: int, name: str, raw: bytes, at: int) -> None:
         self._monitor = monitor
         self._said = said
         self.name = name
@@ -118,11 +116,20 @@ class Verdict(Ambiguous):
             NotKeptError: the monitor was opened without a history, or has stepped since.
             UndecidedError: there is no verdict.
         """
+        explain = getattr(self._monitor, "explain", None)
+        if explain is None:
+            raise NotKeptError(
+                "this verdict is a copy without its monitor, which has the explanation"
+            )
         if self._said != self._monitor._said:
             raise NotKeptError(
                 "only the last verdict can be explained: the monitor has stepped on since"
             )
-        return self._monitor.explain(self.name)
+        explanation: Explanation = explain(self.name)
+        return explanation
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _verdict, (self.name, *self.bounds, self.robustness, self._status)
 
     def _content(self) -> tuple[Any, ...]:
         return self.name, _VERDICT.pack(*self.bounds, self.robustness, self._status)
@@ -143,7 +150,7 @@ class Verdicts(Ambiguous):
     __slots__ = ("_monitor", "_raw", "_said")
     _ask = "its .alarms, or the .alarm, .fulfilled, .violated, ... of one of its verdicts"
 
-    def __init__(self, monitor: Monitor, raw: bytes, said: int) -> None:
+    def __init__(self, monitor: Names, raw: bytes, said: int) -> None:
         self._monitor = monitor
         self._raw = raw
         self._said = said
@@ -151,16 +158,14 @@ class Verdicts(Ambiguous):
     def __getitem__(self, name: str) -> Verdict:
         at = self._monitor._offsets.get(name)
         if at is None:
-            raise InputError(self._monitor._no_such("monitor", name, self._monitor.monitors))
+            raise InputError(no_such("monitor", name, self._monitor.monitors))
         return Verdict(self._monitor, self._said, name, self._raw, at)
 
     def __getattr__(self, name: str) -> Verdict:
         if name.startswith("_"):
             raise AttributeError(name)
         if name not in self._monitor._offsets:
-            raise AttributeError(
-                self._monitor._no_such("monitor", name, self._monitor.monitors)
-            )
+            raise AttributeError(no_such("monitor", name, self._monitor.monitors))
         return self[name]
 
     def __iter__(self) -> Iterator[Verdict]:
@@ -171,6 +176,16 @@ class Verdicts(Ambiguous):
 
     def __contains__(self, one: object) -> bool:
         return _contains(self, one, "its .alarms")
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._monitor.monitors]
+
+    def keys(self) -> tuple[str, ...]:
+        """The names of the monitors, so that dict(verdicts) has the verdicts by name."""
+        return self._monitor.monitors
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _verdicts, (self._monitor.monitors, self._raw)
 
     def _content(self) -> tuple[Any, ...]:
         return self._monitor.monitors, self._raw
@@ -184,8 +199,8 @@ class Verdicts(Ambiguous):
         return f"Verdicts({', '.join(map(repr, self))})"
 
 
-class EpisodeVerdicts(Ambiguous):
-    """The verdicts of one monitor at every step of an episode, as arrays of N steps.
+class VerdictArrays(Ambiguous):
+    """The verdicts of one monitor, as arrays: of a batch at a step, or at all steps of a run.
 
     Its truth value raises AmbiguousError: use `alarm.any()`.
 
@@ -195,14 +210,14 @@ class EpisodeVerdicts(Ambiguous):
     """
 
     __hash__ = None  # type: ignore[assignment]
-    _ask = "its .first_alarm, .alarm.any(), .satisfied[-1], .violated[-1], ..."
+    _ask = "its .alarm.any(), .satisfied, .violated, ..."
 
     def __init__(self, name: str, table: np.ndarray) -> None:
         self.name = name
         self.robustness: np.ndarray = table["robustness"]
         self.lower: np.ndarray = table["lower"]
         self.upper: np.ndarray = table["upper"]
-        self._status = table["status"]
+        self._status: np.ndarray = table["status"]
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
@@ -211,28 +226,72 @@ class EpisodeVerdicts(Ambiguous):
 
     @property
     def alarm(self) -> np.ndarray:
-        """bool, per step: violated for good."""
+        """bool: violated for good."""
         return self._status & ALARM == ALARM
 
     @property
+    def fulfilled(self) -> np.ndarray:
+        """bool: satisfied for good."""
+        return self._status & FULFILLED == FULFILLED
+
+    @property
     def satisfied(self) -> np.ndarray:
-        """bool, per step."""
+        """bool."""
         return self._status & SATISFIED != 0
 
     @property
     def violated(self) -> np.ndarray:
-        """bool, per step."""
+        """bool."""
         return self._status & VIOLATED != 0
 
     @property
     def decided(self) -> np.ndarray:
-        """bool, per step."""
+        """bool."""
         return self._status & DECIDED != 0
 
     @property
+    def unknown(self) -> np.ndarray:
+        """bool: a missing sample leaves it open."""
+        return self._status & (DECIDED | SATISFIED | VIOLATED) == DECIDED
+
+    @property
     def final(self) -> np.ndarray:
-        """bool, per step."""
+        """bool."""
         return self._status & FINAL != 0
+
+    @property
+    def status(self) -> np.ndarray:
+        """str: "satisfied", "violated", "unknown" or "undecided"."""
+        places = [~self.decided, self.satisfied, self.violated]
+        return np.select(places, ["undecided", "satisfied", "violated"], "unknown")
+
+    def __len__(self) -> int:
+        return len(self._status)
+
+    def _content(self) -> tuple[Any, ...]:
+        numbers = (self.robustness, self.lower, self.upper, self._status)
+        return self.name, self._status.shape, *(column.tobytes() for column in numbers)
+
+    def _counted(self) -> str:
+        return f"{int(self.alarm.sum())} alarms"
+
+    def __repr__(self) -> str:
+        shape = " x ".join(map(str, self._status.shape))
+        missing = int(self.unknown.sum())
+        return f"<{self.name}: {shape} verdicts, {self._counted()}{_unknown(missing)}>"
+
+
+class EpisodeVerdicts(VerdictArrays):
+    """The verdicts of one monitor at every step of an episode, as arrays of N steps.
+
+    Its truth value raises AmbiguousError: use `alarm.any()`.
+
+    Attributes:
+        name: the name of the monitor.
+        robustness, lower, upper: float32; NaN where undecided.
+    """
+
+    _ask = "its .first_alarm, .alarm.any(), .satisfied[-1], .violated[-1], ..."
 
     @property
     def first_alarm(self) -> int | None:
@@ -240,20 +299,98 @@ class EpisodeVerdicts(Ambiguous):
         alarms = self.alarm
         return int(np.argmax(alarms)) if alarms.any() else None
 
-    def __len__(self) -> int:
-        return len(self._status)
-
-    def _content(self) -> tuple[Any, ...]:
-        numbers = (self.robustness, self.lower, self.upper, self._status)
-        return self.name, *(column.tobytes() for column in numbers)
-
     def __repr__(self) -> str:
         first = self.first_alarm
         said = "no alarm" if first is None else f"first alarm at step {first}"
-        return f"<{self.name}: {len(self)} steps, {said}>"
+        return f"<{self.name}: {len(self)} steps, {said}{_unknown(int(self.unknown.sum()))}>"
 
 
-class Episode(Ambiguous):
+class RunVerdicts(VerdictArrays):
+    """The verdicts of one monitor for rows of steps: environments or plans.
+
+    Its truth value raises AmbiguousError: use `alarm.any()`.
+
+    Attributes:
+        name: the name of the monitor.
+        robustness, lower, upper: float32, the last axis is that of steps; NaN where undecided.
+    """
+
+    _ask = "its .first_alarm, .alarm.any(axis=-1), .satisfied[..., -1], .violated[..., -1], ..."
+
+    @property
+    def first_alarm(self) -> np.ndarray:
+        """int, per row: the first step with an alarm; -1 where there is none."""
+        alarms = self.alarm
+        if alarms.shape[-1] == 0:
+            return np.full(alarms.shape[:-1], -1)
+        return np.where(alarms.any(axis=-1), alarms.argmax(axis=-1), -1)
+
+    def _counted(self) -> str:
+        return f"alarms in {int((self.first_alarm >= 0).sum())} rows"
+
+
+def _unknown(count: int) -> str:
+    return f", {count} unknown" if count > 0 else ""
+
+
+Arrays = TypeVar("Arrays", bound=VerdictArrays)
+
+
+class Tables(Ambiguous, Generic[Arrays]):
+    """The verdicts of all monitors, as arrays: `verdicts.NAME` or `verdicts["NAME"]`.
+
+    Its truth value raises AmbiguousError.
+
+    Attributes:
+        table: a structured array with the fields robustness, lower, upper and status; its last
+            axis is that of monitors.
+        monitors: the names of the monitors, in the order of the last axis.
+    """
+
+    __hash__ = None  # type: ignore[assignment]
+    _ask = "the .alarm.any(), .violated, ... of one of its monitors"
+    _arrays: type[Arrays]
+
+    def __init__(self, monitors: tuple[str, ...], table: np.ndarray) -> None:
+        self.monitors = monitors
+        self.table = table
+
+    def __getitem__(self, name: str) -> Arrays:
+        if name not in self.monitors:
+            raise InputError(f"there is no monitor {name!r}, only {', '.join(self.monitors)}")
+        return self._arrays(name, self.table[..., self.monitors.index(name)])
+
+    def __getattr__(self, name: str) -> Arrays:
+        if name.startswith("_") or name in ("monitors", "table"):
+            raise AttributeError(name)
+        if name not in self.monitors:
+            raise AttributeError(f"there is no monitor {name!r}")
+        return self[name]
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.monitors]
+
+    def keys(self) -> tuple[str, ...]:
+        """The names of the monitors, so that dict() has the verdicts by name."""
+        return self.monitors
+
+    def __iter__(self) -> Iterator[Arrays]:
+        return (self[name] for name in self.monitors)
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    def __contains__(self, one: object) -> bool:
+        return _contains(self, one, self._ask)
+
+    def _content(self) -> tuple[Any, ...]:
+        return self.monitors, self.table.shape, self.table.tobytes()
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(map(repr, self))})"
+
+
+class Episode(Tables[EpisodeVerdicts]):
     """The verdicts of all monitors for an episode: `episode.NAME` or `episode["NAME"]`.
 
     Its truth value raises AmbiguousError: `len` is its number of steps.
@@ -264,45 +401,56 @@ class Episode(Ambiguous):
         monitors: the names of the monitors, in the order of the columns.
     """
 
-    __hash__ = None  # type: ignore[assignment]
     _ask = "the .first_alarm, .alarm.any(), .violated[-1], ... of one of its monitors"
-
-    def __init__(self, monitors: tuple[str, ...], table: np.ndarray) -> None:
-        self.monitors = monitors
-        self.table = table
-
-    def __getitem__(self, name: str) -> EpisodeVerdicts:
-        if name not in self.monitors:
-            raise InputError(f"there is no monitor {name!r}, only {', '.join(self.monitors)}")
-        return EpisodeVerdicts(name, self.table[:, self.monitors.index(name)])
-
-    def __getattr__(self, name: str) -> EpisodeVerdicts:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        if name not in self.monitors:
-            raise AttributeError(f"there is no monitor {name!r}")
-        return self[name]
-
-    def __iter__(self) -> Iterator[EpisodeVerdicts]:
-        return (self[name] for name in self.monitors)
-
-    def __len__(self) -> int:
-        return len(self.table)
-
-    def __contains__(self, one: object) -> bool:
-        return _contains(self, one, "the .first_alarm or .alarm.any() of one of its monitors")
-
-    def _content(self) -> tuple[Any, ...]:
-        return self.monitors, self.table.tobytes()
-
-    def __repr__(self) -> str:
-        return f"Episode({', '.join(map(repr, self))})"
+    _arrays = EpisodeVerdicts
 
 
-def _contains(verdicts: Verdicts | Episode, one: object, ask: str) -> bool:
+class BatchVerdicts(Tables[VerdictArrays]):
+    """The verdicts of all monitors of a batch at a step: `verdicts.NAME` or `verdicts["NAME"]`.
+
+    Its truth value raises AmbiguousError: `len` is its number of environments.
+
+    Attributes:
+        table: a structured array (N environments, M monitors) with the fields robustness, lower,
+            upper and status.
+        monitors: the names of the monitors, in the order of the columns.
+    """
+
+    _arrays = VerdictArrays
+
+
+class BatchEpisode(Tables[RunVerdicts]):
+    """The verdicts of all monitors for rows of steps, of environments or plans.
+
+    Its truth value raises AmbiguousError: `len` is its number of environments, or of plans.
+
+    Attributes:
+        table: a structured array (N rows, T steps, M monitors) with the fields robustness, lower,
+            upper and status; (N environments, K plans, T steps, M monitors) where each environment
+            has several plans.
+        monitors: the names of the monitors, in the order of the columns.
+    """
+
+    _ask = "the .first_alarm, .alarm.any(axis=-1), ... of one of its monitors"
+    _arrays = RunVerdicts
+
+
+def _contains(verdicts: Verdicts | Tables[Any], one: object, ask: str) -> bool:
     """Implements `in` for verdicts; "violated", or a name, would be ambiguous."""
-    if isinstance(one, (Verdict, EpisodeVerdicts)):
+    if isinstance(one, (Verdict, VerdictArrays)):
         return any(one == other for other in verdicts)
     raise AmbiguousError(
         f"{one!r} in {verdicts._shown()} is ambiguous: ask for {ask}, or for a name in .monitors"
     )
+
+
+def _verdict(name: str, lower: float, upper: float, robustness: float, status: int) -> Verdict:
+    """Makes a verdict that was pickled."""
+    return Verdict(
+        names_of((name,)), 0, name, _VERDICT.pack(robustness, lower, upper, status), 0
+    )
+
+
+def _verdicts(monitors: tuple[str, ...], raw: bytes) -> Verdicts:
+    """Makes verdicts that were pickled."""
+    return Verdicts(names_of(monitors), raw, 0)

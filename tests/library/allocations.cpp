@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "all_kinds.hpp"
 #include "random_spec.hpp"
 
 namespace {
@@ -42,30 +43,6 @@ void* realloc(void* block, size_t size) noexcept {
 }
 
 namespace {
-
-/// Features that random specs lack: projections, weights, narrow embeddings, lets, and a nesting
-/// that is evaluated again at every step.
-constexpr const char* kAllKinds = R"(spec kinds;
-input z : f32[3] hold 2;
-input h : f16[2];
-input b : i8[2] scale 0.25;
-input x : f32 in [0, 9];
-input f : bool;
-projection P = [[1, 0, 0], [0, 1, 1]];
-target t = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
-target u = [[0, 1], [1, 1], [2, 0]];
-target w = [[0, 0], [1, 1]] of P(z);
-predicate weighed = min mahalanobis([[2, 0.5, 0], [0.5, 1, 0], [0, 0, 1]])(z, t) <= 1;
-predicate mapped = min l2(P(z), w) <= 1;
-predicate third = kth(2) cosine(h, u) <= 0.5;
-predicate apart = min l2(z, t) - max l1(z, t) <= 0.5;
-predicate bytes = mean linf(b, u) <= 1;
-let both = mapped && third;
-repeating monitor a = F (weighed && F[0, 3] (both U[0, 2] f));
-monitor c = G (bytes -> (F[0, 4] (apart && F[1, 3] f)));
-restartable monitor d = G (F[0, 6] (weighed && G[0, 4] (x > 1 -> F[0, 3] both)));
-sliding monitor e = G[0, 5] (third || O[0, 7] bytes);
-)";
 
 struct Input {
     etlc_input is{};
@@ -181,7 +158,7 @@ bool opens_and_uses(const std::string& text, bool has_lets, std::mt19937& random
 
 int main() {
     std::mt19937 random(1);
-    if (!opens_and_uses(kAllKinds, true, random)) return 1;
+    if (!opens_and_uses(etlc::tests::kAllKinds, true, random)) return 1;
     for (uint64_t seed = 0; seed < 40; ++seed) {
         const etlc::tests::SpecShape& shape =
             etlc::tests::kSmallShapes[seed % std::size(etlc::tests::kSmallShapes)];

@@ -67,7 +67,11 @@ class Truth(unittest.TestCase):
         monitor.reset()
         verdicts = monitor.step(x=1.0)
         place = etlc.Diagnostic("E0204", "error", "m")
+        batch = monitor.batch(2)
+        plans = monitor.ahead(x=np.zeros((2, 3), "f4"))
+        together = batch.step(x=[1.0, 2.0])
         made = [
+            batch, plans, plans.high, together, together.high, batch.measure("is_high"),
             monitor, steps, steps.high, verdicts, verdicts.high, verdicts.high.why,
             monitor.measure("is_high"), monitor.inputs["x"], place, etlc.Written(Path("f"), "r"),
             etlc.Evaluation({}, "r"), etlc.EtlcWarning("w"),
@@ -91,7 +95,10 @@ class Truth(unittest.TestCase):
             else:
                 raising.append(name)
                 self.expect_ambiguous(one)
-        for name in ("Verdict", "Verdicts", "EpisodeVerdicts", "Episode", "Measurement"):
+        for name in (
+            "Verdict", "Verdicts", "EpisodeVerdicts", "Episode", "Measurement", "Measurements",
+            "BatchVerdicts", "BatchEpisode", "VerdictArrays", "RunVerdicts",
+        ):  # fmt: skip
             self.assertIn(name, raising)
         self.assertIn("exceptions and warnings", " ".join(safe.split()))
 
@@ -130,7 +137,7 @@ class Truth(unittest.TestCase):
                 if isinstance(one, etlc.Verdicts):
                     self.assertTrue(hasattr(one, "alarms"))
                     asked = one.high
-                if isinstance(one, etlc.Episode):
+                if isinstance(one, (etlc.Episode, etlc.BatchEpisode, etlc.BatchVerdicts)):
                     asked = one.high
                 words = str(error).replace("(", " ").replace("[", " ").replace(",", " ").split()
                 named = [word.strip(".") for word in words if word.strip(".") and word[0] == "."]

@@ -116,7 +116,8 @@ class Describing(unittest.TestCase):
         examples = "".join(re.findall(r"```python\n(.*?)```", page, re.S))
         calls = [name for name in etlc.__all__ if not inspect.isclass(getattr(etlc, name))]
         for kind in (etlc.Monitor, etlc.Verdict, etlc.Verdicts, etlc.Episode,
-                     etlc.EpisodeVerdicts, etlc.Explanation):  # fmt: skip
+                     etlc.EpisodeVerdicts, etlc.Explanation, etlc.Batch, etlc.BatchVerdicts,
+                     etlc.BatchEpisode, etlc.VerdictArrays, etlc.RunVerdicts):  # fmt: skip
             calls += [name for name, _ in inspect.getmembers(kind) if not name.startswith("_")]
         calls += [name for name in vars(etlc.Monitor(text=DOCK)) if not name.startswith("_")]
         self.assertGreater(len(calls), 50)
@@ -311,9 +312,9 @@ class Running(unittest.TestCase):
     def test_arrays_of_the_right_type_are_read_where_they_lie(self):
         z = self.episode()["z"]
         for array in (z, z[::2], z[::-1]):
-            present, rows = etlc.conversion.as_rows("z", array, np.dtype("f4"), (3,))
-            self.assertIsNone(present)
-            self.assertTrue(np.shares_memory(rows, z))
+            rows = etlc.conversion.as_rows("z", array, np.dtype("f4"), (3,), ("N",))
+            self.assertIsNone(rows.present)
+            self.assertTrue(np.shares_memory(rows.data, z))
 
     def test_masked_rows_are_missing(self):
         arrays = self.episode()
@@ -585,7 +586,7 @@ class Refusing(unittest.TestCase):
             lambda: dock.explain("visits"), lambda: dock.incidents, dock.close_incidents,
             lambda: dock.lost_incidents, dock.forget_incidents,
         ):  # fmt: skip
-            with self.assertRaisesRegex(etlc.ClosedError, "not open"):
+            with self.assertRaisesRegex(etlc.ClosedError, "the monitor is closed"):
                 call()
 
     def test_monitors_of_another_thread(self):

@@ -94,6 +94,19 @@ void Observations::clear() {
     steps_ = 0;
 }
 
+void Observations::take(const Observations& other) {
+    columns_ = other.columns_;
+    steps_ = other.steps_;
+}
+
+bool Observations::fits(std::uint64_t steps) const {
+    const auto is_whole = [&](const auto& numbers) { return numbers.size() == steps; };
+    return steps_ == steps && std::all_of(columns_.begin(), columns_.end(), [&](const Column& c) {
+               return is_whole(c.measured) &&
+                      std::all_of(c.nearest.begin(), c.nearest.end(), is_whole);
+           });
+}
+
 bool Observations::is_missing(Sample sample) const {
     return etlmon::is_nan(measured(sample));
 }

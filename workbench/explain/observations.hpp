@@ -51,6 +51,19 @@ public:
     /// Discards all steps.
     void clear();
     std::uint64_t steps() const { return steps_; }
+    /// Takes the steps of other observations of the same predicates and inputs.
+    void take(const Observations& other);
+    /// Passes the steps to an archive (plan/evaluate/archive.hpp).
+    template <class Self, class Archive>
+    static void visit(Self& self, Archive& archive) {
+        archive.number(self.steps_);
+        for (auto& column : self.columns_) {
+            archive.some(column.measured);
+            for (auto& rows : column.nearest) archive.some(rows);
+        }
+    }
+    /// Returns whether there are as many steps in all columns.
+    bool fits(std::uint64_t steps) const;
 
     /// Returns the distance or expression of a predicate, 0 or 1 of a bool; NaN where missing.
     float measured(Sample sample) const { return columns_[sample.atom].measured[sample.step]; }

@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* The version of this header. A library accepts programs of its own and of earlier versions. */
-#define ETLC_API_VERSION 3u
+#define ETLC_API_VERSION 4u
 
 /* ---- errors --------------------------------------------------------------------------------- */
 
@@ -289,6 +289,85 @@ enum { ETLC_TEXT = 0, ETLC_JSON = 1 };
  * proportional to the episode. */
 ETLC_EXPORT etlc_status etlc_explain(etlc_session session, uint32_t monitor, uint32_t format,
                                      const char **text);
+
+/* ---- copies, plans, states ------------------------------------------------------------------ */
+
+/* Opens a copy of a session with its state, incidents and history, or of a batch. The copy goes on
+ * by itself; both share the compiled spec. Allocates memory. */
+ETLC_EXPORT etlc_status etlc_copy(etlc_session session, etlc_session *copy);
+
+/* The samples of an input in rows of steps: a row is an environment of a batch, or a plan. The
+ * elements of a step are contiguous and aligned for their type. */
+typedef struct etlc_grid {
+  const void *data;       /* null: missing at all steps of all rows */
+  const uint8_t *present; /* a byte per row and step, row by row, 0: missing; null: all present */
+  int64_t stride;         /* bytes from a row to the next */
+  int64_t step_stride;    /* bytes from a step to the next */
+  uint32_t count;
+  uint32_t type;
+} etlc_grid;
+
+/* Gives the verdicts of continuations: each row goes on from the present state, which does not
+ * change. A batch has `plans` rows for each of its environments, those of environment 0 first; any
+ * other session has `plans` rows. `verdicts`: room for rows x steps x monitors, in this order.
+ * `threads` share the rows; 0 or 1: only this one. History and recorder take no part. Allocates
+ * memory. */
+ETLC_EXPORT etlc_status etlc_ahead(etlc_session session, const etlc_grid *grids, size_t grid_count,
+                                   uint64_t plans, uint64_t steps, uint32_t threads,
+                                   etlc_verdict *verdicts, size_t verdict_count);
+
+/* Returns the state of a session or batch as bytes, valid until the next call of this function or
+ * etlc_close(). They have the history with them. A session with a recorder is not saved
+ * (ETLC_NOT_KEPT). Allocates memory. */
+ETLC_EXPORT etlc_status etlc_save(etlc_session session, const void **bytes, size_t *size);
+
+/* Takes a state that etlc_save() returned, with the same version of etlc on a machine with the same
+ * byte order, from a session with the same spec, files and options. Others are refused, and so are
+ * bytes that were damaged. Allocates memory. */
+ETLC_EXPORT etlc_status etlc_load(etlc_session session, const void *bytes, size_t size);
+
+/* ---- batches -------------------------------------------------------------------------------- */
+
+/* A batch steps many environments of one spec in one call. Its environments share nothing but the
+ * spec; each has the verdicts that a session of its own would have. A batch is a session too: it
+ * has a number, is used by one thread at a time, and describes its spec. */
+
+/* Opens a batch of `environments` >= 1 with the spec of a session, which may be closed before the
+ * batch. All begin before their first step, with the thresholds of etlc_open(). There is no history
+ * and no recorder. Allocates memory. */
+ETLC_EXPORT etlc_status etlc_open_batch(etlc_session session, uint64_t environments,
+                                        etlc_session *batch);
+
+/* Makes `steps` steps in all environments. `grids`: one per input, in the order of the spec, with a
+ * row per environment. `verdicts`: room for environments x steps x monitors, in this order.
+ * `threads` share the environments; 0 or 1: only this one. With more, allocates memory. */
+ETLC_EXPORT etlc_status etlc_run_batch(etlc_session batch, const etlc_grid *grids,
+                                       size_t grid_count, uint64_t steps, uint32_t threads,
+                                       etlc_verdict *verdicts, size_t verdict_count);
+
+/* These do what the function for a session does, in some environments. `which`: a byte per
+ * environment, 0: not in this one; null: in all. */
+ETLC_EXPORT etlc_status etlc_reset_batch(etlc_session batch, const uint8_t *which,
+                                         uint64_t environments);
+ETLC_EXPORT etlc_status etlc_restart_batch(etlc_session batch, uint32_t monitor,
+                                           const uint8_t *which, uint64_t environments);
+/* `verdicts`: room for environments x monitors; those of the others stay as they are. */
+ETLC_EXPORT etlc_status etlc_finish_batch(etlc_session batch, const uint8_t *which,
+                                          uint64_t environments, etlc_verdict *verdicts,
+                                          size_t verdict_count);
+
+/* Returns the number of steps of each environment since it was opened or reset. */
+ETLC_EXPORT etlc_status etlc_steps_batch(etlc_session batch, uint64_t *steps,
+                                         uint64_t environments);
+
+/* Returns the measurement of a predicate at the last step of each environment. */
+ETLC_EXPORT etlc_status etlc_measure_batch(etlc_session batch, uint32_t predicate,
+                                           etlc_measured *measured, uint64_t environments);
+
+/* Opens a copy of one environment as a session, for all that the functions of sessions can do.
+ * Allocates memory. */
+ETLC_EXPORT etlc_status etlc_copy_environment(etlc_session batch, uint64_t environment,
+                                              etlc_session *copy);
 
 /* ---- encoders ------------------------------------------------------------------------------- */
 

@@ -38,6 +38,15 @@ public:
         next_ = (next_ + 1) % present_.size();
     }
 
+    /// Passes its numbers to an archive (archive.hpp).
+    template <class Self, class Archive>
+    static void visit(Self& self, Archive& archive) {
+        archive.number(self.next_);
+        archive.fixed(self.samples_);
+        archive.bools(self.present_);
+    }
+    bool fits() const { return next_ < present_.size(); }
+
 private:
     check::Index point_;
     std::uint32_t dimension_;

@@ -28,68 +28,62 @@ std::uint32_t saturating_increment(std::uint32_t x) {
 
 }  // namespace
 
-Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
-    prepare_distances();
+Evaluator::Evaluator(const Plan& plan) : Evaluator(plan, std::make_shared<const Tables>(plan)) {}
+
+Evaluator::Evaluator(const Plan& plan, std::shared_ptr<const Tables> tables)
+    : plan_(plan),
+      model_(*plan.model),
+      tables_(std::move(tables)),
+      own_(std::make_unique<State>(plan, tables_->shape)),
+      state_(own_.get()) {
+    make_room();
+}
+
+void Evaluator::make_room() {
+    views_.resize(model_.inputs.size());
     inputs_.resize(model_.inputs.size());
-    held_.resize(model_.inputs.size());
-    freshness_.resize(model_.inputs.size());
-    for (const Index i : plan.inputs) {
-        held_[i].values.reserve(model_.inputs[i].dimension);
-        if (model_.inputs[i].stale_after > 0) freshness_[i].reserve(model_.inputs[i].dimension);
-    }
+    taken_.resize(model_.inputs.size());
+    for (const Index i : plan_.inputs) taken_[i].reserve(model_.inputs[i].dimension);
+    points_.resize(model_.points.size());
+    point_at_.resize(model_.points.size());
+    for (Index p = 0; p < model_.points.size(); ++p)
+        if (model_.points[p].kind != check::Point::Kind::embedding)
+            points_[p].resize(model_.points[p].dimension);
+    centred_.resize(tables_->centred);
+    near_ = tables_->near;
+    near_values_.reserve(tables_->near_values);
     distances_.resize(model_.distances.size());
     enclosed_.resize(model_.distances.size());
-    for (const Index past : plan.pasts) past_states_.emplace_back(model_.pasts[past]);
-    pasts_.resize(model_.pasts.size());
+    pasts_.resize(model_.pasts.size(), etlmon::kMissing);
     past_operands_.resize(model_.pasts.size());
-    measured_.resize(model_.predicates.size());
-    for (const check::Predicate& predicate : model_.predicates)
-        thresholds_.push_back(predicate.threshold.value);
-    predicate_values_.resize(model_.predicates.size(), kAnything);
-    flags_.resize(model_.inputs.size(), kAnything);
-    streams_.resize(plan.streams.size());
-    stream_states_.resize(plan.streams.size());
-    for (Slot slot = 0; slot < plan.streams.size(); ++slot)
-        stream_states_[slot].members = members_of(plan.streams[slot]);
-    readings_.resize(plan.readings.size());
-    reading_states_.resize(plan.readings.size());
-    for (std::size_t i = 0; i < plan.readings.size(); ++i)
-        prepare_reading(plan.readings[i], reading_states_[i]);
-    verdicts_.resize(plan.monitors.size());
-    starts_.resize(plan.monitors.size());
-    restarts_.resize(plan.monitors.size());
-    reset();
+    scratch_.resize(tables_->scratch);
+    streams_.resize(plan_.streams.size());
+    readings_.resize(plan_.readings.size());
+}
+
+void Evaluator::use(State& state) {
+    state_ = &state;
+    std::fill(inputs_.begin(), inputs_.end(), nullptr);
+    std::fill(point_at_.begin(), point_at_.end(), nullptr);
 }
 
 void Evaluator::reset() {
-    for (Held& held : held_) {
-        held.values.clear();
-        held.age = 0;
-    }
-    for (Freshness& freshness : freshness_) freshness.reset();
-    for (EarlierSamples& earlier : earlier_) earlier.reset();
-    counts_.assign(model_.inputs.size(), {});
-    for (StreamState& state : stream_states_) reset_stream(state);
-    for (std::size_t i = 0; i < plan_.readings.size(); ++i)
-        reset_reading(plan_.readings[i], reading_states_[i]);
-    for (PastState& past : past_states_) past.reset();
-    std::fill(pasts_.begin(), pasts_.end(), etlmon::kMissing);
-    std::fill(measured_.begin(), measured_.end(), etlmon::Measured{etlmon::kMissing, 0});
-    std::fill(verdicts_.begin(), verdicts_.end(), etlmon::Verdict{});
-    lets_.assign(plan_.lets.size(), etlmon::Verdict{});
-    std::fill(starts_.begin(), starts_.end(), 0);
-    std::fill(restarts_.begin(), restarts_.end(), false);
-    steps_ = 0;
-    started_ = false;
-    finished_ = 0;
-    missing_steps_ = 0;
+    state_->reset(plan_, tables_->shape);
 }
 
 const std::vector<etlmon::Verdict>& Evaluator::step(const std::vector<Sample>& samples) {
-    if (started_) ++steps_;
-    started_ = true;
+    for (const Index i : plan_.inputs) {
+        const bool there = samples[i].present && !samples[i].values.empty();
+        views_[i] = {there ? samples[i].values.data() : nullptr, samples[i].is_stale};
+    }
+    return step(views_.data(), false);
+}
+
+const std::vector<etlmon::Verdict>& Evaluator::step(const SampleView* samples, bool borrow) {
+    if (state_->started) ++state_->steps;
+    state_->started = true;
     restart_those_due();
-    take_inputs(samples);
+    take_inputs(samples, borrow);
     measure_distances();
     take_pasts();
     measure_predicates();
@@ -98,94 +92,104 @@ const std::vector<etlmon::Verdict>& Evaluator::step(const std::vector<Sample>& s
     advance_readings();
     judge();
     for (std::size_t m = 0; m < plan_.monitors.size(); ++m)
-        if (plan_.monitors[m].restarts == check::Restarts::when_final && verdicts_[m].final())
+        if (plan_.monitors[m].restarts == check::Restarts::when_final &&
+            state_->verdicts[m].final())
             restart(m);
-    return verdicts_;
+    return state_->verdicts;
 }
 
 void Evaluator::restart(std::size_t monitor) {
-    restarts_[monitor] = true;
+    state_->restarts[monitor] = true;
 }
 
 std::uint64_t Evaluator::position(std::size_t monitor) const {
     const Monitor& m = plan_.monitors[monitor];
-    return m.sliding ? steps_ - m.horizon : starts_[monitor];
+    return m.sliding ? state_->steps - m.horizon : state_->starts[monitor];
 }
 
 /// Restarts what belongs to monitors restarted before this step.
 void Evaluator::restart_those_due() {
+    const std::vector<bool>& due = state_->restarts;
+    if (std::find(due.begin(), due.end(), true) == due.end()) return;
     const auto restarts = [&](std::uint32_t begins_with) {
-        return begins_with != kNone && restarts_[begins_with];
+        return begins_with != kNone && state_->restarts[begins_with];
     };
     for (Slot slot = 0; slot < plan_.streams.size(); ++slot)
-        if (restarts(plan_.streams[slot].begins_with)) reset_stream(stream_states_[slot]);
+        if (restarts(plan_.streams[slot].begins_with)) state_->reset_stream(slot, tables_->shape);
     for (std::size_t i = 0; i < plan_.readings.size(); ++i)
         if (restarts(plan_.readings[i].begins_with))
-            reset_reading(plan_.readings[i], reading_states_[i]);
+            state_->reset_reading(i, plan_, tables_->shape);
     for (std::size_t m = 0; m < plan_.monitors.size(); ++m)
-        if (restarts_[m]) starts_[m] = steps_;
-    std::fill(restarts_.begin(), restarts_.end(), false);
+        if (state_->restarts[m]) state_->starts[m] = state_->steps;
+    std::fill(state_->restarts.begin(), state_->restarts.end(), false);
 }
 
 const std::vector<etlmon::Verdict>& Evaluator::finish() {
-    if (started_) ++steps_;
-    started_ = true;
-    finished_ = saturating_increment(finished_);
+    if (state_->started) ++state_->steps;
+    state_->started = true;
+    state_->finished = saturating_increment(state_->finished);
     advance_streams();
     judge();
-    return verdicts_;
+    return state_->verdicts;
 }
 
 void Evaluator::observe(Index predicate, float distance, bool truth) {
     if (truth)
-        thresholds_[predicate] =
-            observed(model_.predicates[predicate], thresholds_[predicate], distance);
+        state_->thresholds[predicate] =
+            observed(model_.predicates[predicate], state_->thresholds[predicate], distance);
 }
 
 // ---- inputs, distances, predicates
 
 namespace {
 
-bool is_there(const Sample& sample) {
-    return sample.present && !sample.values.empty() &&
-           etlmon::finite(sample.values.data(), sample.values.size());
-}
-
 Value flag_value(const check::Input& input, const float* sample) {
     if (sample == nullptr) return missing_value(input);
     return *sample != 0 ? kTrue : kFalse;
 }
 
-bool in_range(const check::Input& input, const Sample& sample) {
+bool in_range(const check::Input& input, const float* elements) {
     if (input.type != check::InputType::scalar) return true;
-    return input.range.low <= sample.values[0] && sample.values[0] <= input.range.high;
+    return input.range.low <= *elements && *elements <= input.range.high;
 }
 
 }  // namespace
 
 /// `stale after N`: a sample that comes more often in a row counts as missing. `hold N`: the last
 /// present sample replaces at most N missing ones in a row.
-void Evaluator::take_inputs(const std::vector<Sample>& samples) {
-    for (Index i : plan_.inputs) {
+void Evaluator::take_inputs(const SampleView* samples, bool borrow) {
+    for (const Index i : plan_.inputs) {
         const check::Input& input = model_.inputs[i];
-        Held& held = held_[i];
-        const bool there = is_there(samples[i]);
-        const bool usable = there && in_range(input, samples[i]);
-        if (usable && freshness_[i].accepts(input, samples[i].values)) {
-            held.values = samples[i].values;
-            held.age = 0;
-            inputs_[i] = held.values.data();
+        State::Held& held = state_->held[i];
+        const float* const elements = samples[i].elements;
+        const bool there = elements != nullptr && all_finite(elements, input.dimension);
+        const bool usable = there && in_range(input, elements);
+        if (usable && state_->freshness[i].accepts(input, {elements, input.dimension})) {
+            inputs_[i] = keep(i, elements, borrow);
         } else {
             const bool stands_in = !held.values.empty() && held.age < input.hold;
-            ++(usable || samples[i].is_stale ? counts_[i].stale
-               : there                       ? counts_[i].out_of_range
-                                             : counts_[i].missing);
-            if (stands_in) ++counts_[i].held;
+            SampleCounts& counts = state_->counts[i];
+            ++(usable || samples[i].is_stale ? counts.stale
+               : there                       ? counts.out_of_range
+                                             : counts.missing);
+            if (stands_in) ++counts.held;
             held.age = saturating_increment(held.age);
             inputs_[i] = stands_in ? held.values.data() : nullptr;
         }
-        if (input.type == check::InputType::boolean) flags_[i] = flag_value(input, inputs_[i]);
+        if (input.type == check::InputType::boolean)
+            state_->flags[i] = flag_value(input, inputs_[i]);
     }
+}
+
+/// Returns the elements of a sample in memory that lasts as long as it is needed.
+const float* Evaluator::keep(Index index, const float* elements, bool borrow) {
+    const check::Input& input = model_.inputs[index];
+    if (borrow && input.hold == 0) return elements;
+    State::Held& held = state_->held[index];
+    std::vector<float>& to = input.hold == 0 ? taken_[index] : held.values;
+    to.assign(elements, elements + input.dimension);
+    held.age = 0;
+    return to.data();
 }
 
 bool Evaluator::is_measured(const check::Predicate& predicate) const {
@@ -196,30 +200,31 @@ bool Evaluator::is_measured(const check::Predicate& predicate) const {
 
 void Evaluator::measure_predicates() {
     bool missing = false;
-    for (const Stream& stream : plan_.streams)
-        if (stream.op == StreamOp::flag) missing |= inputs_[stream.index] == nullptr;
+    for (const Index flag : tables_->flags) missing |= inputs_[flag] == nullptr;
     for (Index p : plan_.predicates) {
         const check::Predicate& predicate = model_.predicates[p];
         etlmon::Measured measured{etlmon::kMissing, 0};
         if (predicate.plain_distance()) measured = distances_[predicate.expression.index];
-        const bool is_contrast = !contrast_cuts_[p].empty() && is_measured(predicate);
+        const bool is_contrast = !tables_->contrast_cuts[p].empty() && is_measured(predicate);
         const etlmon::Enclosed contrast =
             is_contrast ? measure_contrast(predicate) : etlmon::Enclosed{};
         if (is_contrast)
             measured.delta = contrast.measured.delta;
         else if (!predicate.plain_distance())
             measured.delta = expression(predicate.expression);
-        measured_[p] = measured;
-        predicate_values_[p] = value_of(predicate, measured.delta, thresholds_[p], plan_.values);
+        state_->measured[p] = measured;
+        state_->predicate_values[p] =
+            value_of(predicate, measured.delta, state_->thresholds[p], plan_.values);
         if (predicate.plain_distance() && plan_.values != check::Values::boolean)
-            predicate_values_[p] =
-                value_of(predicate, enclosed_[predicate.expression.index], thresholds_[p]);
+            state_->predicate_values[p] =
+                value_of(predicate, enclosed_[predicate.expression.index], state_->thresholds[p]);
         if (is_contrast && plan_.values == check::Values::robustness)
-            predicate_values_[p] = value_of(predicate, contrast, thresholds_[p]);
-        if (replacement_ && !std::isnan(measured.delta)) predicate_values_[p] = replacement_(p);
+            state_->predicate_values[p] = value_of(predicate, contrast, state_->thresholds[p]);
+        if (replacement_ && !std::isnan(measured.delta))
+            state_->predicate_values[p] = replacement_(p);
         missing |= std::isnan(measured.delta);
     }
-    if (missing) missing_steps_ = saturating_increment(missing_steps_);
+    if (missing) state_->missing_steps = saturating_increment(state_->missing_steps);
 }
 
 // ---- streams
@@ -231,7 +236,7 @@ Value Evaluator::operand(const Stream& stream, std::size_t i, Value where_none) 
 
 void Evaluator::advance_streams() {
     for (Slot slot = 0; slot < plan_.streams.size(); ++slot)
-        streams_[slot] = advance(plan_.streams[slot], stream_states_[slot]);
+        streams_[slot] = advance(plan_.streams[slot], state_->streams[slot]);
 }
 
 namespace {
@@ -248,7 +253,7 @@ Element push(std::vector<Element>& elements, std::uint32_t& cursor, std::uint32_
 
 }  // namespace
 
-Value Evaluator::advance_window(const Stream& stream, StreamState& state) const {
+Value Evaluator::advance_window(const Stream& stream, State::OfStream& state) const {
     const std::uint32_t n = stream.length;
     const Value none = neutral(stream.max);
     if (stream.op == StreamOp::window) {
@@ -288,7 +293,7 @@ Key exchanged(std::vector<Key>& sorted, Key leaves, Key enters, bool max, std::u
 
 }  // namespace
 
-Value Evaluator::advance_count(const Stream& stream, StreamState& state) const {
+Value Evaluator::advance_count(const Stream& stream, State::OfStream& state) const {
     const Value enters = operand(stream, 0, neutral(stream.max));
     const Value leaves =
         etlmon::delay_push(state.values.data(), state.cursor, stream.length, enters);
@@ -296,7 +301,7 @@ Value Evaluator::advance_count(const Stream& stream, StreamState& state) const {
             exchanged(state.highs, leaves.high, enters.high, stream.max, stream.index)};
 }
 
-Value Evaluator::advance(const Stream& stream, StreamState& state) const {
+Value Evaluator::advance(const Stream& stream, State::OfStream& state) const {
     const bool max = stream.max;
     const auto at = [&](std::size_t i) { return streams_[stream.operands[i]]; };
     const auto delayed = [&](std::uint32_t length, Value value) {
@@ -304,8 +309,8 @@ Value Evaluator::advance(const Stream& stream, StreamState& state) const {
     };
     switch (stream.op) {
         case StreamOp::constant: return stream.value;
-        case StreamOp::predicate: return predicate_values_[stream.index];
-        case StreamOp::flag: return flags_[stream.index];
+        case StreamOp::predicate: return state_->predicate_values[stream.index];
+        case StreamOp::flag: return state_->flags[stream.index];
         case StreamOp::negation: return negate(at(0));
         case StreamOp::combination: {
             Value value = at(0);
@@ -338,56 +343,23 @@ Value Evaluator::advance(const Stream& stream, StreamState& state) const {
     return kAnything;
 }
 
-void Evaluator::reset_stream(StreamState& state) {
-    for (const Member& member : state.members) reset_member(member, state);
-}
-
-void Evaluator::reset_member(const Member& member, StreamState& state) {
-    state.cursor = 0;
-    switch (member.kind) {
-        case Member::Kind::value: state.values.assign(1, member.first); break;
-        case Member::Kind::delay: state.values.assign(member.length, member.first); break;
-        case Member::Kind::window:
-            state.values.assign(etlmon::window_elements(member.length), neutral(member.max));
-            break;
-        case Member::Kind::since_window:
-        case Member::Kind::until_window:
-            state.pairs.assign(etlmon::window_elements(member.length),
-                               {neutral(member.max), neutral(!member.max)});
-            break;
-        case Member::Kind::handover_window:
-            state.flanks.assign(etlmon::window_elements(member.length),
-                                {neutral(member.max), neutral(!member.max), neutral(!member.max)});
-            break;
-        case Member::Kind::count_window:
-            state.values.assign(member.length, neutral(member.max));
-            state.lows.assign(member.length, neutral(member.max).low);
-            state.highs = state.lows;
-            break;
-        case Member::Kind::widening:
-            state.values.assign(member.length - member.from_length, neutral(member.max));
-            break;
-        default: break;  // these belong to readings
-    }
-}
-
 void Evaluator::judge() {
     for (std::size_t m = 0; m < plan_.monitors.size(); ++m) {
         const Monitor& monitor = plan_.monitors[m];
         if (monitor.sliding && !exists(monitor.horizon)) {
-            verdicts_[m] = etlmon::Verdict{};
+            state_->verdicts[m] = etlmon::Verdict{};
         } else if (monitor.sliding) {
             const Value value = streams_[monitor.stream];
-            verdicts_[m] = etlmon::sliding_verdict(
+            state_->verdicts[m] = etlmon::sliding_verdict(
                 monitor.shifted ? etlmon::shifted(value, monitor.shift) : value);
-        } else if (finished_ == 0) {
+        } else if (state_->finished == 0) {
             const etlmon::Reading& reading = readings_[monitor.reading];
-            verdicts_[m] = etlmon::prefix_verdict(
+            state_->verdicts[m] = etlmon::prefix_verdict(
                 monitor.shifted ? etlmon::shifted(reading, monitor.shift) : reading);
         }
     }
-    for (std::size_t l = 0; finished_ == 0 && l < plan_.lets.size(); ++l)
-        lets_[l] = etlmon::sliding_verdict(streams_[plan_.lets[l].stream]);
+    for (std::size_t l = 0; state_->finished == 0 && l < plan_.lets.size(); ++l)
+        state_->lets[l] = etlmon::sliding_verdict(streams_[plan_.lets[l].stream]);
 }
 
 }  // namespace etlc::plan

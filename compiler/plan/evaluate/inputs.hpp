@@ -3,7 +3,9 @@
 // to the evaluator, as to the generated class.
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,10 @@ data::Channel channel_of(const check::Input& input);
 std::optional<Sample> narrow(const check::Input& input, bool present,
                              const std::vector<double>& numbers, std::string& why);
 
+/// Returns whether all elements are finite, as etlmon::finite() does, with the widest vectors of
+/// this machine: embeddings are long.
+bool all_finite(const float* elements, std::size_t count);
+
 /// Applies `stale after N` to the samples of one input.
 class Freshness {
 public:
@@ -34,7 +40,18 @@ public:
     void reserve(std::uint32_t dimension) { last_.reserve(dimension); }
     void reset() { repeats_ = 0; }
     /// Takes the next sample that is present, finite and in range; returns whether it is used.
-    bool accepts(const check::Input& input, const std::vector<float>& values);
+    bool accepts(const check::Input& input, std::span<const float> values);
+
+    /// Passes its numbers to an archive (archive.hpp).
+    template <class Self, class Archive>
+    static void visit(Self& self, Archive& archive) {
+        archive.some(self.last_);
+        archive.number(self.repeats_);
+    }
+    bool fits(const check::Input& input) const {
+        return (last_.empty() || last_.size() == input.dimension) &&
+               repeats_ <= input.stale_after && (repeats_ == 0 || !last_.empty());
+    }
 
 private:
     std::vector<float> last_;

@@ -9,7 +9,6 @@
 #include "plan/evaluate/evaluator.hpp"
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
-#include "plan/targets/point_checks.hpp"
 
 namespace etlc::plan {
 
@@ -26,63 +25,13 @@ bool doubtful(const etlmon::Enclosed& enclosed, const std::vector<Cut>& cuts) {
 
 }  // namespace
 
-void Evaluator::prepare_distances() {
-    prepared_.resize(model_.distances.size());
-    widened_.resize(model_.distances.size());
-    points_.resize(model_.points.size());
-    point_at_.resize(model_.points.size());
-    for (Index p = 0; p < model_.points.size(); ++p)
-        if (model_.points[p].kind != check::Point::Kind::embedding)
-            points_[p].resize(model_.points[p].dimension);
-    measured_points_ = points_of(model_, plan_.distances);
-    std::map<Index, std::uint32_t> longest;
-    for (const Index p : measured_points_) keep_for(p, 0, longest);
-    for (const auto& [point, steps] : longest)
-        earlier_.push_back({point, steps + 1, model_.points[point].dimension});
-    for (Index p : measured_points_)
-        if (model_.points[p].is_projected())
-            centred_.resize(std::max<std::size_t>(
-                centred_.size(), model_.projections[model_.points[p].projection].dimension));
-    std::size_t scratch = 0;
-    for (Index d : plan_.distances) {
-        const check::Distance& distance = model_.distances[d];
-        scratch = std::max<std::size_t>(scratch, distance.kth);
-        if (distance.is_between_points()) {
-            scratch = std::max<std::size_t>(scratch, model_.dimension_of(d));
-            continue;
-        }
-        prepared_[d] = prepared_rows(model_, distance);
-        if (distance.full_weights() && distance.aggregation == check::Aggregation::min) {
-            near_.try_emplace(d, distance, model_.targets[distance.target]);
-            near_values_.reserve(std::max(near_values_.capacity(), prepared_[d].size()));
-        }
-        if (const NarrowSet* set = narrow_set(plan_, d)) {
-            widened_[d] = widened_rows(*set);
-        }
-    }
-    scratch_.resize(scratch);
-    for (const check::Predicate& predicate : model_.predicates)
-        contrast_cuts_.push_back(contrast_cuts(plan_, predicate));
-    contrast_rows_.resize(model_.predicates.size());
-}
-
-/// Finds what a point of `ago` steps before rests on, and how long ago. Calibration also needs what
-/// a delayed point was projected from.
-void Evaluator::keep_for(Index index, std::uint32_t ago,
-                         std::map<Index, std::uint32_t>& longest) const {
-    const check::Point& point = model_.points[index];
-    if (!point.is_delayed() && ago > 0) longest[index] = std::max(longest[index], ago);
-    if (point.inner != kNone) keep_for(point.inner, ago + point.steps, longest);
-    for (const Index part : point.parts) keep_for(part, ago, longest);
-}
-
 const float* Evaluator::point(Index point, std::uint32_t ago) const {
     return ago == 0 ? point_at_[point] : earlier_of(point).at(points_are_kept_ ? ago + 1 : ago);
 }
 
 void Evaluator::measure_points() {
     points_are_kept_ = false;
-    for (const Index p : measured_points_) point_at_[p] = take_point(p);
+    for (const Index p : tables_->measured_points) point_at_[p] = take_point(p);
 }
 
 const float* Evaluator::take_point(Index index) {
@@ -117,13 +66,13 @@ const float* Evaluator::join(const check::Point& point, float* elements) const {
 }
 
 const EarlierSamples& Evaluator::earlier_of(Index point) const {
-    return *std::find_if(earlier_.begin(), earlier_.end(),
+    return *std::find_if(state_->earlier.begin(), state_->earlier.end(),
                          [&](const EarlierSamples& earlier) { return earlier.point() == point; });
 }
 
 /// Adds the points of this step to those of earlier steps, after all have been measured.
 void Evaluator::keep_points() {
-    for (EarlierSamples& earlier : earlier_) earlier.push(point_at_[earlier.point()]);
+    for (EarlierSamples& earlier : state_->earlier) earlier.push(point_at_[earlier.point()]);
     points_are_kept_ = true;
 }
 
@@ -149,7 +98,7 @@ void Evaluator::measure_distances() {
 etlmon::Measured Evaluator::measure_wide(Index d, const float* z) {
     const check::Distance& distance = model_.distances[d];
     const check::Target& target = model_.targets[distance.target];
-    return plan::measure(distance, z, prepared_[d].data(), target.rows, target.dimension,
+    return plan::measure(distance, z, tables_->prepared[d].data(), target.rows, target.dimension,
                          scratch_.data());
 }
 
@@ -158,23 +107,23 @@ etlmon::Enclosed Evaluator::measure_contrast(const check::Predicate& predicate) 
     const auto [a, b] = *contrast(predicate);
     const Index p = static_cast<Index>(&predicate - model_.predicates.data());
     const etlmon::Enclosed known = etlmon::difference(enclosed_[a], enclosed_[b]);
-    contrast_rows_[p] = {distances_[a].nearest, distances_[b].nearest};
-    if (!doubtful(known, contrast_cuts_[p])) return known;
+    state_->contrast_rows[p] = {distances_[a].nearest, distances_[b].nearest};
+    if (!doubtful(known, tables_->contrast_cuts[p])) return known;
     const auto wide = [&](Index d) {
         return measure_wide(d, point_at_[model_.distances[d].point]);
     };
     const etlmon::Measured left = wide(a), right = wide(b);
-    contrast_rows_[p] = {left.nearest, right.nearest};
+    state_->contrast_rows[p] = {left.nearest, right.nearest};
     return etlmon::difference(etlmon::exactly(left), etlmon::exactly(right));
 }
 
 std::uint32_t Evaluator::nearest(Index p, Index distance) const {
     const check::Predicate& predicate = model_.predicates[p];
-    if (predicate.plain_distance()) return measured_[p].nearest;
-    if (contrast_cuts_[p].empty() || std::isnan(measured_[p].delta))
+    if (predicate.plain_distance()) return state_->measured[p].nearest;
+    if (tables_->contrast_cuts[p].empty() || std::isnan(state_->measured[p].delta))
         return distances_[distance].nearest;
-    return distance == contrast(predicate)->first ? contrast_rows_[p].first
-                                                  : contrast_rows_[p].second;
+    return distance == contrast(predicate)->first ? state_->contrast_rows[p].first
+                                                  : state_->contrast_rows[p].second;
 }
 
 /// Measures on narrow rows if there are any; on float32 if there are none or they leave a
@@ -188,12 +137,12 @@ etlmon::Enclosed Evaluator::measure(Index d, const float* z) {
                              scratch_.data());
     };
     if (near_.contains(d)) return etlmon::exactly(measure_near(d, z));
-    const NarrowSet* set = narrow_set(plan_, d);
+    const NarrowSet* set = tables_->narrow[d];
     if (set == nullptr) return etlmon::exactly(measure_wide(d, z));
-    if (set->lossless) return etlmon::exactly(measured_on(widened_[d]));
+    if (set->lossless) return etlmon::exactly(measured_on(tables_->widened[d]));
     const etlmon::Enclosed enclosed =
-        etlmon::enclose(metric_id(distance), aggregation_id(distance), measured_on(widened_[d]),
-                        set->moved, set->rows, set->dimension);
+        etlmon::enclose(metric_id(distance), aggregation_id(distance),
+                        measured_on(tables_->widened[d]), set->moved, set->rows, set->dimension);
     return doubtful(enclosed, set->cuts) ? etlmon::exactly(measure_wide(d, z)) : enclosed;
 }
 
@@ -205,7 +154,8 @@ etlmon::Measured Evaluator::measure_near(Index d, const float* z) {
     const std::vector<std::uint32_t>& rows = near_rows(d, z, 2);
     near_values_.clear();
     for (const std::uint32_t row : rows) {
-        const auto begin = prepared_[d].begin() + static_cast<std::ptrdiff_t>(row) * dimension;
+        const auto begin =
+            tables_->prepared[d].begin() + static_cast<std::ptrdiff_t>(row) * dimension;
         near_values_.insert(near_values_.end(), begin, begin + dimension);
     }
     etlmon::Measured measured =
@@ -217,10 +167,10 @@ etlmon::Measured Evaluator::measure_near(Index d, const float* z) {
 
 /// Advances the numbers that earlier steps have a part in, each after those that it contains.
 void Evaluator::take_pasts() {
-    for (std::size_t i = 0; i < past_states_.size(); ++i) {
+    for (std::size_t i = 0; i < state_->pasts.size(); ++i) {
         const Index past = plan_.pasts[i];
         past_operands_[past] = expression(model_.pasts[past].expression);
-        pasts_[past] = past_states_[i].push(past_operands_[past]);
+        pasts_[past] = state_->pasts[i].push(past_operands_[past]);
     }
     if (after_pasts_) after_pasts_();
 }

@@ -46,4 +46,10 @@ float PastState::push(float x) {
     return etlmon::kMissing;
 }
 
+bool PastState::fits() const {
+    const std::uint32_t places = keys_.empty() ? steps_ : std::max(steps_ & ~1U, 1U);
+    return cursor_ < std::max(places, 1U) && count_ <= steps_ &&
+           mean_.cursor < std::max(steps_, 1U) && mean_.count <= steps_;
+}
+
 }  // namespace etlc::plan

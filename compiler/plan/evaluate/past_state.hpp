@@ -18,6 +18,18 @@ public:
     /// Takes the value of its expression at this step, NaN where it is missing. Returns the number.
     float push(float x);
 
+    /// Passes its numbers to an archive (archive.hpp).
+    template <class Self, class Archive>
+    static void visit(Self& self, Archive& archive) {
+        archive.fixed(self.bits_);
+        archive.fixed(self.keys_);
+        archive.number(self.mean_);
+        archive.number(self.cursor_);
+        archive.number(self.count_);
+    }
+    /// Returns whether all cursors are inside, as after any number of steps.
+    bool fits() const;
+
 private:
     using Kind = check::Past::Kind;
 

@@ -11,36 +11,12 @@ using etlmon::kFalse;
 using etlmon::kTop;
 using etlmon::kTrue;
 
-void Evaluator::prepare_reading(const Reading& reading, ReadingState& state) {
-    if (reading.kind == Reading::Kind::pending)
-        state.pending.emplace(reading.pending);
-    else if (reading.kind != Reading::Kind::table)
-        for (const Member& member : members_of(reading)) state.first.push_back(member.first);
-}
-
-void Evaluator::reset_reading(const Reading& reading, ReadingState& state) {
-    if (reading.kind == Reading::Kind::pending) {
-        state.pending->reset();
-    } else if (reading.kind == Reading::Kind::table) {
-        const Table& table = reading.table;
-        state.registers.assign(table.ends.size(), kFalse);
-        state.next = state.registers;
-        state.registers[0] = kTrue;
-        state.guards.assign(table.guards.size(), kTrue);
-        state.weak.assign(table.weak.size() + 1, kTop);
-        state.strong.assign(table.strong.size() + 1, kTop);
-    } else {
-        state.registers = state.first;
-        state.next.assign(reading.straight.locals.size(), kFalse);
-    }
-}
-
 void Evaluator::advance_readings() {
     for (std::size_t i = 0; i < plan_.readings.size(); ++i)
-        readings_[i] = advance(plan_.readings[i], reading_states_[i]);
+        readings_[i] = advance(plan_.readings[i], state_->readings[i]);
 }
 
-etlmon::Reading Evaluator::advance(const Reading& reading, ReadingState& state) const {
+etlmon::Reading Evaluator::advance(const Reading& reading, State::OfReading& state) const {
     const std::uint64_t position = steps_since(reading.begins_with);
     switch (reading.kind) {
         case Reading::Kind::straight: return run(reading.straight, state, position);
@@ -56,7 +32,8 @@ etlmon::Reading Evaluator::advance(const Reading& reading, ReadingState& state) 
     return result;
 }
 
-Value Evaluator::value(const Term& term, const ReadingState& state, std::uint64_t position) const {
+Value Evaluator::value(const Term& term, const State::OfReading& state,
+                       std::uint64_t position) const {
     const auto operand = [&](std::size_t i) { return value(term.operands[i], state, position); };
     switch (term.kind) {
         case Term::Kind::constant: return term.value;
@@ -72,7 +49,7 @@ Value Evaluator::value(const Term& term, const ReadingState& state, std::uint64_
     return result;
 }
 
-etlmon::Reading Evaluator::run(const Straight& code, ReadingState& state,
+etlmon::Reading Evaluator::run(const Straight& code, State::OfReading& state,
                                std::uint64_t position) const {
     for (const Assignment& assignment : code.assignments) {
         const auto [low, high] = assignment.positions;
@@ -85,7 +62,7 @@ etlmon::Reading Evaluator::run(const Straight& code, ReadingState& state,
             value(code.upper, state, position).high};
 }
 
-etlmon::Reading Evaluator::run(const Table& table, ReadingState& state) const {
+etlmon::Reading Evaluator::run(const Table& table, State::OfReading& state) const {
     for (std::size_t g = 0; g < table.guards.size(); ++g) {
         state.guards[g] = kTrue;
         for (Slot slot : table.guards[g])
@@ -106,7 +83,7 @@ etlmon::Reading Evaluator::run(const Table& table, ReadingState& state) const {
 // ---- the last positions, again at every step
 // -----------------------------------------------------
 
-PendingEvaluator::PendingEvaluator(const Pending& pending) : pending_(pending) {
+PendingEvaluator::PendingEvaluator(const Pending& pending) : pending_(&pending) {
     leaves_.resize(pending.parts.size());
     const std::size_t positions = pending.horizon + std::size_t{1};
     for (auto& leaf : leaves_) leaf.reserve(positions);
@@ -124,14 +101,20 @@ PendingEvaluator::PendingEvaluator(const Pending& pending) : pending_(pending) {
 
 void PendingEvaluator::reset() {
     for (auto& leaf : leaves_) leaf.clear();
-    if (pending_.is_fold) {
+    if (pending_->is_fold) {
         registers_.resize(2);
-        registers_[0] = neutral(pending_.fold.max);
-        registers_[1] = neutral(!pending_.fold.max);
+        registers_[0] = neutral(pending_->fold.max);
+        registers_[1] = neutral(!pending_->fold.max);
     } else {
-        registers_.assign(pending_.table.ends.size(), kFalse);
+        registers_.assign(pending_->table.ends.size(), kFalse);
         registers_[0] = kTrue;
     }
+}
+
+bool PendingEvaluator::fits() const {
+    return std::all_of(leaves_.begin(), leaves_.end(), [&](const std::vector<Value>& leaf) {
+        return leaf.size() <= pending_->horizon + std::size_t{1};
+    });
 }
 
 etlmon::Reading PendingEvaluator::advance(std::uint64_t position,
@@ -139,23 +122,23 @@ etlmon::Reading PendingEvaluator::advance(std::uint64_t position,
     // The counter saturates as in generated code.
     const auto step = static_cast<std::uint32_t>(
         std::min<std::uint64_t>(position, std::numeric_limits<std::uint32_t>::max()));
-    const std::uint32_t count = std::min(step, pending_.horizon) + 1;
+    const std::uint32_t count = std::min(step, pending_->horizon) + 1;
     evaluate_parts(count, streams);
-    return pending_.is_fold ? advance_fold(step, count, streams)
-                            : advance_machine(step, count, streams);
+    return pending_->is_fold ? advance_fold(step, count, streams)
+                             : advance_machine(step, count, streams);
 }
 
 void PendingEvaluator::evaluate_parts(std::uint32_t count, const std::vector<Value>& streams) {
-    for (std::size_t i = 0; i < pending_.parts.size(); ++i) evaluate_part(i, count, streams);
+    for (std::size_t i = 0; i < pending_->parts.size(); ++i) evaluate_part(i, count, streams);
 }
 
 void PendingEvaluator::evaluate_part(std::size_t index, std::uint32_t count,
                                      const std::vector<Value>& streams) {
-    const Pending::Part& part = pending_.parts[index];
+    const Pending::Part& part = pending_->parts[index];
     Readings& out = parts_[index];
     if (part.leaf != kNone) {
         auto& leaf = leaves_[index];
-        if (leaf.size() > pending_.horizon) leaf.erase(leaf.begin());
+        if (leaf.size() > pending_->horizon) leaf.erase(leaf.begin());
         leaf.push_back(streams[part.leaf]);
         std::transform(leaf.begin(), leaf.end(), out.begin(),
                        [](Value value) { return etlmon::settled(value); });
@@ -186,23 +169,23 @@ void PendingEvaluator::evaluate_part(std::size_t index, std::uint32_t count,
 
 etlmon::Reading PendingEvaluator::advance_fold(std::uint32_t step, std::uint32_t count,
                                                const std::vector<Value>& streams) {
-    const Pending::Part& fold = pending_.fold;
+    const Pending::Part& fold = pending_->fold;
     const etlmon::Reading* left =
         fold.operands.size() == 2 ? parts_[fold.operands[0]].data() : nullptr;
     const etlmon::Reading* right = parts_[fold.operands.back()].data();
     const auto [low, high] = fold.interval;
     if (fold.max)
         return etlmon::pending_from_start<etlmon::Seeking>(registers_[0], registers_[1], left,
-                                                           right, count, step, pending_.horizon,
+                                                           right, count, step, pending_->horizon,
                                                            low, high, streams[fold.unseen].high);
     return etlmon::pending_from_start<etlmon::Guarding>(registers_[0], registers_[1], left, right,
-                                                        count, step, pending_.horizon, low, high,
+                                                        count, step, pending_->horizon, low, high,
                                                         streams[fold.unseen].low);
 }
 
 etlmon::Reading PendingEvaluator::advance_machine(std::uint32_t step, std::uint32_t count,
                                                   const std::vector<Value>& streams) {
-    const Table& table = pending_.table;
+    const Table& table = pending_->table;
     const std::size_t width = table.guards.size();
     std::fill(guards_.begin(), guards_.end(), etlmon::settled(kTrue));
     for (std::uint32_t p = 0; p < count; ++p)
@@ -216,7 +199,7 @@ etlmon::Reading PendingEvaluator::advance_machine(std::uint32_t step, std::uint3
     const std::size_t states = registers_.size();
     return etlmon::pending_machine(registers_.data(), static_cast<std::uint32_t>(states),
                                    guards_.data(), static_cast<std::uint32_t>(width), count,
-                                   step >= pending_.horizon, table.transitions.data(),
+                                   step >= pending_->horizon, table.transitions.data(),
                                    table.ends.data(), table.owed.data(), weak_.data(),
                                    strong_.data(), scratch_.data(), values_.data());
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "library/etlc.h"
+#include "library/held.hpp"
 #include "library/session.hpp"
 
 namespace etlc::library {
@@ -80,22 +81,32 @@ etlc_status with_held(etlc_session number, const Work& work) noexcept {
     });
 }
 
-/// Calls `work(session)` in the same way.
+/// Calls `work(session)` in the same way, for a batch or not.
 template <class Work>
-etlc_status with_session(etlc_session number, const Work& work) noexcept {
+etlc_status with_any(etlc_session number, const Work& work) noexcept {
     return with_held(number, [&](Held& held) -> etlc_status { return work(*held); });
 }
 
-/// Returns the type of an input's elements.
-inline std::uint32_t type_of(const check::Input& input) {
-    switch (input.type) {
-        case check::InputType::boolean: return ETLC_BOOL;
-        case check::InputType::f16: return ETLC_F16;
-        case check::InputType::i8: return ETLC_I8;
-        case check::InputType::scalar:
-        case check::InputType::f32: break;
-    }
-    return ETLC_F32;
+/// Calls `work(session)` in the same way, for a session of one environment.
+template <class Work>
+etlc_status with_session(etlc_session number, const Work& work) noexcept {
+    return with_any(number, [&](Session& opened) -> etlc_status {
+        if (opened.batch() == nullptr) return work(opened);
+        return refuse(ETLC_WRONG_VALUE,
+                      "session {:#x} is a batch of {} environments: call the function for batches, "
+                      "or etlc_copy_environment()",
+                      number, opened.batch()->size());
+    });
+}
+
+/// Calls `work(batch, session)` in the same way, for a batch.
+template <class Work>
+etlc_status with_batch(etlc_session number, const Work& work) noexcept {
+    return with_any(number, [&](Session& opened) -> etlc_status {
+        if (opened.batch() != nullptr) return work(*opened.batch(), opened);
+        return refuse(ETLC_WRONG_VALUE, "session {:#x} is no batch: etlc_open_batch() opens one",
+                      number);
+    });
 }
 
 inline etlc_status refuse_null(const char* what) {
@@ -105,6 +116,9 @@ inline etlc_status refuse_null(const char* what) {
 inline etlc_status refuse_index(const char* what, std::uint64_t found, std::uint64_t count) {
     return refuse(ETLC_NO_SUCH, "there is no {} {}: the spec has {} of them", what, found, count);
 }
+
+/// Refuses a monitor that does not restart.
+etlc_status check_restarts(const Session& session, std::uint32_t monitor);
 
 /// Checks the struct_size that the caller has set.
 inline etlc_status check_size(std::uint32_t found, std::size_t expected, const char* what) {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "data/frames/reference.hpp"
-#include "library/call.hpp"
+#include "library/interface/call.hpp"
 
 namespace etlc::library {
 
@@ -139,7 +139,7 @@ etlc_status etlc_explain(etlc_session session, uint32_t monitor, uint32_t format
 
 etlc_status etlc_encoder_difference(etlc_session session, const char* encoder, uint32_t frame,
                                     const float* embedding, size_t elements, double* difference) {
-    return with_session(session, [&](Session& opened) -> etlc_status {
+    return with_any(session, [&](Session& opened) -> etlc_status {
         if (embedding == nullptr) return refuse_null("embedding");
         if (difference == nullptr) return refuse_null("difference");
         etlc_status refused = ETLC_OK;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "diag/render.hpp"
-#include "library/call.hpp"
+#include "library/interface/call.hpp"
 #include "library/open.hpp"
 #include "library/settings.hpp"
 #include "library/version.hpp"
@@ -104,12 +104,14 @@ std::unique_ptr<Session> open(const etlc_options& options, const Wish& wish, sou
     auto compiled = compile(file, wish.check, wish.plan, sink);
     if (!compiled) return nullptr;
     sink = told_here(sink);
-    return std::make_unique<Session>(file, std::move(*compiled), sink, options.history);
+    return std::make_unique<Session>(
+        std::make_shared<const Program>(file, std::move(*compiled), sink), options.history);
 }
 
 /// The size of etlc_options in each version of etlc.h.
 constexpr std::uint32_t kSizes[ETLC_API_VERSION + 1] = {0, offsetof(etlc_options, recorder),
-                                                        sizeof(etlc_options), sizeof(etlc_options)};
+                                                        sizeof(etlc_options), sizeof(etlc_options),
+                                                        sizeof(etlc_options)};
 
 /// Converts the caller's options to those of this version.
 etlc_status take_version(const etlc_options* options, etlc_options& own) {

@@ -4,7 +4,8 @@
 
 #include "check/model/fingerprint.hpp"
 #include "data/text/quote.hpp"
-#include "library/call.hpp"
+#include "library/interface/call.hpp"
+#include "library/samples.hpp"
 
 namespace etlc::library {
 
@@ -32,7 +33,7 @@ const std::string& name_of(Session& session, std::uint32_t kind, Index index) {
     switch (kind) {
         case ETLC_INPUTS: return session.model().inputs[index].name;
         case ETLC_MONITORS: return session.plan().monitors[index].name;
-        case ETLC_PREDICATES: return session.predicate_name(index);
+        case ETLC_PREDICATES: return session.program()->predicate_name(index);
         default: return session.model().lets[session.plan().lets[index].index].name;
     }
 }
@@ -49,7 +50,7 @@ using namespace etlc::library;
 extern "C" {
 
 etlc_status etlc_describe(etlc_session session, etlc_description* description) {
-    return with_session(session, [&](Session& opened) -> etlc_status {
+    return with_any(session, [&](Session& opened) -> etlc_status {
         if (const etlc_status failed = check_struct(description, "description")) return failed;
         const check::Model& model = opened.model();
         const check::Fingerprint origin = check::fingerprint(model);
@@ -67,13 +68,13 @@ etlc_status etlc_describe(etlc_session session, etlc_description* description) {
         out.data_hash = origin.data;
         out.thresholds_hash = origin.thresholds;
         out.name = model.name.c_str();
-        out.warnings = opened.warnings().c_str();
+        out.warnings = opened.program()->warnings().c_str();
         return ETLC_OK;
     });
 }
 
 etlc_status etlc_describe_input(etlc_session session, uint32_t input, etlc_input* description) {
-    return with_session(session, [&](Session& opened) -> etlc_status {
+    return with_any(session, [&](Session& opened) -> etlc_status {
         if (const etlc_status failed = check_struct(description, "description")) return failed;
         const std::vector<check::Input>& inputs = opened.model().inputs;
         if (input >= inputs.size()) return refuse_index("input", input, inputs.size());
@@ -86,7 +87,7 @@ etlc_status etlc_describe_input(etlc_session session, uint32_t input, etlc_input
         out.high = of.range.high;
         out.scale = of.scale;
         out.is_embedding = of.is_embedding() ? 1 : 0;
-        out.is_used = opened.is_used(input) ? 1 : 0;
+        out.is_used = opened.program()->is_used(input) ? 1 : 0;
         out.stale_after = of.stale_after;
         out.name = of.name.c_str();
         return ETLC_OK;
@@ -95,7 +96,7 @@ etlc_status etlc_describe_input(etlc_session session, uint32_t input, etlc_input
 
 etlc_status etlc_describe_monitor(etlc_session session, uint32_t monitor,
                                   etlc_monitor* description) {
-    return with_session(session, [&](Session& opened) -> etlc_status {
+    return with_any(session, [&](Session& opened) -> etlc_status {
         if (const etlc_status failed = check_struct(description, "description")) return failed;
         const std::vector<plan::Monitor>& monitors = opened.plan().monitors;
         if (monitor >= monitors.size()) return refuse_index("monitor", monitor, monitors.size());
@@ -105,31 +106,31 @@ etlc_status etlc_describe_monitor(etlc_session session, uint32_t monitor,
         out.restarts = restarts_of(of);
         out.horizon = of.horizon;
         out.name = of.name.c_str();
-        out.formula = opened.formula(monitor).c_str();
+        out.formula = opened.program()->formula(monitor).c_str();
         return ETLC_OK;
     });
 }
 
 etlc_status etlc_describe_predicate(etlc_session session, uint32_t predicate,
                                     etlc_predicate* description) {
-    return with_session(session, [&](Session& opened) -> etlc_status {
+    return with_any(session, [&](Session& opened) -> etlc_status {
         if (const etlc_status failed = check_struct(description, "description")) return failed;
         const std::vector<check::Predicate>& predicates = opened.model().predicates;
         if (predicate >= predicates.size())
             return refuse_index("predicate", predicate, predicates.size());
         const check::Predicate& of = predicates[predicate];
         etlc_predicate& out = *description;
-        out.is_measured = opened.is_measured(predicate) ? 1 : 0;
+        out.is_measured = opened.program()->is_measured(predicate) ? 1 : 0;
         out.is_adaptive = of.threshold.adaptation ? 1 : 0;
         out.has_nearest = of.plain_distance() ? 1 : 0;
-        out.name = opened.predicate_name(predicate).c_str();
-        out.text = opened.predicate_text(predicate).c_str();
+        out.name = opened.program()->predicate_name(predicate).c_str();
+        out.text = opened.program()->predicate_text(predicate).c_str();
         return ETLC_OK;
     });
 }
 
 etlc_status etlc_describe_let(etlc_session session, uint32_t let, const char** name) {
-    return with_session(session, [&](Session& opened) -> etlc_status {
+    return with_any(session, [&](Session& opened) -> etlc_status {
         if (name == nullptr) return refuse_null("name");
         const std::size_t count = count_of(opened, ETLC_LETS);
         if (let >= count) return refuse_index("let", let, count);
@@ -139,7 +140,7 @@ etlc_status etlc_describe_let(etlc_session session, uint32_t let, const char** n
 }
 
 etlc_status etlc_find(etlc_session session, uint32_t kind, const char* name, uint32_t* index) {
-    return with_session(session, [&](Session& opened) -> etlc_status {
+    return with_any(session, [&](Session& opened) -> etlc_status {
         if (name == nullptr) return refuse_null("name");
         if (index == nullptr) return refuse_null("index");
         if (kind > ETLC_LETS)

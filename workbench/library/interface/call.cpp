@@ -1,4 +1,4 @@
-#include "library/call.hpp"
+#include "library/interface/call.hpp"
 
 #include <exception>
 #include <new>
@@ -64,6 +64,15 @@ etlc_status Message::say_what_failed() noexcept {
         text_ = "internal error";
     }
     return ETLC_INTERNAL;
+}
+
+etlc_status check_restarts(const Session& session, std::uint32_t monitor) {
+    const std::vector<plan::Monitor>& monitors = session.plan().monitors;
+    if (monitor >= monitors.size()) return refuse_index("monitor", monitor, monitors.size());
+    if (monitors[monitor].restarts != check::Restarts::never) return ETLC_OK;
+    return refuse(ETLC_WRONG_VALUE,
+                  "monitor '{}' does not restart: write 'restartable monitor {}' in the spec",
+                  monitors[monitor].name, monitors[monitor].name);
 }
 
 }  // namespace etlc::library

@@ -1,0 +1,89 @@
+#include "library/interface/checks.hpp"
+
+#include "library/interface/call.hpp"
+#include "library/samples.hpp"
+
+namespace etlc::library {
+
+namespace {
+
+constexpr const char* kTypes[] = {"ETLC_F32", "ETLC_BOOL", "ETLC_F16", "ETLC_I8"};
+constexpr std::uint32_t kBytes[] = {4, 1, 2, 1};
+
+/// Checks the type and number of an input's elements.
+etlc_status check_elements(const check::Input& input, std::uint32_t type, std::uint32_t count) {
+    if (type != type_of(input))
+        return refuse(ETLC_WRONG_TYPE, "input '{}' is given elements of type {}, expected {} ({})",
+                      input.name, type, type_of(input), kTypes[type_of(input)]);
+    if (count != input.dimension)
+        return refuse(ETLC_WRONG_NUMBER, "input '{}' is given {} elements, expected {}", input.name,
+                      count, input.dimension);
+    return ETLC_OK;
+}
+
+etlc_status check_aligned(const check::Input& input, const void* data, std::int64_t stride) {
+    const auto place = reinterpret_cast<std::uintptr_t>(data);
+    const std::uint32_t bytes = kBytes[type_of(input)];
+    if (place % bytes == 0 && stride % static_cast<std::int64_t>(bytes) == 0) return ETLC_OK;
+    return refuse(ETLC_WRONG_VALUE,
+                  "input '{}' begins at {:#x} with a stride of {} bytes: its elements of {} bytes "
+                  "are not aligned",
+                  input.name, place, stride, bytes);
+}
+
+etlc_status check_bool(const check::Input& input, const void* data) {
+    const std::uint8_t found = *static_cast<const std::uint8_t*>(data);
+    if (input.type != check::InputType::boolean || found <= 1) return ETLC_OK;
+    return refuse(ETLC_WRONG_VALUE, "input '{}' is the bool {}, expected 0 or 1", input.name,
+                  found);
+}
+
+}  // namespace
+
+etlc_status check_count(const Session& session, const void* samples, std::size_t count,
+                        const char* what) {
+    const std::size_t inputs = session.model().inputs.size();
+    if (count != inputs)
+        return refuse(ETLC_WRONG_NUMBER, "there are {} {}, expected {}: one of each input", count,
+                      what, inputs);
+    return samples == nullptr && inputs > 0 ? refuse_null(what) : etlc_status{ETLC_OK};
+}
+
+etlc_status check_sample(const check::Input& input, const etlc_sample& sample) {
+    if (sample.data == nullptr) return ETLC_OK;
+    if (const etlc_status failed = check_elements(input, sample.type, sample.count)) return failed;
+    if (const etlc_status failed = check_aligned(input, sample.data, 0)) return failed;
+    return check_bool(input, sample.data);
+}
+
+etlc_status check_column(const check::Input& input, const etlc_column& column,
+                         std::uint64_t steps) {
+    if (column.data == nullptr) return ETLC_OK;
+    if (const etlc_status failed = check_elements(input, column.type, column.count)) return failed;
+    if (const etlc_status failed = check_aligned(input, column.data, column.stride)) return failed;
+    if (input.type != check::InputType::boolean) return ETLC_OK;
+    const auto* flag = static_cast<const std::uint8_t*>(column.data);
+    for (std::uint64_t step = 0; step < steps; ++step, flag += column.stride) {
+        if (column.present != nullptr && column.present[step] == 0) continue;
+        if (const etlc_status failed = check_bool(input, flag)) return failed;
+    }
+    return ETLC_OK;
+}
+
+etlc_status check_grid(const check::Input& input, const etlc_grid& grid, std::uint64_t rows,
+                       std::uint64_t steps) {
+    if (grid.data == nullptr) return ETLC_OK;
+    if (const etlc_status failed = check_elements(input, grid.type, grid.count)) return failed;
+    for (const std::int64_t stride : {grid.stride, grid.step_stride})
+        if (const etlc_status failed = check_aligned(input, grid.data, stride)) return failed;
+    if (input.type != check::InputType::boolean) return ETLC_OK;
+    for (std::uint64_t row = 0; row < rows; ++row)
+        for (std::uint64_t step = 0; step < steps; ++step) {
+            const void* const flag = at(grid, steps, row, step);
+            if (flag == nullptr) continue;
+            if (const etlc_status failed = check_bool(input, flag)) return failed;
+        }
+    return ETLC_OK;
+}
+
+}  // namespace etlc::library
