@@ -38,7 +38,7 @@ void show(const sort::Verdicts& v, Line& to) noexcept {
     to.verdict(v.sorted), to.verdict(v.found);
 }
 void show(const drift::Verdicts& v, Line& to) noexcept {
-    to.verdict(v.stops), to.verdict(v.slips), to.verdict(v.eases);
+    to.verdict(v.stops), to.verdict(v.slips), to.verdict(v.patient), to.verdict(v.eases);
 }
 
 // Like a driver: fills buffers that live as long as the loop, and passes views of them.

@@ -76,7 +76,7 @@ evaluate::Judgement judged(const std::string& spec, const std::vector<std::strin
 
 evaluate::Evaluation evaluated(const std::string& spec, const std::vector<std::string>& episodes,
                                unsigned jobs, const std::vector<episodes::Variant>& variants) {
-    return evaluate::summarise(judged(spec, episodes, jobs, variants));
+    return evaluate::summarise(judged(spec, episodes, jobs, variants), jobs);
 }
 
 std::vector<std::string> mistakes(const std::string& spec,

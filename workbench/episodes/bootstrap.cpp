@@ -1,7 +1,11 @@
 #include "episodes/bootstrap.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <exception>
+#include <thread>
 
+#include "episodes/parallel.hpp"
 #include "episodes/random.hpp"
 
 namespace etlc::episodes {
@@ -30,9 +34,9 @@ private:
     std::uint64_t inverse_;
 };
 
-/// Returns the number of resamples in a batch. Larger batches read frames less often; eight are
+/// Returns the number of resamples that are drawn together. More read frames less often; eight are
 /// enough to keep a processor busy with sums.
-std::size_t batch_of(std::size_t episodes) {
+std::size_t round_of(std::size_t episodes) {
     constexpr std::size_t kMemory = std::size_t{4} << 20U;
     constexpr std::size_t kLeast = 8;
     return std::clamp<std::size_t>(kMemory / (episodes * sizeof(Weights::Weight)), kLeast,
@@ -53,17 +57,39 @@ Weights draw(Random& random, std::size_t episodes, std::size_t resamples) {
     return weights;
 }
 
+/// Draws the next resamples in a batch for each thread.
+std::vector<Weights> draw_batches(Random& random, std::size_t episodes, std::size_t resamples,
+                                  std::size_t batches) {
+    std::vector<Weights> drawn;
+    const std::size_t batch = (resamples + batches - 1) / batches;
+    for (std::size_t begin = 0; begin < resamples; begin += batch)
+        drawn.push_back(draw(random, episodes, std::min(batch, resamples - begin)));
+    return drawn;
+}
+
 }  // namespace
 
-Bootstrap::Bootstrap(std::size_t episodes) : whole_(episodes, 1, 1) {}
+Bootstrap::Bootstrap(std::size_t episodes, unsigned jobs)
+    : whole_(episodes, 1, 1),
+      jobs_(std::max(1U, jobs > 0 ? jobs : std::thread::hardware_concurrency())) {}
 
-void Bootstrap::for_each_batch(const std::function<void(const Weights&)>& visit) const {
+void Bootstrap::for_each_round(const std::function<void(const Batches&)>& visit) const {
     const std::size_t episodes = whole_.episodes();
     if (episodes == 0) return;
     Random random(kSeed);
-    const std::size_t batch = batch_of(episodes);
-    for (std::size_t begin = 0; begin < kResamples; begin += batch)
-        visit(draw(random, episodes, std::min(batch, kResamples - begin)));
+    const std::size_t round = round_of(episodes);
+    if (round == kResamples) {
+        if (drawn_.empty()) drawn_ = draw_batches(random, episodes, round, jobs_);
+        return visit(drawn_);
+    }
+    for (std::size_t begin = 0; begin < kResamples; begin += round)
+        visit(draw_batches(random, episodes, std::min(round, kResamples - begin), jobs_));
+}
+
+void Bootstrap::for_each_batch(const std::function<void(const Weights&)>& visit) const {
+    for_each_round([&](const Batches& batches) {
+        for (const Weights& batch : batches) visit(batch);
+    });
 }
 
 Figure Bootstrap::figure(
@@ -72,9 +98,15 @@ Figure Bootstrap::figure(
     if (!result.value || whole_.episodes() < 2) return result;
     std::vector<std::optional<double>> values;
     values.reserve(kResamples);
-    for_each_batch([&](const Weights& weights) {
-        const auto some = statistic(weights);
-        values.insert(values.end(), some.begin(), some.end());
+    for_each_round([&](const Batches& batches) {
+        std::vector<std::vector<std::optional<double>>> some(batches.size());
+        std::atomic<std::size_t> next = 0;
+        const std::exception_ptr failure = in_threads(jobs_, batches.size(), [&] {
+            for (std::size_t i = next++; i < batches.size(); i = next++)
+                some[i] = statistic(batches[i]);
+        });
+        if (failure) std::rethrow_exception(failure);
+        for (const auto& batch : some) values.insert(values.end(), batch.begin(), batch.end());
     });
     result.interval = percentile_interval(values);
     return result;

@@ -27,22 +27,31 @@ struct Figure {
 
 /// Efron's percentile intervals: the 2.5 % and 97.5 % quantiles over kResamples draws of episodes
 /// with replacement, since frames of one episode are not independent. The seed is fixed, so the
-/// same data give the same interval on every machine and with any number of threads.
+/// same data give the same interval on every machine and with any number of threads. Resamples that
+/// fit into memory at once are drawn once for all figures.
 class Bootstrap {
 public:
-    explicit Bootstrap(std::size_t episodes);
+    /// `jobs`: threads that compute a figure; 0: one per core.
+    explicit Bootstrap(std::size_t episodes, unsigned jobs = 1);
 
     /// Calls `visit` with all resamples in batches: always the same ones, in the same order.
     void for_each_batch(const std::function<void(const Weights&)>& visit) const;
     /// Returns weights that count every episode once.
     const Weights& whole() const { return whole_; }
 
-    /// Computes a figure. `statistic(weights)` returns its value for each resample, in order.
+    /// Computes a figure. `statistic(weights)` returns its value for each resample, in order. It is
+    /// called once for `whole()`, and then by several threads at a time.
     Figure figure(
         const std::function<std::vector<std::optional<double>>(const Weights&)>& statistic) const;
 
 private:
+    using Batches = std::vector<Weights>;
+    /// Calls `visit` with batches of which as many as fit into memory are drawn together.
+    void for_each_round(const std::function<void(const Batches&)>& visit) const;
+
     Weights whole_;
+    unsigned jobs_;
+    mutable Batches drawn_;  ///< all resamples, if they fit into memory
 };
 
 /// Returns the interval of the defined values, which need not be sorted.

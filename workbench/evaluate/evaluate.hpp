@@ -174,7 +174,8 @@ struct Evaluation {
 std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& request,
                                diag::Sink& sink);
 
-Evaluation summarise(const Judgement& judgement);
+/// `jobs`: threads; 0: one per core. The result does not depend on it.
+Evaluation summarise(const Judgement& judgement, unsigned jobs);
 
 /// A figure of each resample of the episodes.
 using Statistic = std::function<std::vector<std::optional<double>>(const Weights&)>;

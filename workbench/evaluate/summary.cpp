@@ -198,7 +198,7 @@ std::vector<std::pair<std::string, Rates>> baselines(const Score& score) {
     return all;
 }
 
-Evaluation summarise(const Judgement& judgement) {
+Evaluation summarise(const Judgement& judgement, unsigned jobs) {
     Evaluation result;
     result.episodes = judgement.episodes.size();
     result.step_seconds = judgement.step_seconds;
@@ -218,7 +218,7 @@ Evaluation summarise(const Judgement& judgement) {
         result.frames += episode.frames;
         result.leaked += evidence.of(episode) ? 1 : 0;
     });
-    const Bootstrap bootstrap(judgement.episodes.size());
+    const Bootstrap bootstrap(judgement.episodes.size(), jobs);
     for (std::size_t i = 0; i < judgement.predicates.size(); ++i)
         result.predicates.push_back(predicate_score(bootstrap, judgement, i));
     for (std::size_t m = 0; m < judgement.monitors.size(); ++m)

@@ -224,7 +224,7 @@ std::string deflated(std::string_view bytes) {
     std::string out(size, '\0');
     if (compress2(reinterpret_cast<Bytef*>(out.data()), &size,
                   reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(),
-                  Z_BEST_COMPRESSION) != Z_OK)
+                  Z_DEFAULT_COMPRESSION) != Z_OK)
         throw std::bad_alloc();  // the only way in which it can fail here
     out.resize(size);
     return out;

@@ -222,7 +222,8 @@ std::optional<std::string> page(const Material& material, const Request& request
     if (material.judgement != nullptr) {
         judged = evaluate::by_episode(*material.judgement);
         evaluate::SideBySide one;
-        one.specs.push_back({material.file.path(), evaluate::summarise(*material.judgement), {}});
+        one.specs.push_back(
+            {material.file.path(), evaluate::summarise(*material.judgement, request.jobs), {}});
         figures = in_script(evaluate::json(one));
     }
     const Totals none{0, 0, std::vector<plan::SampleCounts>(plan.inputs.size())};

@@ -70,7 +70,7 @@ std::optional<evaluate::SideBySide> judged(const std::vector<Candidate>& candida
                 ? judge_in_folds(one.spec.file, one.model(), request, asked, folds, found)
                 : judge_as_it_is(*one.compiled, path, request, asked, found);
         std::optional<evaluate::Evaluation> summary;
-        if (judgement) summary = evaluate::summarise(*judgement);
+        if (judgement) summary = evaluate::summarise(*judgement, asked.jobs);
         if (summary) evaluate::warn_of_doubts(one.model(), *summary, found);
         one.spec.sink.add(found, candidates.size() > 1 ? fmt::format("for the spec {}", path) : "");
         if (!summary) return std::nullopt;
