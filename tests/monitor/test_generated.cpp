@@ -28,29 +28,32 @@ using Formulas = SpecShape::Formulas;
 /// |value| <= 1, relative above.
 constexpr double kRounding = 1e-5;
 
+/// Whose traces an exhaustive subject gets.
+enum class Inputs : std::uint8_t { two, two_with_gaps, one };
+
 struct Subject {
     std::string spec;
     bool exact = true;
     bool exhaustive = false;
     check::Values values = check::Values::robustness;
-    bool of_one_input = false;
+    Inputs inputs = Inputs::two;
 };
 
 /// Predicates over earlier numbers and earlier points.
 std::vector<Subject> past_subjects() {
     std::vector<Subject> result;
-    for (const bool points : {false, true})
-        for (const check::Values values : {check::Values::robustness, check::Values::boolean})
-            for (const std::size_t inputs : {1, 2}) {
-                PastShape shape{.points = points, .inputs = inputs};
-                if (values == check::Values::boolean) shape.kind = "repeating monitor";
-                if (inputs == 2) shape.of_inputs = " hold 1";
-                const std::string name =
-                    fmt::format("earlier_{}_{}_{}", points ? "points" : "numbers", inputs,
-                                values == check::Values::boolean ? "boolean" : "robustness");
-                result.push_back(
-                    {exhaustive_past_spec(name, shape), true, true, values, inputs == 1});
-            }
+    for (const bool points : {false, true}) {
+        const std::string name = points ? "earlier_points" : "earlier_numbers";
+        result.push_back({exhaustive_past_spec(name, {.points = points}), true, true,
+                          check::Values::robustness, Inputs::one});
+        result.push_back({exhaustive_past_spec(name + "_repeating",
+                                               {.points = points, .kind = "repeating monitor"}),
+                          true, true, check::Values::boolean, Inputs::one});
+        result.push_back(
+            {exhaustive_past_spec(name + "_of_two",
+                                  {.points = points, .inputs = 2, .of_inputs = " hold 1"}),
+             true, true, check::Values::robustness, Inputs::two_with_gaps});
+    }
     return result;
 }
 
@@ -102,8 +105,10 @@ std::vector<Request> requests_for(const check::Model& model, std::uint32_t spec,
     std::vector<Request> result;
     if (subject.exhaustive) {
         for (const bool gaps : {false, true}) {
-            const AllTraces traces = subject.of_one_input ? AllTraces(gaps ? 5 : 9, gaps, 1)
-                                                          : AllTraces(gaps ? 3 : 5, gaps);
+            if (!gaps && subject.inputs == Inputs::two_with_gaps) continue;
+            const AllTraces traces = subject.inputs == Inputs::one
+                                         ? AllTraces(gaps ? 5 : 8, gaps, 1)
+                                         : AllTraces(gaps ? 3 : 5, gaps);
             for (std::size_t n = 0; n < traces.size(); n += 2)
                 result.push_back({spec, traces[n], traces[std::min(n + 1, traces.size() - 1)]});
         }
