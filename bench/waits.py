@@ -20,7 +20,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 EPISODES, FRAMES, DIMENSION = 100, 300, 768  # 92 MB
 DRIVES, STEPS = 1000, 300
 FIT = {
-    "medoids": ("target places = fitted(medoids, k = 8, of = z, where = near);", "min l2(z, places)"),
+    "medoids": (
+        "target places = fitted(medoids, k = 8, of = z, where = near);",
+        "min l2(z, places)",
+    ),
     "projection": (
         "projection P = fitted(pca, r = 16, of = z, where = true);\n"
         "target places = fitted(mean, of = P(z), where = near);",
