@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "data/text/quote.hpp"
 
 namespace etlc::data {
@@ -16,8 +18,15 @@ std::uint32_t begins_character(char c) {
     return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U ? 1 : 0;
 }
 
+/// The bytes that end a cell without quotes are below those of numbers and letters.
 bool ends_plain(char c) {
-    return c == ',' || c == '\n' || c == '\r' || c == '"';
+    return static_cast<unsigned char>(c) <= ',' && (c == ',' || c == '\n' || c == '\r' || c == '"');
+}
+
+std::uint32_t characters(std::string_view bytes) {
+    std::uint32_t count = 0;
+    for (const char c : bytes) count += begins_character(c);
+    return count;
 }
 
 }  // namespace
@@ -45,20 +54,16 @@ diag::Result<bool> CsvReader::next() {
     return true;
 }
 
-/// Returns the next byte without consuming it; kEnd at the end, kError where the source failed.
-int CsvReader::peek() {
-    if (at_ == filled_) {
-        if (failure_) return kError;
-        const auto got = source_->read(buffer_.data(), buffer_.size());
-        if (!got) {
-            failure_ = got.failure();
-            return kError;
-        }
-        at_ = 0;
-        filled_ = *got;
-        if (filled_ == 0) return kEnd;
+int CsvReader::peek_further() {
+    if (failure_) return kError;
+    const auto got = source_->read(buffer_.data(), buffer_.size());
+    if (!got) {
+        failure_ = got.failure();
+        return kError;
     }
-    return static_cast<unsigned char>(buffer_[at_]);
+    at_ = 0;
+    filled_ = *got;
+    return filled_ == 0 ? kEnd : static_cast<unsigned char>(buffer_[0]);
 }
 
 void CsvReader::advance() {
@@ -123,13 +128,14 @@ void CsvReader::read_quoted() {
 
 void CsvReader::read_plain() {
     Cell& cell = cells_.back();
-    for (int c = peek(); c >= 0 && !ends_plain(static_cast<char>(c)); c = peek()) {
-        const std::size_t begin = at_;
-        while (at_ < filled_ && !ends_plain(buffer_[at_])) {
-            column_ += begins_character(buffer_[at_]);
-            ++at_;
-        }
-        row_.append(buffer_.data() + begin, at_ - begin);
+    while (peek() >= 0) {
+        const char* const begin = buffer_.data() + at_;
+        const char* const filled = buffer_.data() + filled_;
+        const char* const end = std::find_if(begin, filled, ends_plain);
+        column_ += characters({begin, end});
+        row_.append(begin, end);
+        at_ += static_cast<std::size_t>(end - begin);
+        if (end != filled) break;
         check_length();
         if (failure_) return;
     }
@@ -144,11 +150,9 @@ void CsvReader::read_plain() {
     while (cell.begin < cell.end && blank(cell.end - 1)) --cell.end;
 }
 
-/// Cells count as well as bytes, since a row of commas holds no text.
-void CsvReader::check_length() {
-    if (row_.size() + cells_.size() > kMaxRowBytes)
-        fail(fmt::format("row is longer than {} bytes, the most that is read", kMaxRowBytes),
-             row_line_, 1);
+void CsvReader::fail_length() {
+    fail(fmt::format("row is longer than {} bytes, the most that is read", kMaxRowBytes), row_line_,
+         1);
 }
 
 void CsvReader::skip_byte_order_mark() {

@@ -46,13 +46,19 @@ private:
     static constexpr int kEnd = -1;
     static constexpr int kError = -2;
 
-    int peek();
+    /// Returns the next byte without consuming it; kEnd at the end, kError where the source failed.
+    int peek() { return at_ < filled_ ? static_cast<unsigned char>(buffer_[at_]) : peek_further(); }
+    int peek_further();
     void advance();
     bool take_line_end();
     void read_cell();
     void read_quoted();
     void read_plain();
-    void check_length();
+    /// Cells count as well as bytes, since a row of commas holds no text.
+    void check_length() {
+        if (row_.size() + cells_.size() > kMaxRowBytes) fail_length();
+    }
+    void fail_length();
     void skip_byte_order_mark();
     void fail(std::string message, std::uint32_t line, std::uint32_t column);
 
