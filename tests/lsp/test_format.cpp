@@ -60,6 +60,11 @@ TEST(Format, CommentsStayBetweenTheirWords) {
     }
 }
 
+TEST(Format, LineEndsWithinCommentsDoNotCount) {
+    const std::string text = "spec /* c\n*/ c; input p : bool;\r\nmonitor m = p; // the end\r\n";
+    EXPECT_EQ(mistake_in_format(text), "");
+}
+
 std::string format(const std::string& text) {
     return formatted(source::File("", text)).value_or("unreadable");
 }

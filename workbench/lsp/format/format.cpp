@@ -232,6 +232,21 @@ std::size_t characters(std::string_view text) {
     }));
 }
 
+/// Whether the first line outside of comments, which stay as they are, ends with a carriage return.
+bool has_carriage_returns(std::string_view text) {
+    for (std::size_t at = 0; at < text.size();) {
+        const std::string_view two = text.substr(at, 2);
+        if (text[at] == '\n') return at > 0 && text[at - 1] == '\r';
+        if (two == "//" || two == "/*")
+            at = end_of_comment(text, at, two == "//");
+        else if (text[at] == '"')
+            at = std::min(text.size() - 1, text.find_first_of("\"\n", at + 1)) + 1;
+        else
+            ++at;
+    }
+    return false;
+}
+
 /// A declaration or a separate comment, with the comments that follow on its line.
 struct Line {
     std::string text;
@@ -242,12 +257,8 @@ struct Line {
 
 class Formatter {
 public:
-    explicit Formatter(const source::File& file) : file_(file) {
-        const std::size_t first = file.text().find('\n');
-        const bool carriage_return =
-            first != std::string_view::npos && first > 0 && file.text()[first - 1] == '\r';
-        line_end_ = carriage_return ? "\r\n" : "\n";
-    }
+    explicit Formatter(const source::File& file)
+        : file_(file), line_end_(has_carriage_returns(file.text()) ? "\r\n" : "\n") {}
 
     std::string run(const std::vector<std::string>& canonical) {
         const auto declarations = declarations_of(file_);

@@ -4,8 +4,8 @@
 // Keeps true: the sizes are the same on every target.
 #pragma once
 
-#include "etlmon/temporal/boolean_window.hpp"
 #include "etlmon/past/count.hpp"
+#include "etlmon/temporal/boolean_window.hpp"
 #include "etlmon/temporal/delay.hpp"
 #include "etlmon/temporal/sourced.hpp"
 #include "etlmon/temporal/window.hpp"
