@@ -30,8 +30,8 @@ class Ambiguous:
         )
 
     def __eq__(self, other: object) -> bool:
-        if type(other) is type(self):
-            return self._content() == other._content()  # type: ignore[attr-defined]
+        if isinstance(other, Ambiguous) and type(other) is type(self):
+            return bool(self._content() == other._content())
         if isinstance(other, (*_VALUES, Ambiguous)):
             raise AmbiguousError(
                 f"{self._shown()} is compared with {other!r}: compare {self._ask}"
@@ -43,7 +43,7 @@ class Ambiguous:
 
     def _content(self) -> tuple[Any, ...]:
         """Returns the values to compare: for a dataclass all its fields."""
-        return tuple(getattr(self, field.name) for field in fields(self))  # type: ignore[arg-type]
+        return tuple(getattr(self, field.name) for field in fields(self))
 
     def _shown(self) -> str:
         kind = type(self).__name__

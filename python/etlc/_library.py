@@ -97,7 +97,7 @@ class Counts(ctypes.Structure):
     _fields_ = [("missing", c_uint64), ("out_of_range", c_uint64), ("held", c_uint64)]
 
 
-_ARGUMENTS: dict[str, list[Any]] = {
+_ARGUMENTS: dict[str, list[Any] | None] = {
     "etlc_open": [POINTER(Options), POINTER(c_uint64)],
     "etlc_close": [c_uint64],
     "etlc_describe": [c_uint64, POINTER(Description)],

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Iterable, Mapping, Union
 import numpy as np
 
 from ._library import call, library
+from ._types import Array
 from .description import Described, Measurements
 from .errors import InputError
 from .grids import Grids, joined, warn_of_absent
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from .monitor import Monitor
 
 #: Some environments: a bool for each, or the numbers of some; None: all.
-Which = Union[None, int, Iterable[int], np.ndarray]
+Which = Union[None, int, Iterable[int], Array]
 
 _MEASURED = np.dtype([("distance", "f4"), ("threshold", "f4"), ("nearest", "u4")])
 
@@ -98,7 +99,7 @@ class Batch(Described):
             warn_of_absent(self, given)
         return BatchEpisode(self.monitors, table)
 
-    def _run(self, grids: Grids, steps: int, table: np.ndarray) -> None:
+    def _run(self, grids: Grids, steps: int, table: Array) -> None:
         call(
             library.etlc_run_batch, self._session, grids.place, len(grids), steps, self._threads,
             table.ctypes.data, table.size,
@@ -164,7 +165,7 @@ class Batch(Described):
         return BatchVerdicts(self.monitors, table)
 
     @property
-    def steps(self) -> np.ndarray:
+    def steps(self) -> Array:
         """uint64: the number of steps of each environment since it was opened or reset."""
         steps = np.empty(self._size, "u8")
         call(library.etlc_steps_batch, self._session, steps.ctypes.data, self._size)
@@ -217,7 +218,7 @@ class Batch(Described):
             )
         return int(environment)
 
-    def _chosen(self, which: Which) -> tuple[np.ndarray | None, int | None, int]:
+    def _chosen(self, which: Which) -> tuple[Array | None, int | None, int]:
         """Returns a byte for each environment (None: all), its place and size."""
         if which is None:
             return None, None, self._size

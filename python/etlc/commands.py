@@ -57,7 +57,8 @@ def command_path() -> str:
     Raises:
         Error: none of these exists.
     """
-    path = os.environ.get("ETLC_COMMAND") or own("COMMAND", "bin/etlc") or shutil.which("etlc")
+    path: str | Path | None = os.environ.get("ETLC_COMMAND") or own("COMMAND", "bin/etlc")
+    path = path or shutil.which("etlc")
     if path is None:
         raise Error("there is no etlc: install it, or name it in ETLC_COMMAND")
     return os.fspath(path)
@@ -281,11 +282,11 @@ class _Ran:
 
 def _run(
     name: str,
-    specs: Iterable[str | os.PathLike[str]],
+    specs: Iterable[str | bytes | os.PathLike[str]],
     data: Paths | None,
     settings: Mapping[str, object] | None,
     names: Mapping[str, str] | None,
-    options: Mapping[str, object],
+    options: Mapping[str, Any],
     flags: Iterable[str] = (),
 ) -> _Ran:
     command = command_path()

@@ -12,6 +12,7 @@ from typing import Any, Union
 
 import numpy as np
 
+from ._types import Array
 from .errors import InputError
 
 
@@ -43,7 +44,7 @@ def _rounded(value: int) -> float:
     return size if value > 0 else -size
 
 
-def as_elements(name: str, value: Any, dtype: np.dtype, shape: tuple[int, ...]) -> np.ndarray:
+def as_elements(name: str, value: Any, dtype: np.dtype[Any], shape: tuple[int, ...]) -> Array:
     """Returns an embedding as an array of the type."""
     array = _array(name, value)
     if array.shape != shape:
@@ -66,12 +67,12 @@ class Rows:
     """
 
     lead: tuple[int, ...]
-    data: np.ndarray
-    present: np.ndarray | None
+    data: Array
+    present: Array | None
 
 
 def as_rows(
-    name: str, value: Any, dtype: np.dtype, shape: tuple[int, ...], *leads: tuple[Axis, ...]
+    name: str, value: Any, dtype: np.dtype[Any], shape: tuple[int, ...], *leads: tuple[Axis, ...]
 ) -> Rows:
     """Returns samples at steps: the caller's array if possible.
 
@@ -92,7 +93,7 @@ def as_rows(
             )
     present = None
     if masked:
-        mask = np.ma.getmaskarray(value)
+        mask: Array = np.ma.getmaskarray(value)  # type: ignore[no-untyped-call]
         present = np.ascontiguousarray(~mask.any(axis=tuple(range(axes, mask.ndim)))).view("u1")
     is_list = isinstance(value, (list, tuple))
     rows = array if array.dtype == dtype else _converted(name, array, dtype, is_list, present)
@@ -108,7 +109,7 @@ def _shape_text(shape: tuple[Axis, ...]) -> str:
     return f"({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
 
 
-def _array(name: str, value: Any) -> np.ndarray:
+def _array(name: str, value: Any) -> Array:
     """Converts to a numpy array. Refuses masked arrays, whose mask would be lost."""
     if isinstance(value, np.ma.MaskedArray):
         raise InputError(f"input {name!r} is a masked array; one that is missing is None")
@@ -129,8 +130,8 @@ def _array(name: str, value: Any) -> np.ndarray:
 
 
 def _converted(
-    name: str, array: np.ndarray, dtype: np.dtype, is_list: bool, present: np.ndarray | None = None
-) -> np.ndarray:
+    name: str, array: Array, dtype: np.dtype[Any], is_list: bool, present: Array | None = None
+) -> Array:
     kind = array.dtype.kind
     if array.size == 0 and is_list:  # an empty list has no type
         return array.astype(dtype)
@@ -151,7 +152,7 @@ def _converted(
     return array.astype(dtype)
 
 
-def _shown(array: np.ndarray) -> str:
+def _shown(array: Array) -> str:
     if array.shape == () and array.dtype.kind != "V":
         return f"{array.item()!r}"
     return f"an array of {array.dtype.name} and the shape {array.shape}"

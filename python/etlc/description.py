@@ -12,10 +12,11 @@ import numpy as np
 from . import _library
 from ._ambiguous import Ambiguous
 from ._library import BOOL, F16, F32, I8, call, decoded, library
+from ._types import Array
 from .errors import Error, InputError
 from .names import Names, no_such
 
-_DTYPES = {F32: np.dtype("f4"), BOOL: np.dtype("u1"), F16: np.dtype("f2"), I8: np.dtype("i1")}
+_DTYPES: dict[int, np.dtype[Any]] = {F32: np.dtype("f4"), BOOL: np.dtype("u1"), F16: np.dtype("f2"), I8: np.dtype("i1")}
 
 REFERENCE_FRAMES = 4
 
@@ -35,7 +36,7 @@ class Input:
     """
 
     name: str
-    dtype: np.dtype
+    dtype: np.dtype[Any]
     shape: tuple[int, ...]
     hold: int
     stale_after: int
@@ -76,9 +77,9 @@ class Measurements(Ambiguous):
             else None.
     """
 
-    distance: np.ndarray
-    threshold: np.ndarray
-    nearest: np.ndarray | None
+    distance: Array
+    threshold: Array
+    nearest: Array | None
 
     _ask = "its .distance, .threshold or .nearest"
 
@@ -113,7 +114,7 @@ class Described(Names):
         ]
         self._types: list[int] = [one.type for one in inputs]
         self._counts: list[int] = [one.dimension for one in inputs]
-        self._elements_of: list[np.dtype] = [_DTYPES[one.type] for one in inputs]
+        self._elements_of: list[np.dtype[Any]] = [_DTYPES[one.type] for one in inputs]
         #: The inputs by name, in the order of the spec.
         self.inputs: dict[str, Input] = {
             one.name.decode(): Input(

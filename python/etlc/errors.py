@@ -63,7 +63,8 @@ def diagnostics_of(text: str | bytes) -> list[Diagnostic]:
 
 def _note(note: dict[str, Any]) -> str:
     line, column = note.get("line") or 0, note.get("column") or 0
-    return (_place(note.get("file") or "", line, column) if line else "") + note["message"]
+    place = _place(note.get("file") or "", line, column) if line else ""
+    return place + str(note["message"])
 
 
 class Error(Exception):

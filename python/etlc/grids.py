@@ -8,6 +8,7 @@ from typing import Any, Mapping
 import numpy as np
 
 from . import _library, conversion
+from ._types import Array
 from .description import Described
 from .errors import EtlcWarning, InputError, warn
 from .names import no_such
@@ -24,7 +25,7 @@ class Grids:
         self, spec: Described, given: Mapping[str, Any], *leads: tuple[conversion.Axis, ...]
     ) -> None:
         self._columns = (_library.Grid * len(spec.inputs))()
-        self._kept: list[np.ndarray] = []  # what the grids point into
+        self._kept: list[Array] = []  # what the grids point into
         lead: tuple[int, ...] | None = None
         for name in given:
             if name not in spec.inputs:

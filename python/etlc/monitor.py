@@ -13,6 +13,7 @@ import numpy as np
 
 from . import _library, conversion
 from ._library import call, decoded, encoded, encoded_path, library
+from ._types import Array
 from .batch import Batch
 from .description import REFERENCE_FRAMES, Described, Input, Measurement
 from .errors import EtlcWarning, InputError, diagnostics_of, warn, warn_of
@@ -119,7 +120,7 @@ class Monitor(Described):
     def _make_room(self) -> None:
         """Allocates the samples and verdicts of a step."""
         self._samples = (_library.Sample * len(self.inputs))()
-        self._elements: list[np.ndarray] = []
+        self._elements: list[Array] = []
         self._put: dict[str, Callable[[Any], None]] = {}
         self._missing = set(self.inputs)
         for at, one in enumerate(self.inputs.values()):
@@ -140,13 +141,13 @@ class Monitor(Described):
         )  # fmt: skip
 
     def _scalar_put(
-        self, one: Input, elements: np.ndarray, sample: Any, place: int
+        self, one: Input, elements: Array, sample: Any, place: int
     ) -> Callable[[Any], None]:
         name, missing = one.name, self._missing
         is_bool = one.dtype == np.bool_
         as_element = conversion.as_bool if is_bool else conversion.as_number
         fast = (bool, np.bool_) if is_bool else (float, np.float32, np.float64)
-        view = memoryview(elements)
+        view: Any = memoryview(elements)  # type: ignore[arg-type]
 
         def put(value: Any) -> None:
             if value.__class__ in fast:
@@ -163,11 +164,11 @@ class Monitor(Described):
         return put
 
     def _embedding_put(
-        self, one: Input, elements: np.ndarray, sample: Any, place: int
+        self, one: Input, elements: Array, sample: Any, place: int
     ) -> Callable[[Any], None]:
         name, missing = one.name, self._missing
         shape, dtype = one.shape, elements.dtype
-        view = memoryview(elements)
+        view: Any = memoryview(elements)  # type: ignore[arg-type]
 
         def put(value: Any) -> None:
             if value.__class__ is np.ndarray and value.dtype == dtype and value.shape == shape:
@@ -400,7 +401,7 @@ class Monitor(Described):
         verdict = _library.VerdictStruct()
         call(library.etlc_let, self._session, at, byref(verdict))
         known = verdict.status & (_library.SATISFIED | _library.VIOLATED)
-        return verdict.robustness if known else float("nan")
+        return float(verdict.robustness) if known else float("nan")
 
     def sample_counts(self, name: str) -> dict[str, int]:
         """Counts the samples of an input that were missing, out_of_range and held.

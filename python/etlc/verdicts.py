@@ -10,6 +10,7 @@ import numpy as np
 
 from ._ambiguous import Ambiguous
 from ._library import ALARM, DECIDED, FINAL, FULFILLED, SATISFIED, VIOLATED
+from ._types import Array
 from .errors import AmbiguousError, InputError, NotKeptError
 from .names import Names, names_of, no_such
 
@@ -59,6 +60,7 @@ class Verdict(Ambiguous):
         self.robustness: float
         self.lower: float
         self.upper: float
+        self._status: int
         self.robustness, self.lower, self.upper, self._status = _VERDICT.unpack_from(raw, at)
 
     @property
@@ -212,55 +214,60 @@ class VerdictArrays(Ambiguous):
     __hash__ = None  # type: ignore[assignment]
     _ask = "its .alarm.any(), .satisfied, .violated, ..."
 
-    def __init__(self, name: str, table: np.ndarray) -> None:
+    def __init__(self, name: str, table: Array) -> None:
         self.name = name
-        self.robustness: np.ndarray = table["robustness"]
-        self.lower: np.ndarray = table["lower"]
-        self.upper: np.ndarray = table["upper"]
-        self._status: np.ndarray = table["status"]
+        self.robustness: Array = table["robustness"]
+        self.lower: Array = table["lower"]
+        self.upper: Array = table["upper"]
+        self._status: Array = table["status"]
 
     @property
-    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+    def bounds(self) -> tuple[Array, Array]:
         """(lower, upper)."""
         return self.lower, self.upper
 
     @property
-    def alarm(self) -> np.ndarray:
+    def alarm(self) -> Array:
         """bool: violated for good."""
-        return self._status & ALARM == ALARM
+        return self._has(ALARM)
 
     @property
-    def fulfilled(self) -> np.ndarray:
+    def fulfilled(self) -> Array:
         """bool: satisfied for good."""
-        return self._status & FULFILLED == FULFILLED
+        return self._has(FULFILLED)
 
     @property
-    def satisfied(self) -> np.ndarray:
+    def satisfied(self) -> Array:
         """bool."""
-        return self._status & SATISFIED != 0
+        return self._has(SATISFIED)
 
     @property
-    def violated(self) -> np.ndarray:
+    def violated(self) -> Array:
         """bool."""
-        return self._status & VIOLATED != 0
+        return self._has(VIOLATED)
 
     @property
-    def decided(self) -> np.ndarray:
+    def decided(self) -> Array:
         """bool."""
-        return self._status & DECIDED != 0
+        return self._has(DECIDED)
 
     @property
-    def unknown(self) -> np.ndarray:
+    def unknown(self) -> Array:
         """bool: a missing sample leaves it open."""
-        return self._status & (DECIDED | SATISFIED | VIOLATED) == DECIDED
+        return self._has(DECIDED, among=DECIDED | SATISFIED | VIOLATED)
 
     @property
-    def final(self) -> np.ndarray:
+    def final(self) -> Array:
         """bool."""
-        return self._status & FINAL != 0
+        return self._has(FINAL)
+
+    def _has(self, bits: int, among: int | None = None) -> Array:
+        """Returns where these bits are set, and of `among` no others."""
+        found: Array = (self._status & (bits if among is None else among)) == bits
+        return found
 
     @property
-    def status(self) -> np.ndarray:
+    def status(self) -> Array:
         """str: "satisfied", "violated", "unknown" or "undecided"."""
         places = [~self.decided, self.satisfied, self.violated]
         return np.select(places, ["undecided", "satisfied", "violated"], "unknown")
@@ -318,7 +325,7 @@ class RunVerdicts(VerdictArrays):
     _ask = "its .first_alarm, .alarm.any(axis=-1), .satisfied[..., -1], .violated[..., -1], ..."
 
     @property
-    def first_alarm(self) -> np.ndarray:
+    def first_alarm(self) -> Array:
         """int, per row: the first step with an alarm; -1 where there is none."""
         alarms = self.alarm
         if alarms.shape[-1] == 0:
@@ -351,7 +358,7 @@ class Tables(Ambiguous, Generic[Arrays]):
     _ask = "the .alarm.any(), .violated, ... of one of its monitors"
     _arrays: type[Arrays]
 
-    def __init__(self, monitors: tuple[str, ...], table: np.ndarray) -> None:
+    def __init__(self, monitors: tuple[str, ...], table: Array) -> None:
         self.monitors = monitors
         self.table = table
 

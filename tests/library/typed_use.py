@@ -1,0 +1,30 @@
+"""A program that uses the package, for the type checker alone."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+import etlc
+
+
+def stops_at(monitor: etlc.Monitor, frames: NDArray[np.float32]) -> int:
+    """Returns the step of the first alarm; -1 if there is none."""
+    for step, frame in enumerate(frames):
+        verdicts: etlc.Verdicts = monitor.step(z=frame)
+        alarm: bool = verdicts["keeps"].alarm
+        if alarm:
+            return step
+    return -1
+
+
+def best_of(monitor: etlc.Monitor, plans: NDArray[np.float32]) -> int:
+    """Returns the plan whose verdict has the greatest lower bound."""
+    ahead = monitor.ahead(z=plans)
+    return int(np.argmax(ahead["keeps"].lower[:, -1]))
+
+
+with etlc.Monitor(text="spec s; input z : f32[2]; monitor keeps = G true;") as opened:
+    batch = opened.batch(3)
+    print(batch.step(z=np.zeros((3, 2), "f4"))["keeps"].robustness.sum(), opened.steps)
+    print(stops_at(opened, np.zeros((4, 2), "f4")), best_of(opened, np.zeros((5, 4, 2), "f4")))
