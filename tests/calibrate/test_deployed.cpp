@@ -270,14 +270,15 @@ TEST_F(Deployed, IntervalsWithinAStepAreThoseAfterIt) {
     calibrate::PastIntervals pasts(model, *plan);
     std::size_t frame = 0;
     std::size_t compared = 0;
-    evaluator.after_pasts([&] { pasts.step(evaluator); });
-    evaluator.replace_predicate_values([&](Index p) {
-        const auto interval = calibrate::interval_of(model, p, evaluator, pasts);
-        EXPECT_TRUE(interval) << model.predicates[p].text;
-        EXPECT_EQ(interval->low, intervals[frame][p].low) << model.predicates[p].text;
-        EXPECT_EQ(interval->high, intervals[frame][p].high) << model.predicates[p].text;
-        ++compared;
-        return plan::Value{};
+    evaluator.after_pasts([&] {
+        pasts.step(evaluator);
+        for (const Index p : plan->predicates) {
+            const auto interval = calibrate::interval_of(model, p, evaluator, pasts);
+            if (!interval) continue;
+            EXPECT_EQ(interval->low, intervals[frame][p].low) << model.predicates[p].text;
+            EXPECT_EQ(interval->high, intervals[frame][p].high) << model.predicates[p].text;
+            ++compared;
+        }
     });
     for (frame = 0; frame < kSteps && !HasFailure(); ++frame) {
         std::vector<plan::Sample> samples;
