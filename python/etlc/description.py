@@ -16,7 +16,9 @@ from ._types import Array
 from .errors import Error, InputError
 from .names import Names, no_such
 
-_DTYPES: dict[int, np.dtype[Any]] = {F32: np.dtype("f4"), BOOL: np.dtype("u1"), F16: np.dtype("f2"), I8: np.dtype("i1")}
+_DTYPES: dict[int, np.dtype[Any]] = {
+    F32: np.dtype("f4"), BOOL: np.dtype("u1"), F16: np.dtype("f2"), I8: np.dtype("i1")
+}  # fmt: skip
 
 REFERENCE_FRAMES = 4
 
