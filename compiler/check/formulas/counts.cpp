@@ -85,8 +85,7 @@ private:
     }
 
     Index at_least(std::uint32_t number) {
-        const bool always = number == 0;
-        if (always || number > most_) {
+        if (number == 0 || number > most_) {
             c_.report(Code::past_form, written_.span,
                       fmt::format("a count within {} is a number from 0 to {}, so this comparison "
                                   "has the same answer at every step",

@@ -12,6 +12,7 @@ inline constexpr std::uint64_t kKeysPerValue = 2;
 /// For a window whose highs and lows differ: finding the blocks with highs of their own
 /// (etlmon::Parting).
 inline constexpr std::uint64_t kPartingComparisons = 6;
+/// The lists of greatest values that a step of a count combines, and their results.
 inline constexpr std::uint64_t kListsOnStack = 6;
 
 // Estimated code, measured on x86-64 and Cortex-M4 at -O2 and -Os and rounded up.
