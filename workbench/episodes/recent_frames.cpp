@@ -2,11 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "check/points/project.hpp"
 
 namespace etlc::episodes {
+
+namespace {
+
+/// Written so that compilers vectorise it.
+bool is_sound(const check::Input& input, const std::vector<float>& values) {
+    bool sound = true;
+    for (const float x : values) sound &= std::abs(x) <= std::numeric_limits<float>::max();
+    if (!sound || !input.has_range) return sound;
+    return std::all_of(values.begin(), values.end(),
+                       [&](float x) { return input.range.contains(x); });
+}
+
+}  // namespace
 
 RecentFrames::RecentFrames(const check::Model& model, const std::vector<Index>& points)
     : model_(model) {
@@ -19,6 +33,8 @@ RecentFrames::RecentFrames(const check::Model& model, const std::vector<Index>& 
 }
 
 void RecentFrames::push(const std::vector<plan::Sample>& samples) {
+    last_ = &samples;
+    if (most_ == 0) return;
     std::vector<plan::Sample> frame;
     if (frames_.size() > most_) {
         frame = std::move(frames_.back());  // its memory is used again
@@ -34,20 +50,24 @@ bool RecentFrames::read(Index point, std::vector<float>& values) const {
     return append(point, 0, values);
 }
 
+/// Returns nothing before the first frame.
+const std::vector<plan::Sample>* RecentFrames::at(std::size_t ago) const {
+    if (ago == 0) return last_;
+    return ago < frames_.size() ? &frames_[ago] : nullptr;
+}
+
 bool RecentFrames::append(Index index, std::size_t ago, std::vector<float>& values) const {
     const check::Point& point = model_.points[index];
     if (point.is_delayed()) return append(point.inner, ago + point.steps, values);
     if (point.is_joined())
         return std::all_of(point.parts.begin(), point.parts.end(),
                            [&](Index part) { return append(part, ago, values); });
-    if (ago >= frames_.size()) return false;
+    const std::vector<plan::Sample>* const frame = at(ago);
+    if (frame == nullptr) return false;
     for (const Index input : point.inputs) {
-        const plan::Sample& sample = frames_[ago][input];
+        const plan::Sample& sample = (*frame)[input];
         if (!sample.present) return false;
-        const check::Range& range = model_.inputs[input].range;
-        bool sound = true;  // without branches, so that it vectorises
-        for (const float x : sample.values) sound &= std::isfinite(x) && range.contains(x);
-        if (!sound) return false;
+        if (!is_sound(model_.inputs[input], sample.values)) return false;
         values.insert(values.end(), sample.values.begin(), sample.values.end());
     }
     return true;

@@ -19,8 +19,12 @@ public:
     RecentFrames(const check::Model& model, const std::vector<Index>& points);
 
     /// Begins another episode.
-    void reset() { frames_.clear(); }
-    /// Adds a frame; per input of the model its sample.
+    void reset() {
+        last_ = nullptr;
+        frames_.clear();
+    }
+    /// Adds a frame; per input of the model its sample. The samples of the last frame outlive the
+    /// calls of `read`: they are copied only where points of earlier steps need them.
     void push(const std::vector<plan::Sample>& samples);
     /// Reads a point at the last frame; returns false where a sample is missing, or not finite or
     /// in range.
@@ -29,10 +33,13 @@ public:
 private:
     bool append(Index point, std::size_t ago, std::vector<float>& values) const;
 
+    const std::vector<plan::Sample>* at(std::size_t ago) const;
+
     const check::Model& model_;
     std::vector<Index> inputs_;
     std::size_t most_ = 0;  ///< frames before the last that some point needs
-    std::deque<std::vector<plan::Sample>> frames_;  ///< the last one first
+    const std::vector<plan::Sample>* last_ = nullptr;
+    std::deque<std::vector<plan::Sample>> frames_;  ///< if most_ > 0; the last one first
 };
 
 }  // namespace etlc::episodes

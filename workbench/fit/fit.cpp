@@ -117,7 +117,8 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
         return std::nullopt;
     }
     Needs needs = needs_of(model);
-    const std::vector<Index> predicates = separating_predicates(model, *labelled);
+    std::vector<Index> predicates;
+    if (request.separation) predicates = separating_predicates(model, *labelled);
     for (const Index predicate : predicates)
         if (const auto need = plain_need(model, predicate)) needs.add(*need);
     std::vector<Measured> measured;

@@ -26,7 +26,10 @@ struct Request {
     episodes::ReadOptions reading;
     /// The reason of --allow-overlap; empty without the option.
     std::string allow_overlap;
-    unsigned jobs = 0;    ///< threads; 0: as many as the machine has
+    unsigned jobs = 0;  ///< threads; 0: as many as the machine has
+    /// Whether to measure how well predicates separate frames that were not fitted on, which takes
+    /// another fit without each fold.
+    bool separation = true;
     std::string version;  ///< version of etlc
     /// Called by any thread, one at a time.
     std::function<void(std::size_t done, std::size_t total)> progress;

@@ -54,6 +54,7 @@ Filled fill(const check::Model& model, Solver& solver, std::optional<std::size_t
 FilledAll fill_all(const check::Model& model, Solver& solver, bool all, bool without,
                    unsigned jobs) {
     const std::size_t folds = without ? solver.collection().folds.size() : 0;
+    solver.prepare(model, jobs);
     FilledAll result{{}, std::vector<Filled>(folds)};
     std::atomic<std::size_t> next = all ? 0 : 1;
     const std::exception_ptr failure = episodes::in_threads(jobs, folds + 1, [&] {
@@ -164,9 +165,7 @@ private:
         if (!std::isnan(delta))
             ranked.after.push_back({{upper ? -delta : delta, number, positive}, step});
         if (!plain_[i] || !fold.means[i] || !recent_.read(plain_[i]->point, point_)) return;
-        const Eigen::Map<const Eigen::VectorXf> point(point_.data(),
-                                                      static_cast<Eigen::Index>(point_.size()));
-        const double squared = (point.cast<double>() - *fold.means[i]).squaredNorm();
+        const double squared = squared_distance(point_, *fold.means[i]);
         ranked.before.push_back({{-static_cast<float>(squared), number, positive}, step});
     }
 

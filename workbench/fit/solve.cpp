@@ -299,7 +299,7 @@ Needs needs_of(const check::Model& model) {
     return result;
 }
 
-TakenPoints::TakenPoints(const Collection& collection, std::size_t need) {
+TakenPoints::TakenPoints(const Collection& collection, std::size_t need, unsigned jobs) {
     for (const std::vector<Collected>& fold : collection.folds)
         for (const Source& source : fold[need].frames) sources.push_back(&source);
     std::sort(sources.begin(), sources.end(), [](const Source* a, const Source* b) {
@@ -307,7 +307,7 @@ TakenPoints::TakenPoints(const Collection& collection, std::size_t need) {
     });
     Members all(sources.size());
     std::iota(all.begin(), all.end(), 0);
-    if (!all.empty()) points = Points(frames(all));
+    if (!all.empty()) points = Points(frames(all), jobs);
 }
 
 Matrix TakenPoints::frames(const Members& members) const {
@@ -352,8 +352,15 @@ const Variances& Solver::variances(const Part& part, Eigen::Index r) {
     return variances_.get({part, r}, [&] { return greatest_variances(moments(part), r); });
 }
 
-const TakenPoints& Solver::points(std::size_t need) {
-    return points_.get(need, [&] { return TakenPoints(collection_, need); });
+const TakenPoints& Solver::points(std::size_t need, unsigned jobs) {
+    return points_.get(need, [&] { return TakenPoints(collection_, need, jobs); });
+}
+
+void Solver::prepare(const check::Model& model, unsigned jobs) {
+    for (std::size_t i = 0; i < model.fitted.size(); ++i)
+        if (needs_.all[needs_.of[i]].kind == Need::Kind::frames &&
+            !model.points[model.fitted[i].point].is_projected())
+            points(needs_.of[i], jobs);
 }
 
 std::variant<Solution, Refusal> Solver::solve(const check::Model& model, Index fitted,

@@ -72,7 +72,7 @@ Needs needs_of(const check::Model& model);
 /// The frames taken for a need from all folds, in order.
 struct TakenPoints {
     TakenPoints() = default;
-    TakenPoints(const Collection& collection, std::size_t need);
+    TakenPoints(const Collection& collection, std::size_t need, unsigned jobs);
 
     /// Returns frames as columns.
     Matrix frames(const Members& members) const;
@@ -87,6 +87,9 @@ class Solver {
 public:
     Solver(const Collection& collection, const Needs& needs)
         : collection_(collection), needs_(needs) {}
+
+    /// Computes in threads what all fits of clusters share, for which they would wait.
+    void prepare(const check::Model& model, unsigned jobs);
 
     /// `left_out`: a fold to leave out.
     std::variant<Solution, Refusal> solve(const check::Model& model, Index fitted,
@@ -111,7 +114,7 @@ private:
     /// Tests on one fold of the part what all others give.
     Trial trial(const Part& part, std::size_t test);
     const Variances& variances(const Part& part, Eigen::Index r);
-    const TakenPoints& points(std::size_t need);
+    const TakenPoints& points(std::size_t need, unsigned jobs = 1);
 
     const Collection& collection_;
     const Needs& needs_;

@@ -107,9 +107,12 @@ private:
 
     bool fit(const Paths& episodes) {
         const auto model = check({true, true, true});
-        fit::Request request{episodes,          calibration_.reading, calibration_.allow_overlap,
-                             calibration_.jobs, calibration_.version, calibration_.progress};
         if (!model) return false;
+        fit::Request request{episodes, calibration_.reading, calibration_.allow_overlap,
+                             calibration_.jobs};
+        request.separation = false;  // the fold itself tells how well the fit does elsewhere
+        request.version = calibration_.version;
+        request.progress = calibration_.progress;
         auto found = fit::fit(*model, request, sink_);
         if (!found) return false;
         calibration_.fitted = std::move(found->file);

@@ -41,8 +41,8 @@ std::optional<Members> seeds(const Points& points, const Members& members, Index
     }
 }
 
-/// Lloyd's rounds. A centre is the mean of a set of points, represented by its products with the
-/// members.
+/// A run of Lloyd's rounds. A centre is the mean of a set of points, represented by its products
+/// with all points.
 class Lloyd {
 public:
     Lloyd(const Points& points, const Members& members, const Members& seeds)
@@ -52,19 +52,33 @@ public:
           squared_(static_cast<Index>(members.size())),
           mean_of_(members.size(), kNobody),
           alone_(seeds),
-          sums_(squared_.size(), static_cast<Index>(seeds.size())),
+          sums_(points.size(), static_cast<Index>(seeds.size())),
           counts_(sums_.cols()),
           squares_(sums_.cols()) {
         for (Index c = 0; c < sums_.cols(); ++c) put_alone(c, seeds[static_cast<std::size_t>(c)]);
         assign();
     }
 
-    /// Repeats until no member changes its centre.
-    void run() {
-        for (int round = 0; round < kMostRounds; ++round) {
-            take_means();
-            if (!assign()) return;
-        }
+    /// Whether no member changes its centre any more.
+    bool is_done() const { return is_done_; }
+
+    // A round: begins, moves each member to the mean of its nearest centre, and ends.
+
+    void begin_round() {
+        for (Index c = 0; c < counts_.size(); ++c)
+            if (alone_[static_cast<std::size_t>(c)] != kNobody) clear(c);
+    }
+
+    void move(std::size_t member) {
+        if (mean_of_[member] == nearest_[member]) return;
+        if (mean_of_[member] != kNobody) add(mean_of_[member], -1, members_[member]);
+        add(nearest_[member], 1, members_[member]);
+        mean_of_[member] = nearest_[member];
+    }
+
+    void end_round() {
+        fill_empty();
+        is_done_ = !assign();
     }
 
     double inertia() const { return squared_.sum(); }
@@ -96,10 +110,9 @@ public:
 private:
     static constexpr Index kNobody = -1;
 
+    /// Sums for all points, also those that are no members: without gaps it takes half the time.
     void add(Index centre, double sign, Index point) {
-        const auto products = points_.products().col(point);
-        for (Index i = 0; i < squared_.size(); ++i)
-            sums_(i, centre) += sign * products(members_[static_cast<std::size_t>(i)]);
+        sums_.col(centre) += sign * points_.products().col(point);
         counts_(centre) += sign;
     }
 
@@ -117,21 +130,13 @@ private:
         alone_[static_cast<std::size_t>(centre)] = point;
     }
 
-    /// Moves each centre to the mean of its nearest members; one without any moves to the member
-    /// that is furthest from its own centre.
-    void take_means() {
-        for (Index c = 0; c < counts_.size(); ++c)
-            if (alone_[static_cast<std::size_t>(c)] != kNobody) clear(c);
-        for (std::size_t i = 0; i < members_.size(); ++i) {
-            if (mean_of_[i] == nearest_[i]) continue;
-            if (mean_of_[i] != kNobody) add(mean_of_[i], -1, members_[i]);
-            add(nearest_[i], 1, members_[i]);
-            mean_of_[i] = nearest_[i];
-        }
+    /// Moves each centre without a member to the member that is furthest from its own centre.
+    void fill_empty() {
         squares_.setZero();
         for (Index i = 0; i < squared_.size(); ++i) {
             const Index c = mean_of_[static_cast<std::size_t>(i)];
-            squares_(c) += sums_(i, c) / (counts_(c) * counts_(c));
+            const Index point = members_[static_cast<std::size_t>(i)];
+            squares_(c) += sums_(point, c) / (counts_(c) * counts_(c));
         }
         for (Index c = 0; c < counts_.size(); ++c) {
             if (counts_(c) > 0) continue;
@@ -142,20 +147,27 @@ private:
         }
     }
 
-    /// Assigns members to their nearest centres; returns whether any changed.
+    /// Assigns members to their nearest centres, of equally near ones the first; returns whether
+    /// any changed.
     bool assign() {
-        bool changed = false;
+        const std::vector<Index> before = nearest_;
+        squared_.setConstant(kInfinity);
+        for (Index c = 0; c < counts_.size(); ++c) {  // in the order of memory
+            const double* const sums = sums_.col(c).data();
+            for (Index i = 0; i < squared_.size(); ++i) {
+                const Index point = members_[static_cast<std::size_t>(i)];
+                const double square = squares_(c) - 2 * (sums[point] / counts_(c));
+                const bool is_nearer = square < squared_(i);
+                squared_(i) = is_nearer ? square : squared_(i);
+                Index& nearest = nearest_[static_cast<std::size_t>(i)];
+                nearest = is_nearer ? c : nearest;
+            }
+        }
         for (Index i = 0; i < squared_.size(); ++i) {
             const Index point = members_[static_cast<std::size_t>(i)];
-            Index best = 0;
-            const double square =
-                (squares_ - 2 * sums_.row(i).transpose().cwiseQuotient(counts_)).minCoeff(&best);
-            squared_(i) = std::max(0.0, points_.products()(point, point) + square);
-            Index& nearest = nearest_[static_cast<std::size_t>(i)];
-            changed = changed || nearest != best;
-            nearest = best;
+            squared_(i) = std::max(0.0, points_.products()(point, point) + squared_(i));
         }
-        return changed;
+        return nearest_ != before;
     }
 
     const Points& points_;
@@ -164,17 +176,32 @@ private:
     Vector squared_;              ///< per member, the squared distance to that centre
     std::vector<Index> mean_of_;  ///< per member, the centre whose mean includes it
     std::vector<Index> alone_;    ///< per centre, the point that it is; kNobody for a mean
-    Matrix sums_;     ///< per member and centre, the product with the sum of the centre's points
+    Matrix sums_;     ///< per point and centre, the product with the sum of the centre's points
     Vector counts_;   ///< number of these points
     Vector squares_;  ///< per centre, the product with itself
+    bool is_done_ = false;
 };
+
+/// Runs all until they are done, at most kMostRounds. Each product is read once a round for all of
+/// them: reading takes longer than adding.
+void run(std::vector<Lloyd>& all, std::size_t members) {
+    std::vector<Lloyd*> running;
+    for (Lloyd& one : all) running.push_back(&one);
+    for (int round = 0; round < kMostRounds && !running.empty(); ++round) {
+        for (Lloyd* one : running) one->begin_round();
+        for (std::size_t i = 0; i < members; ++i)
+            for (Lloyd* one : running) one->move(i);
+        for (Lloyd* one : running) one->end_round();
+        std::erase_if(running, [](const Lloyd* one) { return one->is_done(); });
+    }
+}
 
 }  // namespace
 
-Points::Points(const Matrix& points)
+Points::Points(const Matrix& points, unsigned jobs)
     : middle_(points.rowwise().mean()), centred_(points.colwise() - middle_) {
     products_ = Matrix::Zero(size(), size());
-    add_products(centred_.transpose(), 1, products_);
+    add_products(centred_.transpose(), 1, products_, jobs);
     products_.triangularView<Eigen::StrictlyUpper>() = products_.transpose();
 }
 
@@ -189,19 +216,18 @@ double Points::squared_distance(Index i, Index j) const {
 std::optional<Matrix> k_means(const Points& points, const Members& members, Index k) {
     constexpr std::uint64_t kSeed = 2026;
     if (static_cast<Index>(members.size()) < k) return std::nullopt;
-    std::optional<Matrix> best;
-    double least = kInfinity;
     episodes::Random random(kSeed);
+    std::vector<Lloyd> starts;
     for (int start = 0; start < kStarts; ++start) {
         const auto first = seeds(points, members, k, random);
         if (!first) return std::nullopt;
-        Lloyd lloyd(points, members, *first);
-        lloyd.run();
-        if (best && !(lloyd.inertia() < least)) continue;
-        best = lloyd.centres();
-        least = lloyd.inertia();
+        starts.emplace_back(points, members, *first);
     }
-    return best;
+    run(starts, members.size());
+    return std::min_element(
+               starts.begin(), starts.end(),
+               [](const Lloyd& a, const Lloyd& b) { return a.inertia() < b.inertia(); })
+        ->centres();
 }
 
 std::vector<std::size_t> nearest_points(const Points& points, const Members& members,

@@ -3,11 +3,16 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <exception>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <vector>
 
+#include "episodes/parallel.hpp"
 #include "episodes/random.hpp"
 
 namespace etlc::fit {
@@ -23,10 +28,14 @@ struct alignas(64) PanelColumn {
     double rows[kPanel];
 };
 
+Index panels_of(Index rows) {
+    return (rows + kPanel - 1) / kPanel;
+}
+
 /// Packs panel by panel, in each column by column; pads the last panel with 0.
 std::vector<PanelColumn> packed(const Eigen::Ref<const Matrix>& columns) {
     const Index depth = columns.cols();
-    const Index panels = (columns.rows() + kPanel - 1) / kPanel;
+    const Index panels = panels_of(columns.rows());
     std::vector<PanelColumn> result(static_cast<std::size_t>(panels * depth));
     for (Index panel = 0; panel < panels; ++panel) {
         const Index n = std::min(kPanel, columns.rows() - panel * kPanel);
@@ -72,42 +81,51 @@ struct Tile {
     }
 };
 
+/// Adds the products with the rows of panel `right`, which are columns of the result.
 template <class Lanes, Index kColumns>
-ETLC_INLINE void add_tiles(const PanelColumn* panels, Index depth, double factor,
+ETLC_INLINE void add_tiles(const PanelColumn* panels, Index right, Index depth, double factor,
                            Eigen::Ref<Matrix>& lower) {
-    const Index all = (lower.rows() + kPanel - 1) / kPanel;
-    for (Index right = 0; right < all; ++right)
-        for (Index left = right; left < all; ++left)
-            for (Index first = 0; first < kPanel; first += kColumns) {
-                Tile<Lanes, kColumns> tile;
-                tile.sum(panels + left * depth, panels + right * depth, first, depth);
-                tile.add_to(lower, left * kPanel, right * kPanel + first, factor);
-            }
+    const Index all = panels_of(lower.rows());
+    for (Index left = right; left < all; ++left)
+        for (Index first = 0; first < kPanel; first += kColumns) {
+            Tile<Lanes, kColumns> tile;
+            tile.sum(panels + left * depth, panels + right * depth, first, depth);
+            tile.add_to(lower, left * kPanel, right * kPanel + first, factor);
+        }
 }
+
+using AddTiles = void(const PanelColumn* panels, Index right, Index depth, double factor,
+                      Eigen::Ref<Matrix>& lower);
 
 using Lanes16 [[gnu::vector_size(16), gnu::may_alias]] = double;
 
-void add_with_16_bytes(const PanelColumn* panels, Index depth, double factor,
+void add_with_16_bytes(const PanelColumn* panels, Index right, Index depth, double factor,
                        Eigen::Ref<Matrix>& lower) {
-    add_tiles<Lanes16, 2>(panels, depth, factor, lower);
+    add_tiles<Lanes16, 2>(panels, right, depth, factor, lower);
 }
 
 #if defined(__x86_64__)
 using Lanes32 [[gnu::vector_size(32), gnu::may_alias]] = double;
+using Lanes64 [[gnu::vector_size(64), gnu::may_alias]] = double;
 
-[[gnu::target("avx2")]] void add_with_32_bytes(const PanelColumn* panels, Index depth,
+[[gnu::target("avx2")]] void add_with_32_bytes(const PanelColumn* panels, Index right, Index depth,
                                                double factor, Eigen::Ref<Matrix>& lower) {
-    add_tiles<Lanes32, 4>(panels, depth, factor, lower);
+    add_tiles<Lanes32, 4>(panels, right, depth, factor, lower);
 }
 
-bool has_32_bytes() {
-    return __builtin_cpu_supports("avx2") != 0;
+[[gnu::target("avx512f")]] void add_with_64_bytes(const PanelColumn* panels, Index right,
+                                                  Index depth, double factor,
+                                                  Eigen::Ref<Matrix>& lower) {
+    add_tiles<Lanes64, 8>(panels, right, depth, factor, lower);
+}
+
+AddTiles* widest() {
+    if (__builtin_cpu_supports("avx512f") != 0) return add_with_64_bytes;
+    return __builtin_cpu_supports("avx2") != 0 ? add_with_32_bytes : add_with_16_bytes;
 }
 #else
-constexpr auto add_with_32_bytes = add_with_16_bytes;
-
-constexpr bool has_32_bytes() {
-    return false;
+constexpr AddTiles* widest() {
+    return add_with_16_bytes;
 }
 #endif
 
@@ -115,12 +133,34 @@ constexpr bool has_32_bytes() {
 
 }  // namespace
 
-void add_products(const Eigen::Ref<const Matrix>& columns, double factor,
-                  Eigen::Ref<Matrix> lower) {
+void add_products(const Eigen::Ref<const Matrix>& columns, double factor, Eigen::Ref<Matrix> lower,
+                  unsigned jobs) {
     if (columns.cols() == 0) return;
     const std::vector<PanelColumn> panels = packed(columns);
-    static const auto add = has_32_bytes() ? add_with_32_bytes : add_with_16_bytes;
-    add(panels.data(), columns.cols(), factor, lower);
+    static const auto add = widest();
+    const Index all = panels_of(lower.rows());
+    std::atomic<Index> next = 0;  // the first panels have the most products
+    const auto work = [&] {
+        for (Index right = next++; right < all; right = next++)
+            add(panels.data(), right, columns.cols(), factor, lower);
+    };
+    if (jobs == 1) return work();
+    if (const auto failure = episodes::in_threads(jobs, static_cast<std::size_t>(all), work))
+        std::rethrow_exception(failure);
+}
+
+double squared_distance(const std::vector<float>& point, const Vector& mean) {
+    constexpr std::size_t kSums = 8;  // independent, so that compilers vectorise them
+    double sums[kSums] = {};
+    const auto add = [&](std::size_t sum, std::size_t i) {
+        const double apart = static_cast<double>(point[i]) - mean(static_cast<Index>(i));
+        sums[sum] += apart * apart;
+    };
+    std::size_t i = 0;
+    for (; i + kSums <= point.size(); i += kSums)
+        for (std::size_t s = 0; s < kSums; ++s) add(s, i + s);
+    for (std::size_t s = 0; i < point.size(); ++i, ++s) add(s, i);
+    return std::accumulate(std::begin(sums), std::end(sums), 0.0);
 }
 
 std::optional<Cholesky> Cholesky::of(Matrix symmetric) {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace etlc::fit {
 
@@ -28,8 +29,14 @@ struct Affine {
 /// Adds factor * columns * columns^T to the lower triangle; above it anything may be written.
 /// Fitting spends most of its time here. Every element is summed in the order of the columns, each
 /// product rounded before it is added, so machines with wider vectors give the same bits. Eigen
-/// takes twice as long, because it is compiled for the oldest machine's vectors.
-void add_products(const Eigen::Ref<const Matrix>& columns, double factor, Eigen::Ref<Matrix> lower);
+/// takes twice as long, because it is compiled for the oldest machine's vectors. `jobs`: threads;
+/// 0: one per core.
+void add_products(const Eigen::Ref<const Matrix>& columns, double factor, Eigen::Ref<Matrix> lower,
+                  unsigned jobs = 1);
+
+/// Returns the squared distance of a point from a mean. The order of the sum is the same on every
+/// machine.
+double squared_distance(const std::vector<float>& point, const Vector& mean);
 
 /// The Cholesky factor L of a covariance S = L L^T, of which the lower triangle is read. Eigen
 /// takes twice as long, and fitting a discriminant makes fifty factors.
