@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -17,6 +18,19 @@
 namespace etlc::ast {
 
 using source::Span;
+
+/// Owns a part of the tree, or nothing. A copy has its own.
+template <class T>
+class Owned : public std::unique_ptr<T> {
+public:
+    using std::unique_ptr<T>::unique_ptr;
+    Owned(std::unique_ptr<T> part) : std::unique_ptr<T>(std::move(part)) {}
+    Owned(const Owned& other) : std::unique_ptr<T>(other ? std::make_unique<T>(*other) : nullptr) {}
+    Owned(Owned&&) noexcept = default;
+    Owned& operator=(const Owned& other) { return *this = Owned(other); }
+    Owned& operator=(Owned&&) noexcept = default;
+    ~Owned() = default;
+};
 
 struct Name {
     std::string text;
@@ -104,7 +118,7 @@ Span span_of(const std::variant<Alternatives...>& value) {
 }
 
 struct Formula;
-using FormulaPtr = std::unique_ptr<Formula>;
+using FormulaPtr = Owned<Formula>;
 
 /// fitted(METHOD, of = POINT, where = FORMULA, NAME = NUMBER)
 struct Fitted {
@@ -146,15 +160,15 @@ struct Past {
 };
 
 struct Expr;
-using ExprPtr = std::unique_ptr<Expr>;
+using ExprPtr = Owned<Expr>;
 
 struct Expr {
     using Kind = ExprKind;
     Kind kind = Kind::number;
-    std::string text;      ///< digits of a number, or name of an input or constant
-    std::string constant;  ///< name of the constant that gave the number, as in Number
-    std::unique_ptr<Distance> distance;  ///< only for kind distance
-    std::unique_ptr<Past> past;          ///< only for kind past
+    std::string text;          ///< digits of a number, or name of an input or constant
+    std::string constant;      ///< name of the constant that gave the number, as in Number
+    Owned<Distance> distance;  ///< only for kind distance
+    Owned<Past> past;          ///< only for kind past
     /// Operands in order; add, multiply etc. are binary and associate to the left. The EXPR of a
     /// past number.
     std::vector<ExprPtr> arguments;
@@ -328,6 +342,11 @@ struct Spec {
     /// for a `rate` or `period` declaration.
     std::vector<Name> unreadable;
 };
+
+/// Moves all spans of a declaration by `bytes`, where what is before it in the file grew by them.
+void shift(Declaration& declaration, std::int64_t bytes);
+/// The same for a name.
+void shift(Name& name, std::int64_t bytes);
 
 /// Prints a spec in canonical form, one declaration a line, for `--emit ast`; parsing the text
 /// gives the same tree.

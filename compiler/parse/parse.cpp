@@ -6,6 +6,8 @@
 
 #include "parse/build.hpp"
 #include "parse/foreign/foreign.hpp"
+#include "parse/memory.hpp"
+#include "parse/stream/known.hpp"
 #include "parse/stream/slices.hpp"
 #include "parse/stream/tokens.hpp"
 #include "parse/syntax_error.hpp"
@@ -21,12 +23,15 @@ namespace {
 /// Reads one file, one declaration at a time.
 class Reader {
 public:
-    Reader(const source::File& file, diag::Sink& sink) : file_(file), sink_(sink), builder_(file) {}
+    /// `tokens`: gives those of the file; `known`: of an earlier state, or null.
+    Reader(const source::File& file, diag::Sink& sink, KnownTokens& tokens, KnownSlices* known)
+        : file_(file), sink_(sink), builder_(file), tokens_of_(tokens), known_(known) {}
 
     ast::Spec read() {
         if (!is_text()) return {};
-        tokens_ = tokens_of(file_);
-        for (const Slice& slice : slices_of(tokens_)) read(slice);
+        tokens_ = &tokens_of_.of(file_);
+        for (const Slice& slice : slices_of(*tokens_)) read(slice);
+        if (known_ != nullptr) *known_ = std::move(read_);
         report_errors();
         report_missing_spec();
         return std::move(spec_);
@@ -65,12 +70,10 @@ private:
     }
 
     void read(Slice slice) {
-        const Token& first = *tokens_[slice.begin];
+        const Token& first = token(slice.begin);
         const bool is_spec = first.getType() == Grammar::SPEC;
         try {
-            refuse_mistakes(slice);
-            refuse_deep_nesting(slice);
-            add(parsed(slice), span_of(first));
+            add(said(slice), span_of(first));
         } catch (SyntaxError& error) {
             errors_.push_back(std::move(error));
             add_unreadable(slice);
@@ -83,41 +86,57 @@ private:
     /// Thrown for a declaration whose error has already been reported.
     struct Unexplained {};
 
+    Said said(Slice slice) {
+        if (known_ == nullptr) return parsed(slice);
+        const source::Span span =
+            source::join(span_of(token(slice.begin)), span_of(token(slice.end - 1)));
+        const std::string_view text = file_.text(span);
+        read_.take(text, *known_);
+        if (auto found = read_.find(text, span.begin)) return std::move(*found);
+        Said result = parsed(slice);
+        read_.add(text, span.begin, result);
+        return result;
+    }
+
+    const Token& token(std::size_t i) const { return *(*tokens_)[i]; }
+
     void refuse_mistakes(Slice slice) const {
         for (std::size_t i = slice.begin; i < slice.end; ++i) {
             // A string that is not UTF-8 has been reported for the whole file.
-            if (tokens_[i]->getType() == Grammar::STRING) {
-                const std::string_view content = file_.text(span_of(*tokens_[i]));
+            if (token(i).getType() == Grammar::STRING) {
+                const std::string_view content = file_.text(span_of(token(i)));
                 if (source::first_invalid_utf8(content) < content.size()) throw Unexplained{};
             }
-            if (!is_mistake(*tokens_[i])) continue;
-            std::optional<Diagnostic> explained = explain_mistake(
-                *tokens_[i], i > slice.begin ? tokens_[i - 1].get() : nullptr, file_);
+            if (!is_mistake(token(i))) continue;
+            std::optional<Diagnostic> explained =
+                explain_mistake(token(i), i > slice.begin ? &token(i - 1) : nullptr, file_);
             if (!explained) throw Unexplained{};
             throw SyntaxError{std::move(*explained)};
         }
     }
 
     void refuse_deep_nesting(Slice slice) const {
-        const std::optional<std::size_t> at = too_deep_at(tokens_, slice);
+        const std::optional<std::size_t> at = too_deep_at(*tokens_, slice);
         if (!at) return;
         Diagnostic error{
             Code::nesting_too_deep,
             fmt::format("brackets and operators are nested more than {} deep", kMaxNesting),
-            span_of(*tokens_[*at])};
+            span_of(token(*at))};
         error.note("name parts of the formula with 'let'");
         throw SyntaxError{std::move(error)};
     }
 
-    std::variant<ast::Name, ast::Declaration> parsed(Slice slice) const {
-        SliceStream stream(tokens_, slice);
+    Said parsed(Slice slice) const {
+        refuse_mistakes(slice);
+        refuse_deep_nesting(slice);
+        SliceStream stream(*tokens_, slice);
         Grammar parser(&stream);
         parser.removeErrorListeners();
-        parser.setErrorHandler(std::make_shared<Strategy>(file_, tokens_, slice));
+        parser.setErrorHandler(std::make_shared<Strategy>(file_, *tokens_, slice));
         return builder_.declaration(*parser.declaration());
     }
 
-    void add(std::variant<ast::Name, ast::Declaration> read, source::Span first) {
+    void add(Said read, source::Span first) {
         if (auto* const declaration = std::get_if<ast::Declaration>(&read)) {
             spec_.declarations.push_back(std::move(*declaration));
             return;
@@ -138,19 +157,19 @@ private:
     void add_unreadable(Slice slice) {
         const std::size_t last = slice.end;
         std::size_t at = slice.begin;
-        const std::size_t kind = tokens_[at]->getType();
+        const std::size_t kind = token(at).getType();
         if (kind == Grammar::SLIDING && at + 1 < last &&
-            tokens_[at + 1]->getType() == Grammar::MONITOR)
+            token(at + 1).getType() == Grammar::MONITOR)
             ++at;
         if (kind == Grammar::SPEC || kind == Grammar::TRUTH) return;
         if (kind == Grammar::RATE || kind == Grammar::PERIOD) {
-            spec_.unreadable.push_back({"rate", span_of(*tokens_[at])});
+            spec_.unreadable.push_back({"rate", span_of(token(at))});
             return;
         }
-        for (++at; at < last && (is_name(*tokens_[at]) || is_reserved_word(*tokens_[at], file_));
+        for (++at; at < last && (is_name(token(at)) || is_reserved_word(token(at), file_));
              at += 2) {
-            spec_.unreadable.push_back({text_of(*tokens_[at], file_), span_of(*tokens_[at])});
-            if (at + 1 >= last || tokens_[at + 1]->getType() != Grammar::COMMA) break;
+            spec_.unreadable.push_back({text_of(token(at), file_), span_of(token(at))});
+            if (at + 1 >= last || token(at + 1).getType() != Grammar::COMMA) break;
         }
     }
 
@@ -172,7 +191,7 @@ private:
 
     void report_missing_spec() {
         if (spec_seen_) return;
-        const Token& first = *tokens_.front();
+        const Token& first = token(0);
         const bool empty = first.getType() == Token::EOF;
         Diagnostic& missing = sink_.report(
             Code::misplaced_spec, span_of(first),
@@ -187,13 +206,16 @@ private:
     /// NAME;`. The missing spec is the real error.
     bool is_missing_spec(const SyntaxError& error) const {
         return !spec_seen_ && error.previous.empty() && !error.found.empty() &&
-               error.diagnostic.span == span_of(*tokens_.front());
+               error.diagnostic.span == span_of(token(0));
     }
 
     const source::File& file_;
     diag::Sink& sink_;
     Builder builder_;
-    Tokens tokens_;
+    KnownTokens& tokens_of_;
+    KnownSlices* known_;  ///< of the last state
+    KnownSlices read_;    ///< of this one
+    const Tokens* tokens_ = nullptr;
     ast::Spec spec_;
     std::vector<SyntaxError> errors_;
     bool spec_seen_ = false;
@@ -202,7 +224,26 @@ private:
 }  // namespace
 
 ast::Spec parse(const source::File& file, diag::Sink& sink) {
-    return Reader(file, sink).read();
+    KnownTokens tokens;
+    return Reader(file, sink, tokens, nullptr).read();
+}
+
+struct Memory::Content {
+    KnownTokens tokens;
+    KnownSlices slices;
+};
+
+Memory::Memory() : content_(std::make_unique<Content>()) {}
+Memory::Memory(Memory&&) noexcept = default;
+Memory& Memory::operator=(Memory&&) noexcept = default;
+Memory::~Memory() = default;
+
+ast::Spec Memory::parse(const source::File& file, diag::Sink& sink) {
+    return Reader(file, sink, content_->tokens, &content_->slices).read();
+}
+
+std::vector<Word> Memory::words_of(const source::File& file) {
+    return parse::words_of(content_->tokens.of(file), file);
 }
 
 }  // namespace etlc::parse

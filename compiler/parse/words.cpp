@@ -21,8 +21,12 @@ Word::Kind kind_of(const Token& token, const source::File& file) {
 }  // namespace
 
 std::vector<Word> words_of(const source::File& file) {
+    return words_of(tokens_of(file), file);
+}
+
+std::vector<Word> words_of(const Tokens& tokens, const source::File& file) {
     std::vector<Word> words;
-    for (const auto& token : tokens_of(file))
+    for (const auto& token : tokens)
         if (token->getType() != Token::EOF)
             words.push_back({kind_of(*token, file), span_of(*token)});
     return words;

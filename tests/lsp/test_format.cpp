@@ -1,34 +1,14 @@
 // Formats every good spec, with comments and line breaks inserted between its words.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <random>
-#include <set>
 
+#include "good_specs.hpp"
 #include "lsp/format/format.hpp"
 #include "sound_format.hpp"
 
 namespace etlc::lsp {
 namespace {
-
-std::vector<std::string> good_specs() {
-    std::vector<std::string> all;
-    for (const char* folder : {"/tests", "/examples", "/bench"}) {
-        std::set<std::filesystem::path> paths;
-        for (const auto& entry :
-             std::filesystem::recursive_directory_iterator(std::string(ETLC_SOURCE_DIR) + folder))
-            if (entry.path().extension() == ".etl") paths.insert(entry.path());
-        for (const auto& path : paths) {
-            std::ifstream file(path, std::ios::binary);
-            std::string text((std::istreambuf_iterator<char>(file)), {});
-            diag::Sink sink;
-            (void)parse::parse(source::File("", text), sink);
-            if (!sink.has_errors() && text.size() < 20'000) all.push_back(std::move(text));
-        }
-    }
-    return all;
-}
 
 TEST(Format, GoodSpecsStayWhatTheyAre) {
     const auto specs = good_specs();

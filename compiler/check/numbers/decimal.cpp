@@ -69,8 +69,12 @@ Decimal Decimal::parse(std::string_view text) {
 
 Decimal Decimal::of(double value) {
     std::array<char, 1200> buffer;  // a double has at most 767 significant digits
-    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                   std::chars_format::scientific, 800);
+    char* const last = buffer.data() + buffer.size();
+    constexpr double kWhole = 1e15;  // whole numbers up to it are common, and have few digits
+    const bool is_short = std::abs(value) < kWhole && value == std::trunc(value);
+    const auto end = is_short ? std::to_chars(buffer.data(), last, static_cast<std::int64_t>(value))
+                              : std::to_chars(buffer.data(), last, value,
+                                              std::chars_format::scientific, 800);
     return parse({buffer.data(), static_cast<std::size_t>(end.ptr - buffer.data())});
 }
 

@@ -3,17 +3,16 @@
 #include <utility>
 
 #include "lsp/text/uri.hpp"
-#include "parse/parse.hpp"
 
 namespace etlc::lsp {
 
-Analysis::Analysis(std::string path, std::string text, Encoding encoding,
+Analysis::Analysis(std::string path, std::string text, Encoding encoding, parse::Memory& read,
                    check::KnownMatrices& known)
     : file(std::move(path), std::move(text)), lines(file.text(), encoding) {
-    ast::Spec spec = parse::parse(file, sink);
+    ast::Spec spec = read.parse(file, sink);
     has_syntax_errors = sink.has_errors();
     names = names_of(spec, file);
-    if (has_syntax_errors) add_uncertain(names, file);
+    if (has_syntax_errors) add_uncertain(names, read.words_of(file), file);
     check::Options options;
     options.allow_missing = true;
     checked = check::inspect(std::move(spec), file, options, known, sink);
@@ -51,7 +50,7 @@ void Document::forget() {
 
 const Analysis& Document::analysis() {
     if (!analysis_)
-        analysis_ = std::make_unique<Analysis>(path_of_uri(uri_), text_, encoding_, known_);
+        analysis_ = std::make_unique<Analysis>(path_of_uri(uri_), text_, encoding_, read_, known_);
     return *analysis_;
 }
 

@@ -12,14 +12,16 @@
 #include "diag/diag.hpp"
 #include "lsp/spec/names.hpp"
 #include "lsp/text/position.hpp"
+#include "parse/memory.hpp"
 #include "pipeline/compile.hpp"
 #include "source/source.hpp"
 
 namespace etlc::lsp {
 
 struct Analysis {
-    /// `known`: the files of the spec that were read before.
-    Analysis(std::string path, std::string text, Encoding encoding, check::KnownMatrices& known);
+    /// `read`: what was read of an earlier state; `known`: the files of the spec that were read.
+    Analysis(std::string path, std::string text, Encoding encoding, parse::Memory& read,
+             check::KnownMatrices& known);
     Analysis(const Analysis&) = delete;  // `lines` refers to `file`
     Analysis& operator=(const Analysis&) = delete;
 
@@ -70,6 +72,7 @@ private:
     std::string text_;
     std::int64_t version_;
     Encoding encoding_;
+    parse::Memory read_;
     check::KnownMatrices known_;
     std::unique_ptr<Analysis> analysis_;
     std::optional<Planned> planned_;

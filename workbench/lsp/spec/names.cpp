@@ -219,7 +219,7 @@ Names names_of(const ast::Spec& spec, const source::File& file) {
     return names;
 }
 
-void add_uncertain(Names& names, const source::File& file) {
+void add_uncertain(Names& names, const std::vector<parse::Word>& words, const source::File& file) {
     std::set<std::string_view> known;
     for (const Declared& declared : names.declared)
         if (declared.kind) known.insert(declared.name);
@@ -227,7 +227,7 @@ void add_uncertain(Names& names, const source::File& file) {
     for (const Occurrence& occurrence : names.occurrences) seen.insert(occurrence.span.begin);
     std::vector<Occurrence> found;
     auto readable = names.readable.begin();
-    for (const parse::Word& word : parse::words_of(file)) {
+    for (const parse::Word& word : words) {
         while (readable != names.readable.end() && readable->end <= word.span.begin) ++readable;
         if (readable != names.readable.end() && readable->begin <= word.span.begin) continue;
         const bool is_name =

@@ -11,6 +11,7 @@
 
 #include "ast/ast.hpp"
 #include "check/context/scope.hpp"
+#include "parse/words.hpp"
 #include "source/source.hpp"
 
 namespace etlc::lsp {
@@ -59,8 +60,8 @@ struct Names {
 
 Names names_of(const ast::Spec& spec, const source::File& file);
 
-/// Adds the words in declarations that could not be parsed which are names. Scans all words.
-void add_uncertain(Names& names, const source::File& file);
+/// Adds the words in declarations that could not be parsed which are names. `words`: all.
+void add_uncertain(Names& names, const std::vector<parse::Word>& words, const source::File& file);
 
 /// Finds the occurrence at `offset` or directly before it; null where there is none.
 const Occurrence* occurrence_at(const Names& names, std::uint32_t offset);
