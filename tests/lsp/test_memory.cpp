@@ -68,6 +68,16 @@ TEST(Memory, FindsWhatAFreshReaderFinds) {
     }
 }
 
+TEST(Memory, MovesDeclarationsWithAllTheirPlaces) {
+    for (const std::string& text : good_specs()) {
+        parse::Memory memory;
+        for (const std::string before : {"", "/* moved */\n", " "}) {
+            parse::Memory fresh;
+            ASSERT_EQ(findings(before + text, memory), findings(before + text, fresh)) << text;
+        }
+    }
+}
+
 TEST(Memory, ReadsTextsThatHaveNothingInCommon) {
     parse::Memory memory;
     for (const char* text :
