@@ -41,6 +41,13 @@ Span span_of(const std::vector<float>& numbers) {
     return span.low <= span.high ? span : Span{0, 0};
 }
 
+/// Appends room for `more` bytes to the text; returns where it begins.
+char* grown(std::string& text, std::size_t more) {
+    const std::size_t before = text.size();
+    text.resize(before + more);
+    return text.data() + before;
+}
+
 /// Packs series of numbers into a short text: base64 of deflated bytes. These are the length of a
 /// JSON head in 4 bytes, the head, and the series in the order of their addition, each byte by byte
 /// of all its numbers, which deflates better than number by number. Rounded numbers are off by at
@@ -65,9 +72,10 @@ private:
 };
 
 void Packing::add_bytes(const std::vector<std::uint32_t>& words, std::size_t bytes) {
+    char* to = grown(body_, bytes * words.size());
     for (std::size_t byte = 0; byte < bytes; ++byte)
         for (const std::uint32_t word : words)
-            body_ += static_cast<char>(word >> (8 * byte) & 0xFFU);
+            *to++ = static_cast<char>(word >> (8 * byte) & 0xFFU);
 }
 
 std::string Packing::exact(const std::vector<float>& numbers) {
@@ -81,6 +89,7 @@ std::string Packing::rounded(const std::vector<float>& numbers, int parts) {
     const Span span = span_of(numbers);
     const double part = (static_cast<double>(span.high) - span.low) / parts;
     std::vector<std::uint32_t> words;
+    words.reserve(numbers.size());
     std::uint32_t before = 0;
     for (const float x : numbers) {
         std::int32_t value = std::isnan(x) ? kMissing : x < 0 ? kBelowAll : kAboveAll;
@@ -207,14 +216,14 @@ std::string base64(std::string_view bytes) {
     constexpr std::string_view kDigits =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
+    char* to = grown(text, (bytes.size() + 2) / 3 * 4);
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         const std::size_t here = std::min<std::size_t>(3, bytes.size() - i);
         std::uint32_t bits = 0;
         for (std::size_t k = 0; k < 3; ++k)
             bits = bits << 8U | (k < here ? static_cast<std::uint8_t>(bytes[i + k]) : 0U);
         for (std::size_t k = 0; k < 4; ++k)
-            text += k <= here ? kDigits[bits >> (18 - 6 * k) & 63U] : '=';
+            *to++ = k <= here ? kDigits[bits >> (18 - 6 * k) & 63U] : '=';
     }
     return text;
 }

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "data/text/quote.hpp"
 
 namespace etlc::data {
@@ -21,12 +19,6 @@ std::uint32_t begins_character(char c) {
 /// The bytes that end a cell without quotes are below those of numbers and letters.
 bool ends_plain(char c) {
     return static_cast<unsigned char>(c) <= ',' && (c == ',' || c == '\n' || c == '\r' || c == '"');
-}
-
-std::uint32_t characters(std::string_view bytes) {
-    std::uint32_t count = 0;
-    for (const char c : bytes) count += begins_character(c);
-    return count;
 }
 
 }  // namespace
@@ -131,8 +123,8 @@ void CsvReader::read_plain() {
     while (peek() >= 0) {
         const char* const begin = buffer_.data() + at_;
         const char* const filled = buffer_.data() + filled_;
-        const char* const end = std::find_if(begin, filled, ends_plain);
-        column_ += characters({begin, end});
+        const char* end = begin;
+        for (; end != filled && !ends_plain(*end); ++end) column_ += begins_character(*end);
         row_.append(begin, end);
         at_ += static_cast<std::size_t>(end - begin);
         if (end != filled) break;
