@@ -164,13 +164,25 @@ class Waits:
         row = next(line for line in printed.splitlines() if line.startswith("key stroke"))
         return float(row.split("p95")[1].split()[0]) / 1000, 0.05
 
+    def library_step(self):
+        """etlc_step() on the example `grasp`, beside its generated class, in seconds a step."""
+        bench, spec = self.build / "bench", ROOT / "examples/firmware_loop/grasp.etl"
+
+        def row(*call):
+            printed = subprocess.run(call, check=True, capture_output=True, text=True).stdout
+            return next(line for line in printed.splitlines() if "grasp" in line)
+
+        through = row(bench / "library/bench_library", spec).split()[2]
+        own = row(bench / "steps/bench_steps").split("4 ", 1)[1].split()[0]
+        return float(through) / 1e9, float(own) / 1e9
+
     def short_run(self):
         """`etlc run` of one drive, beside a program that only starts."""
         trace = sorted((self.folder / "drives").glob("*.csv"))[0]
         return self.seconds("run", "drives.etl", "--trace", trace), self.seconds("--version")
 
     def rows(self):
-        return {
+        rows = {
             "fit medoids / numpy.load": (lambda: self.fit("medoids"), "1.5"),
             "fit a projection / load, X'X, eigh": (lambda: self.fit("projection"), "1.3"),
             "fit a discriminant / load, X'X, eigh": (lambda: self.fit("discriminant"), "1.3"),
@@ -182,6 +194,9 @@ class Waits:
             "LSP, 5000 lines, p95 / 50 ms": (self.keystroke, "1"),
             "run of one CSV / --version": (self.short_run, "-"),
         }
+        if (self.build / "bench").exists():  # built with -DETLC_BUILD_BENCH=ON
+            rows["library step / class, 384 x 4"] = (self.library_step, "1.5")
+        return rows
 
 
 def main(build, folder, rounds=5):
@@ -198,12 +213,12 @@ def main(build, folder, rounds=5):
             make(folder / name)
     write_specs(folder)
     waits = Waits(pathlib.Path(build).resolve(), folder)
-    print(f"{'':38} {'seconds':>8} {'beside':>8} {'ratio':>6} {'aim':>5}")
+    print(f"{'':38} {'seconds':>10} {'beside':>10} {'ratio':>6} {'aim':>5}")
     for name, (measure, aim) in waits.rows().items():
         times = [measure() for _ in range(int(rounds))]
         wait, yardstick = (statistics.median(column) for column in zip(*times))
         ratio = statistics.median(one / other for one, other in times)
-        print(f"{name:38} {wait:8.3f} {yardstick:8.3f} {ratio:6.2f} {aim:>5}", flush=True)
+        print(f"{name:38} {wait:10.4g} {yardstick:10.4g} {ratio:6.2f} {aim:>5}", flush=True)
 
 
 if __name__ == "__main__":
