@@ -173,7 +173,7 @@ class Waits:
             return next(line for line in printed.splitlines() if "grasp" in line)
 
         through = row(bench / "library/bench_library", spec).split()[2]
-        own = row(bench / "steps/bench_steps").split("4 ", 1)[1].split()[0]
+        own = row(bench / "steps/bench_steps").split("384 x 4")[1].split()[0]
         return float(through) / 1e9, float(own) / 1e9
 
     def short_run(self):
