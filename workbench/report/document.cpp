@@ -79,13 +79,15 @@ Json json_of(const Operating& at) {
 
 /// Returns the labelled frames with finite scores, greatest scores first.
 std::vector<Scored> finite_frames(const evaluate::Judgement& judgement, std::size_t i) {
+    const auto& folds = judgement.predicates[i].frames;
     std::vector<Scored> frames;
-    for (const episodes::FramesByScore& fold : judgement.predicates[i].frames)
+    for (const episodes::FramesByScore& fold : folds)
         fold.for_each([&](const Scored& frame) {
             if (std::isfinite(frame.score)) frames.push_back(frame);
         });
-    std::stable_sort(frames.begin(), frames.end(),
-                     [](const Scored& a, const Scored& b) { return a.score > b.score; });
+    const auto is_less = [](const Scored& a, const Scored& b) { return a.score < b.score; };
+    if (folds.size() > 1) std::sort(frames.begin(), frames.end(), is_less);  // one is sorted
+    std::reverse(frames.begin(), frames.end());
     return frames;
 }
 
@@ -280,6 +282,10 @@ Json inputs_json(const plan::Plan& plan, const Totals& totals) {
     return inputs;
 }
 
+std::string dumped(const Json& json) {
+    return json.dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
 }  // namespace
 
 Index declared_target(const check::Model& model, const check::Predicate& predicate) {
@@ -292,32 +298,37 @@ Index declared_target(const check::Model& model, const check::Predicate& predica
 std::string in_script(const std::string& json) {
     std::string text;
     text.reserve(json.size());
-    for (const char c : json)
-        if (c == '<')
-            text += "\\u003c";
-        else
-            text += c;
-    return text;
+    for (std::size_t at = 0;;) {
+        const std::size_t found = json.find('<', at);
+        text.append(json, at, found - at);
+        if (found == std::string::npos) return text;
+        text += "\\u003c";
+        at = found + 1;
+    }
 }
 
-std::string document(const Material& material, const Scene& scene, const Totals& totals,
-                     const std::vector<evaluate::EpisodeRow>& judged,
+std::string predicates(const Material& material, const Scene& scene) {
+    Json all = Json::array();
+    for (const Index p : scene.predicates) all.push_back(predicate_json(material, scene, p));
+    return dumped(all);
+}
+
+std::string document(const Material& material, const Scene& scene, const std::string& predicates,
+                     const Totals& totals, const std::vector<evaluate::EpisodeRow>& judged,
                      const std::vector<Row>& rows) {
     const check::Model& model = *scene.plan.model;
-    Json all = {{"spec",
-                 {{"name", model.name},
-                  {"path", material.file.path()},
-                  {"text", std::string(material.file.text())},
-                  {"step_seconds", model.step_seconds},
-                  {"reservations", model.reservations}}},
-                {"has_truth", material.judgement != nullptr},
-                {"why_no_truth", material.why_no_truth},
-                {"episodes", totals.episodes},
-                {"steps", totals.steps},
-                {"inputs", inputs_json(scene.plan, totals)}};
-    all["predicates"] = Json::array();
-    for (const Index p : scene.predicates)
-        all["predicates"].push_back(predicate_json(material, scene, p));
+    Json head = {{"spec",
+                  {{"name", model.name},
+                   {"path", material.file.path()},
+                   {"text", std::string(material.file.text())},
+                   {"step_seconds", model.step_seconds},
+                   {"reservations", model.reservations}}},
+                 {"has_truth", material.judgement != nullptr},
+                 {"why_no_truth", material.why_no_truth},
+                 {"episodes", totals.episodes},
+                 {"steps", totals.steps},
+                 {"inputs", inputs_json(scene.plan, totals)}};
+    Json all;
     all["monitors"] = Json::array();
     for (const plan::Monitor& monitor : scene.plan.monitors)
         all["monitors"].push_back(monitor_json(model, monitor));
@@ -329,7 +340,12 @@ std::string document(const Material& material, const Scene& scene, const Totals&
     all["rows"] = Json::array();
     for (const Row& row : rows)
         all["rows"].push_back(row_json(row, judged.empty() ? nullptr : &judged[row.rank]));
-    return in_script(all.dump(-1, ' ', true, Json::error_handler_t::replace));
+    std::string text = dumped(head);
+    text.back() = ',';  // in place of its bracket
+    text += "\"predicates\":" + predicates + ',';
+    const std::string rest = dumped(all);
+    text.append(rest, 1);
+    return in_script(text);
 }
 
 }  // namespace etlc::report

@@ -36,9 +36,13 @@ struct Totals {
 /// Returns the declared target of a plain distance, or kNone.
 Index declared_target(const check::Model& model, const check::Predicate& predicate);
 
+/// Returns the JSON of the predicates, which takes a pass over all labelled frames.
+std::string predicates(const Material& material, const Scene& scene);
+
 /// Returns the document; `rows` are those listed, worst first.
-std::string document(const Material& material, const Scene& scene, const Totals& totals,
-                     const std::vector<evaluate::EpisodeRow>& judged, const std::vector<Row>& rows);
+std::string document(const Material& material, const Scene& scene, const std::string& predicates,
+                     const Totals& totals, const std::vector<evaluate::EpisodeRow>& judged,
+                     const std::vector<Row>& rows);
 
 /// Escapes `<` in JSON for a script element, so that it can close or open no element.
 std::string in_script(const std::string& json);

@@ -228,7 +228,9 @@ std::optional<std::string> page(const Material& material, const Request& request
     }
     const Totals none{0, 0, std::vector<plan::SampleCounts>(plan.inputs.size())};
     const std::uint64_t bytes = request.megabytes * 1'000'000;
-    const std::uint64_t fixed = page_of(document(material, scene, none, {}, {}), figures).size();
+    const std::string shown = predicates(material, scene);
+    const std::uint64_t fixed =
+        page_of(document(material, scene, shown, none, {}, {}), figures).size();
     Shelf shelf(!judged.empty(), !request.frames.text.empty(), request.episodes.size(),
                 bytes > 2 * fixed ? bytes - fixed : bytes / 2);
     Gathering gathered(plan, judged, shelf);
@@ -237,7 +239,8 @@ std::optional<std::string> page(const Material& material, const Request& request
         [&] { return std::make_unique<Packer>(scene, request, shelf); },
         [&](std::size_t, Packer::Packed packed) { gathered.add(std::move(packed)); });
     if (!read || !report_unpictured(gathered, sink)) return std::nullopt;
-    return page_of(document(material, scene, gathered.totals, judged, shelf.take()), figures);
+    return page_of(document(material, scene, shown, gathered.totals, judged, shelf.take()),
+                   figures);
 }
 
 }  // namespace etlc::report
