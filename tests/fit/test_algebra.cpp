@@ -26,6 +26,9 @@ TEST(Products, AreSummedInTheOrderOfTheColumns) {
         const Matrix columns = random_matrix(rows, 29);
         Matrix found = Matrix::Zero(rows, rows);
         add_products(columns, 0.5, found);
+        Matrix in_threads = Matrix::Zero(rows, rows);
+        add_products(columns, 0.5, in_threads, 3);
+        EXPECT_EQ(in_threads, found) << rows << " rows";
         for (Eigen::Index i = 0; i < rows; ++i)
             for (Eigen::Index j = 0; j <= i; ++j) {
                 double sum = 0;
@@ -33,6 +36,21 @@ TEST(Products, AreSummedInTheOrderOfTheColumns) {
                     sum += columns(i, k) * columns(j, k);
                 EXPECT_EQ(found(i, j), 0.5 * sum) << rows << " rows, " << i << ", " << j;
             }
+    }
+}
+
+TEST(SquaredDistance, IsThatOfEveryDimension) {
+    for (const std::size_t dimension : {1U, 7U, 8U, 9U, 40U}) {
+        std::vector<float> point(dimension);
+        Vector mean(static_cast<Eigen::Index>(dimension));
+        double expected = 0;
+        for (std::size_t i = 0; i < dimension; ++i) {
+            point[i] = 3 * static_cast<float>(i) - 20;
+            mean(static_cast<Eigen::Index>(i)) = 2 - static_cast<double>(i);
+            const double apart = 4 * static_cast<double>(i) - 22;
+            expected += apart * apart;  // whole numbers: exact in any order
+        }
+        EXPECT_EQ(squared_distance(point, mean), expected);
     }
 }
 
