@@ -76,6 +76,15 @@ class Column(ctypes.Structure):
     ]  # fmt: skip
 
 
+def advance(columns: Any, steps: int) -> None:
+    """Leads columns to the samples after these steps."""
+    for column in columns:
+        if column.data is not None:
+            column.data += steps * column.stride
+        if column.present is not None:
+            column.present += steps
+
+
 class Grid(ctypes.Structure):
     _fields_ = [
         ("data", c_void_p), ("present", c_void_p), ("stride", c_int64), ("step_stride", c_int64),

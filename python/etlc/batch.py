@@ -12,7 +12,7 @@ from ._types import Array
 from .description import Described, Measurements
 from .errors import InputError
 from .grids import Grids, joined, warn_of_absent
-from .verdicts import VERDICT_DTYPE, BatchEpisode, BatchVerdicts
+from .arrays import VERDICT_DTYPE, BatchEpisode, BatchVerdicts
 
 if TYPE_CHECKING:
     from .monitor import Monitor

@@ -1,0 +1,32 @@
+"""Checks the arguments that a Monitor is opened with."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ._library import encoded
+from .errors import InputError
+
+
+def choice(name: str, value: str, choices: tuple[str, ...]) -> int:
+    if value not in choices:
+        raise InputError(f"{name} is {value!r}, expected {' or '.join(choices)}")
+    return choices.index(value)
+
+
+def recorder_text(given: str | tuple[int | str, int | str, int] | None) -> bytes | None:
+    if given is None:
+        return None
+    return encoded("recorder", given if isinstance(given, str) else ",".join(map(str, given)))
+
+
+def size(name: str, value: int) -> int:
+    if not isinstance(value, (int, np.integer)) or not 0 <= value < 1 << 63:
+        raise InputError(f"{name} is {value!r}, expected a whole number from 0 on")
+    return int(value)
+
+
+def count(name: str, value: int) -> int:
+    if size(name, value) == 0 or value > 0xFFFFFFFF:
+        raise InputError(f"{name} is {value!r}, expected a whole number from 1 on")
+    return int(value)
