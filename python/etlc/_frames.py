@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Iterable, Iterator
 
 import numpy as np
 
-from ._types import Array
+from ._types import Array, untyped
 
 if TYPE_CHECKING:
     from .arrays import Episode, EpisodeVerdicts, Tables
@@ -98,7 +98,7 @@ def plot(episode: Episode) -> Any:
         lanes, sharex=True, squeeze=False, figsize=(9, 1.6 * lanes + 0.6), layout="constrained"
     )
     places = list(axes[:, 0])
-    x = np.arange(len(episode)) * (episode.step_seconds or 1)
+    x: Array = untyped.arange(len(episode)) * (episode.step_seconds or 1)
     for name, distance in episode.distances.items():
         ax = places.pop(0)
         ax.plot(x, distance, color="#0b4f7c")
@@ -114,7 +114,7 @@ def plot(episode: Episode) -> Any:
 def plot_verdicts(one: EpisodeVerdicts, ax: Any, x: Array, text: str) -> None:
     """Draws the robustness of a monitor with its bounds, and marks where it is final."""
     known = one.robustness[np.isfinite(one.robustness)]
-    low, high = (known.min(), known.max()) if known.size > 0 else (0, 0)
+    low, high = (untyped.min(known), untyped.max(known)) if known.size > 0 else (0.0, 0.0)
     room = (high - low) * 0.06 or 0.5
     ax.set_ylim(min(low, 0) - room, max(high, 0) + room)
     ax.fill_between(

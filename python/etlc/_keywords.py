@@ -9,6 +9,7 @@ import os
 from pathlib import Path
 from typing import Any, Callable, Iterable, Mapping, ParamSpec, TypeVar, Union
 
+from ._arguments import flag, is_mapping
 from ._library import encoded, encoded_path
 from ._options import OPTIONS, Option
 from .errors import InputError
@@ -72,19 +73,18 @@ def words_of(command: str, given: Mapping[str, Any]) -> list[bytes]:
         value = given.get(keyword)
         if value is not None and value is not False:
             words += _words(keyword, option, value)
-    return [*words, b"--diagnostics", b"json"]
+    is_heard = any(option.name == "--diagnostics" for option in OPTIONS[command])
+    return [*words, b"--diagnostics", b"json"] if is_heard else words
 
 
 def _words(keyword: str, option: Option, value: Any) -> list[bytes]:
     name = option.name.encode()
-    if option.manner == "flag" or (value is True and option.manner in ("word", "any")):
-        if value is not True:
-            raise InputError(f"{keyword} is {value!r}, expected True or False")
-        return [name]
+    if option.manner == "flag" or option.name == "-W":
+        return [b"-Werror" if flag(keyword, value) and name == b"-W" else name]
     if value is True:
-        raise InputError(f"{keyword} is True, expected {option.value or 'a word'}")
-    if option.name == "-W":
-        return [b"-W" + encoded(keyword, value)]
+        if option.manner not in ("word", "any"):
+            raise InputError(f"{keyword} is True, expected {option.value or 'a word'}")
+        return [name]
     if "=" in option.value and not isinstance(value, str):
         return [
             encoded(keyword, f"{option.name}={one}={to}") for one, to in _pairs(keyword, value)
@@ -98,17 +98,19 @@ def _words(keyword: str, option: Option, value: Any) -> list[bytes]:
 
 
 def _pairs(keyword: str, value: Any) -> Iterable[tuple[object, object]]:
-    if not isinstance(value, Mapping):
+    if not is_mapping(value):
         raise InputError(f"{keyword} is {value!r}, expected a dict")
-    return value.items()
+    pairs: Iterable[tuple[object, object]] = value.items()
+    return pairs
 
 
 def _joined(option: Option, value: Any) -> str | bytes | os.PathLike[str]:
     """Returns a value as one word: (40, 20, 4) is "40,20,4", and a shard (1, 3) is "1/3"."""
-    if isinstance(value, (str, bytes, os.PathLike)):
-        return value
+    if is_path(value):
+        path: FilePath = value
+        return path
     between = next((sign for sign in "/," if sign in option.value), None)
-    if between is not None and isinstance(value, Iterable):
+    if between is not None and hasattr(value, "__iter__"):
         return between.join(map(str, value))
     return str(value)
 
@@ -120,5 +122,9 @@ def output_of(spec: FilePath, output: FilePath | None, ending: str) -> Path:
 
 def listed(paths: FilePaths) -> list[FilePath]:
     """Returns one path, or several, as a list."""
-    one = isinstance(paths, (str, bytes, os.PathLike))
-    return [paths] if one else list(paths)  # type: ignore[list-item, arg-type]
+    several: Any = paths
+    return [several] if is_path(paths) else list(several)
+
+
+def is_path(value: Any) -> bool:
+    return isinstance(value, (str, bytes, os.PathLike))

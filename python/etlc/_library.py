@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import importlib
 import os
 from ctypes import POINTER, c_char_p, c_double, c_float, c_int32, c_int64, c_size_t, c_uint32
 from ctypes import c_uint64, c_void_p
@@ -158,11 +159,11 @@ def own(name: str, in_wheel: str) -> Path | None:
     """Finds a file installed with this package: inside it for a wheel, else below its prefix."""
     places = [NATIVE / in_wheel]
     try:
-        from . import _installed  # type: ignore[attr-defined]
+        installed: Any = importlib.import_module("._installed", __package__)
     except ImportError:
         pass  # the source tree
     else:
-        places.append(Path(os.path.normpath(_HERE / getattr(_installed, name))))
+        places.append(Path(os.path.normpath(_HERE / getattr(installed, name))))
     return next((place for place in places if place.exists()), None)
 
 

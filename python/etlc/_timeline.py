@@ -5,6 +5,7 @@ does not depend on the number of steps: with more steps than pixels, a line goes
 and the greatest number of each pixel.
 """
 
+# pyright: reportPrivateUsage=false
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ import numpy as np
 
 from ._html import escaped
 from ._library import DECIDED, FINAL, SATISFIED, VIOLATED
-from ._types import Array
+from ._types import Array, untyped
 
 if TYPE_CHECKING:
     from .arrays import Episode
@@ -52,7 +53,8 @@ class _Lane:
 def timeline(episode: Episode) -> str:
     """Returns the picture."""
     steps = len(episode)
-    top, parts = 4.0, []
+    top = 4.0
+    parts: list[str] = []
     for lane in _lanes(episode):
         drawing = _Drawing(lane, steps, top)
         parts.append(drawing.text())
@@ -105,7 +107,7 @@ class _Drawing:
             self.bottom += _STRIP + 2
         shown = np.concatenate([lane.values, lane.levels])
         shown = shown[np.isfinite(shown)].astype("f8")
-        low, high = (shown.min(), shown.max()) if shown.size > 0 else (0.0, 0.0)
+        low, high = (float(untyped.min(shown)), float(untyped.max(shown))) if shown.size > 0 else (0.0, 0.0)
         room = (high - low) * 0.06 if high > low else 0.5
         self._low, self._high = low - room, high + room
 
@@ -144,7 +146,7 @@ class _Drawing:
                 drawn = False
                 continue
             x = float(self._x(np.array(first)))
-            y = self._y(np.array([here.min(), here.max()], "f8"))
+            y = self._y(np.array([untyped.min(here), untyped.max(here)], "f8"))
             path += f"{'L' if drawn else 'M'}{x:.1f} {y[0]:.1f}"
             if here.size > 1 and y[1] != y[0]:
                 path += f"L{x:.1f} {y[1]:.1f}"
@@ -152,7 +154,7 @@ class _Drawing:
         return path
 
     def _bounds(self, lower: Array, upper: Array) -> str:
-        at = np.arange(0, self._steps, max(1, self._steps // _INNER))
+        at: Array = untyped.arange(0, self._steps, max(1, self._steps // _INNER))
         at = at[~np.isnan(lower[at])]
         xs = self._x(at).tolist()
         above = zip(xs, self._y(upper[at].astype("f8")).tolist())

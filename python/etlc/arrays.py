@@ -1,5 +1,6 @@
 """The verdicts of monitors as arrays: for an episode, and for many environments."""
 
+# pyright: reportPrivateUsage=false
 from __future__ import annotations
 
 from typing import Any, Generic, Iterator, Mapping, TypeVar
@@ -9,7 +10,7 @@ import numpy as np
 from . import _frames, _html, _timeline
 from ._ambiguous import Ambiguous
 from ._library import ALARM, DECIDED, FINAL, FULFILLED, SATISFIED, VIOLATED
-from ._types import Array
+from ._types import Array, untyped
 from .errors import InputError
 from .verdicts import contains
 
@@ -97,14 +98,14 @@ class VerdictArrays(Ambiguous):
         return self.name, self._status.shape, *(column.tobytes() for column in numbers)
 
     def _alarms(self) -> int:
-        return int(self.alarm.sum())
+        return int(np.count_nonzero(self.alarm))
 
     def _counted(self) -> str:
         return f"{self._alarms()} alarms"
 
     def __repr__(self) -> str:
         shape = " x ".join(map(str, self._status.shape))
-        missing = int(self.unknown.sum())
+        missing = int(np.count_nonzero(self.unknown))
         return f"<{self.name}: {shape} verdicts, {self._counted()}{_unknown(missing)}>"
 
 
@@ -129,7 +130,7 @@ class EpisodeVerdicts(VerdictArrays):
     def __repr__(self) -> str:
         first = self.first_alarm
         said = "no alarm" if first is None else f"first alarm at step {first}"
-        return f"<{self.name}: {len(self)} steps, {said}{_unknown(int(self.unknown.sum()))}>"
+        return f"<{self.name}: {len(self)} steps, {said}{_unknown(int(np.count_nonzero(self.unknown)))}>"
 
 
 class RunVerdicts(VerdictArrays):
@@ -153,7 +154,7 @@ class RunVerdicts(VerdictArrays):
         return np.where(alarms.any(axis=-1), alarms.argmax(axis=-1), -1)
 
     def _alarms(self) -> int:
-        return int((self.first_alarm >= 0).sum())
+        return int(np.count_nonzero(self.first_alarm >= 0))
 
     def _counted(self) -> str:
         return f"alarms in {self._alarms()} rows"
@@ -161,7 +162,7 @@ class RunVerdicts(VerdictArrays):
 
 def _least(numbers: Array) -> float:
     known = numbers[~np.isnan(numbers)]
-    return float(known.min()) if known.size > 0 else float("nan")
+    return float(untyped.min(known)) if known.size > 0 else float("nan")
 
 
 def _unknown(count: int) -> str:
@@ -233,7 +234,7 @@ class Tables(Ambiguous, Generic[Arrays]):
     def _repr_html_(self) -> str:
         """Returns a small table, for notebooks."""
         rows = (
-            (one.name, one._alarms(), *(int(where.sum()) for where in (
+            (one.name, one._alarms(), *(int(np.count_nonzero(where)) for where in (
                 one.satisfied, one.violated, one.unknown)),
              _html.number(_least(one.robustness)))
             for one in self
@@ -311,7 +312,7 @@ class Episode(Tables[EpisodeVerdicts]):
     def _repr_html_(self) -> str:
         """Returns a small table and the timelines, for notebooks."""
         rows = (
-            (one.name, _html.number(one.first_alarm), int(one.unknown.sum()),
+            (one.name, _html.number(one.first_alarm), int(np.count_nonzero(one.unknown)),
              one.status[-1] if len(self) > 0 else "–")
             for one in self
         )  # fmt: skip

@@ -12,7 +12,7 @@ from typing import Any, Union
 
 import numpy as np
 
-from ._types import Array
+from ._types import Array, untyped
 from .errors import InputError
 
 
@@ -93,8 +93,9 @@ def as_rows(
             )
     present = None
     if masked:
-        mask: Array = np.ma.getmaskarray(value)  # type: ignore[no-untyped-call]
-        present = np.ascontiguousarray(~mask.any(axis=tuple(range(axes, mask.ndim)))).view("u1")
+        mask: Array = untyped.ma.getmaskarray(value)
+        hidden: Array = mask.any(axis=tuple(range(axes, len(mask.shape))))
+        present = np.ascontiguousarray(~hidden).view("u1")
     is_list = isinstance(value, (list, tuple))
     rows = array if array.dtype == dtype else _converted(name, array, dtype, is_list, present)
     is_packed = len(shape) == 0 or shape[0] == 1 or rows.strides[-1] == dtype.itemsize
@@ -113,9 +114,7 @@ def _array(name: str, value: Any) -> Array:
     """Converts to a numpy array. Refuses masked arrays, whose mask would be lost."""
     if isinstance(value, np.ma.MaskedArray):
         raise InputError(f"input {name!r} is a masked array; one that is missing is None")
-    if isinstance(value, (list, tuple)) and any(
-        isinstance(one, np.ma.MaskedArray) for one in value
-    ):
+    if any(isinstance(one, np.ma.MaskedArray) for one in _listed(value)):
         raise InputError(f"input {name!r} has masked arrays in a list; numpy.ma.stack joins them")
     try:
         return np.asarray(value)
@@ -127,6 +126,10 @@ def _array(name: str, value: Any) -> Array:
                 "this process: pass x.detach().cpu().numpy()"
             ) from None
         raise InputError(f"input {name!r} is no array: {error}") from None
+
+
+def _listed(value: Any) -> tuple[Any, ...]:
+    return tuple(value) if isinstance(value, (list, tuple)) else ()
 
 
 def _converted(
@@ -147,7 +150,7 @@ def _converted(
                 return array.astype(dtype)
         raise InputError(f"input {name!r} is {_shown(array)}, expected {dtype.name}")
     there = array if present is None else array[present != 0]
-    if kind not in "iu" or (there.size > 0 and (there.min() < least or there.max() > most)):
+    if kind not in "iu" or (there.size > 0 and (untyped.min(there) < least or untyped.max(there) > most)):
         raise InputError(f"input {name!r} is {_shown(array)}, expected {expected}")
     return array.astype(dtype)
 

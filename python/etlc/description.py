@@ -1,5 +1,6 @@
 """What a compiled spec says of itself."""
 
+# pyright: reportPrivateUsage=false
 from __future__ import annotations
 
 import ctypes
@@ -149,7 +150,7 @@ class Described(Names):
         self._nearest = [bool(one.has_nearest) for one in predicates]
         self._predicate_at = {decoded(one.name): p for p, one in enumerate(predicates)}
         self._monitor_at = {name: m for m, name in enumerate(self.monitors)}
-        self._let_at = {}
+        self._let_at: dict[str, int] = {}
         for let in range(spec.lets):
             name = c_char_p()
             call(library.etlc_describe_let, self._session, let, byref(name))

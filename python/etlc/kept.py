@@ -24,7 +24,7 @@ class Keeping(Described):
         Raises:
             NotKeptError: the monitor was opened without a recorder.
         """
-        incidents = []
+        incidents: list[bytes] = []
         for n in range(self._incident_counts()[0]):
             data, size = c_void_p(), c_size_t()
             call(library.etlc_incident, self._session, n, byref(data), byref(size))
@@ -58,7 +58,7 @@ class Keeping(Described):
         """
 
         at = self._at(self._monitor_at, "monitor", monitor)
-        said = []
+        said: list[str] = []
         for form in (0, 1):
             text = c_char_p()
             call(library.etlc_explain, self._session, at, form, byref(text))

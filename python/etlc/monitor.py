@@ -1,5 +1,6 @@
 """Steps the monitors of a spec."""
 
+# pyright: reportPrivateUsage=false
 from __future__ import annotations
 
 import ctypes
@@ -11,9 +12,8 @@ from typing import Any, Mapping
 import numpy as np
 
 from . import _library
-from ._arguments import choice, count, recorder_text, size
+from ._arguments import choice, count, flag, recorder_text, size
 from ._library import call, encoded, encoded_path, library
-from ._types import Array
 from .arrays import VERDICT_DTYPE, BatchEpisode, Episode
 from .batch import Batch
 from .errors import EtlcWarning, InputError, diagnostics_of, warn, warn_of
@@ -139,10 +139,7 @@ class Monitor(Stepping, Keeping, Referring):
         Warns:
             EtlcWarning: an input that a monitor uses is missing at every step, and not None.
         """
-        if not isinstance(distances, (bool, np.bool_)):
-            raise InputError(
-                "distances is True or False; samples of an input of this name go into a dict"
-            )
+        distances = flag("distances", distances)  # samples of such an input go into `arrays`
         given = joined(arrays, more)
         grids = Grids(self, given, ("N",))
         (steps,) = grids.lead
@@ -230,7 +227,7 @@ class Monitor(Stepping, Keeping, Referring):
 
     def _warn_of_missing(self, steps: int, given: Mapping[str, Any]) -> None:
         """Warns of inputs that monitors use and that have no sample in the episode."""
-        said = []
+        said: list[str] = []
         for name, one in self.inputs.items():
             if steps == 0 or not one.is_used or given.get(name, ...) is None:
                 continue

@@ -1,5 +1,6 @@
 """The results of commands."""
 
+# pyright: reportPrivateUsage=false
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -35,7 +36,7 @@ class Checked(Ambiguous):
     Its truth value raises AmbiguousError.
 
     Attributes:
-        diagnostics: the warnings; empty if there are none.
+        diagnostics: the warnings, and notes about files that do not exist yet.
     """
 
     diagnostics: tuple[Diagnostic, ...] = ()
@@ -123,7 +124,7 @@ class Run(Ambiguous):
 
     episode: Episode
     positions: Array
-    lets: dict[str, Array] = field(default_factory=dict)
+    lets: dict[str, Array] = field(default_factory=lambda: dict[str, Array]())
     summary: str = ""
     diagnostics: tuple[Diagnostic, ...] = ()
 

@@ -1,5 +1,6 @@
 """The calls of a Monitor that step it, and that tell what it measured."""
 
+# pyright: reportPrivateUsage=false
 from __future__ import annotations
 
 from ctypes import byref, c_size_t, c_uint64
@@ -109,7 +110,7 @@ class Stepping(Described):
             InputError: the spec does not have this name, shape or type; no step was taken.
             ClosedError: the monitor is closed, or `finish` was called.
         """
-        put = self._put
+        put, name = self._put, ""
         try:
             for name, value in samples.items():
                 put[name](value)

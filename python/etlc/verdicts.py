@@ -1,5 +1,6 @@
 """The verdicts of monitors after one step."""
 
+# pyright: reportPrivateUsage=false
 from __future__ import annotations
 
 from dataclasses import dataclass

@@ -26,5 +26,5 @@ def best_of(monitor: etlc.Monitor, plans: NDArray[np.float32]) -> int:
 
 with etlc.Monitor(text="spec s; input z : f32[2]; monitor keeps = G true;") as opened:
     batch = opened.batch(3)
-    print(batch.step(z=np.zeros((3, 2), "f4"))["keeps"].robustness.sum(), opened.steps)
+    print(batch.step(z=np.zeros((3, 2), "f4"))["keeps"].robustness.tolist(), opened.steps)
     print(stops_at(opened, np.zeros((4, 2), "f4")), best_of(opened, np.zeros((5, 4, 2), "f4")))
