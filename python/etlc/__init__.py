@@ -33,6 +33,7 @@ from .errors import (
     SpecError,
     UndecidedError,
 )
+from .encoding import Encoder
 from .description import REFERENCE_FRAMES, Input, Measurement, Measurements
 from .judging import crossvalidate, evaluate, report
 from .labelling import Labelling, label, propose
@@ -56,6 +57,7 @@ __all__ = [
     "Diagnostic",
     "Episode",
     "EpisodeVerdicts",
+    "Encoder",
     "Error",
     "EtlcWarning",
     "Evaluation",

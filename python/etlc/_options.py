@@ -86,6 +86,7 @@ OPTIONS: dict[str, tuple[Option, ...]] = {
         Option("--embedded", "FILE", "one"),
         Option("--shard", "I/N", "one"),
         Option("--write-reference", "FOLDER", "one"),
+        Option("--pipe", "ENCODER", "one"),
         Option("--onnxruntime", "PATH", "one"),
         Option("--encoder-cmd", "COMMAND", "one"),
         Option("--encoder-timeout", "N", "one"),

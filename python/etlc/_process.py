@@ -8,7 +8,7 @@ import shutil
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Iterable
+from typing import IO, Iterable, Mapping
 
 from ._library import own
 from .errors import Diagnostic, Error, EtlcWarning, InputError, SpecError
@@ -38,23 +38,34 @@ def command_path() -> str:
     return os.fspath(path)
 
 
-def started(words: Iterable[bytes]) -> subprocess.Popen[bytes]:
-    """Starts etlc with these words, and returns the process."""
+def started(
+    words: Iterable[bytes],
+    variables: Mapping[str, str] | None = None,
+    stdin: int | None = None,
+    stderr: int | IO[bytes] = subprocess.PIPE,
+) -> subprocess.Popen[bytes]:
+    """Starts etlc with these words and streams, and returns the process.
+
+    `variables` are added to its environment.
+    """
     command = command_path()
     try:
         return subprocess.Popen(
-            [os.fsencode(command), *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE
-        )
+            [os.fsencode(command), *words], env={**os.environ, **(variables or {})}, stdin=stdin,
+            stdout=subprocess.PIPE, stderr=stderr,
+        )  # fmt: skip
     except OSError as error:
         raise Error(f"{command} cannot be run: {error}") from None
 
 
-def run(words: Iterable[bytes], quiet: bool = False) -> Ran:
+def run(
+    words: Iterable[bytes], quiet: bool = False, variables: Mapping[str, str] | None = None
+) -> Ran:
     """Runs etlc with these words. A failure raises, and a warning is one of Python.
 
     `quiet`: an earlier call has issued the same warnings.
     """
-    with started(words) as process:
+    with started(words, variables) as process:
         try:
             printed, said = process.communicate()
         except BaseException:  # Ctrl-C, for example

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Union
+from typing import Any, Iterable, Union
 
 import numpy as np
 
@@ -106,6 +106,27 @@ def as_rows(
     return Rows(array.shape[:axes], rows, present)
 
 
+def as_embedding(value: Any) -> Array:
+    """Returns what a model makes of an image as float32 (D,)."""
+    array = _array("embedding", value)
+    if array.ndim == 2 and array.shape[0] == 1:
+        array = array[0]
+    if array.ndim != 1 or array.size == 0 or array.dtype.kind != "f":
+        raise InputError(f"the encoder returned {_shown(array)}, expected floats of the shape (D,)")
+    return np.ascontiguousarray(array.astype("f4"))
+
+
+def as_images(value: Any) -> Array:
+    """Returns one image or several as uint8 (N, rows, columns, 3)."""
+    array = _array("image", value)
+    if array.dtype != np.uint8 or array.ndim not in (3, 4) or array.shape[-1] != 3:
+        raise InputError(
+            f"images are {_shown(array)}, expected uint8 of the shape (rows, columns, 3) or "
+            "(N, rows, columns, 3), red first"
+        )
+    return np.ascontiguousarray(array if array.ndim == 4 else array[np.newaxis])
+
+
 def _shape_text(shape: tuple[Axis, ...]) -> str:
     return f"({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
 
@@ -128,8 +149,10 @@ def _array(name: str, value: Any) -> Array:
         raise InputError(f"input {name!r} is no array: {error}") from None
 
 
-def _listed(value: Any) -> tuple[Any, ...]:
-    return tuple(value) if isinstance(value, (list, tuple)) else ()
+def _listed(value: Any) -> Iterable[Any]:
+    is_list = isinstance(value, (list, tuple))
+    values: Iterable[Any] = value
+    return values if is_list else ()
 
 
 def _converted(

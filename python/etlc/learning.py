@@ -6,7 +6,9 @@ import json
 from typing import Iterable, Mapping
 
 from ._keywords import FilePath, FilePaths, checks_names, output_of, words_of
+from ._models import Encode
 from ._process import run
+from .encoding import embed_here
 from .results import Suggestions, Written
 
 
@@ -154,6 +156,7 @@ def embed(
     onnxruntime: FilePath | None = None,
     encoder_command: str | None = None,
     encoder_timeout: int | None = None,
+    encoder: Encode | Mapping[str, Encode] | None = None,
     warnings_are_errors: bool = False,
 ) -> Written:
     """Encodes the images that a spec names, and recordings into episodes.
@@ -175,6 +178,10 @@ def embed(
             the one of the environment, pip, npm or the system.
         encoder_command: a command that encodes (docs/encoders.md), in place of the spec's network.
         encoder_timeout: stop an encoder that does nothing for this many seconds.
+        encoder: what encodes, in this process, in place of the spec's network: a function from an
+            image, uint8 (rows, columns, 3), to a vector of floats, such as one that calls a model
+            of torch; or one for each encoder of the spec, by name. The file that the spec names
+            keeps a hash of the model; another model is refused (docs/encoders.md).
         warnings_are_errors: whether a warning fails the command.
 
     Returns:
@@ -182,10 +189,13 @@ def embed(
 
     Raises:
         SpecError: the command failed; the message gives the reason. E1016: etlc was installed
-            without `etlc embed`, or ONNX Runtime is missing.
+            without `etlc embed`, or ONNX Runtime is missing. E1017: `encoder` is another model.
         InputError: an argument is invalid.
     """
-    ran = run(words_of("embed", locals()))
+    given = locals()
+    models = given.pop("encoder")
+    words = words_of("embed", given)
+    ran = run(words) if models is None else embed_here(spec, models, given)
     path = output_of(spec, output or embedded, ".embedded.npz")
     return Written(path, ran.report, ran.diagnostics)
 
