@@ -132,8 +132,8 @@ class _Walk:
 
     def _add_named(self, one: Any) -> None:
         """Adds a function or a class: that of a library by its name, others with their code."""
-        module = getattr(one, "__module__", None) or "builtins"
-        name = getattr(one, "__qualname__", repr(type(one)))
+        module = str(getattr(one, "__module__", None) or "builtins")
+        name = str(getattr(one, "__qualname__", ""))
         receiver = getattr(one, "__self__", None)
         is_builtin = _is(one, types.BuiltinFunctionType)
         if is_builtin and not (receiver is None or _is(receiver, types.ModuleType)):
@@ -144,8 +144,9 @@ class _Walk:
         elif _is(one, type):
             self._say("class", name.encode())
             self._add_all(one.__bases__)
-            for key, value in sorted(vars(one).items()):
-                if key not in _NOT_COMPUTED and not isinstance(value, _SLOTS):
+            members: dict[str, Any] = dict(one.__dict__)
+            for key, value in sorted(members.items()):
+                if key not in _NOT_COMPUTED and not _is(value, *_SLOTS):
                     self.add(key)
                     self.add(value, f".{key}")
         else:

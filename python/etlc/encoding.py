@@ -115,8 +115,7 @@ class Encoder:
             ]  # fmt: skip
         shape = (len(rows), self._dimension) if not rows else (len(rows), len(rows[0]))
         together: Array = np.array(rows, "f4").reshape(shape)
-        first: Array = together[:1].reshape(shape[1])
-        return together if np.ndim(images) == 4 else first
+        return together if np.ndim(images) == 4 else together.reshape(shape[1])
 
     __call__ = encode
 
