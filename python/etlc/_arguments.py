@@ -32,7 +32,8 @@ def is_mapping(value: Any) -> bool:
 
 def flag(name: str, value: Any) -> bool:
     if not isinstance(value, bool):
-        raise InputError(f"{name} is {value!r}, expected True or False")
+        shown = repr(value) if len(repr(value)) < 80 else f"of {type(value).__name__}"
+        raise InputError(f"{name} is {shown}, expected True or False")
     return value
 
 

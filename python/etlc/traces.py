@@ -94,7 +94,9 @@ def run(
             if name.startswith(prefix) and name not in _COLUMNS
         }
 
-    episode = Episode(monitors, found.reshape(shape), per_step("distance_"))
+    times = table.get("time", ())[shape[1] : shape[1] + 1]  # that of step 1
+    seconds = float(times[0]) if times else 0.0
+    episode = Episode(monitors, found.reshape(shape), per_step("distance_"), step_seconds=seconds)
     return Run(episode, positions, per_step("robustness_"), ran.report, ran.diagnostics)
 
 
