@@ -2,6 +2,7 @@
 """What notebooks show of results: small tables, timelines, frames of pandas and figures."""
 
 import html.parser
+import struct
 import sys
 import unittest
 import warnings
@@ -24,6 +25,47 @@ monitor arrives = F near;
 monitor calm = G !high;
 sliding monitor soon = F[0, 3 steps] near;
 """
+
+
+MASK = (1 << 64) - 1
+PRIMES = (11400714785074694791, 14029467366897019727, 1609587929392839161, 9650029242287828579,
+          2870177450012600261)  # fmt: skip
+
+
+def xxh64(data):
+    """XXH64 with the seed 0, by its specification."""
+    def turned(x, bits):
+        return (x << bits | x >> (64 - bits)) & MASK
+
+    def round_of(lane, word):
+        return turned((lane + word * PRIMES[1]) & MASK, 31) * PRIMES[0] & MASK
+
+    one, two, three, four, five = PRIMES
+    lanes = [(one + two) & MASK, two, 0, -one & MASK]
+    whole = len(data) // 32 * 32
+    for at in range(0, whole, 32):
+        words = struct.unpack_from("<4Q", data, at)
+        lanes = [round_of(lane, word) for lane, word in zip(lanes, words)]
+    found = five
+    if whole > 0:
+        found = sum(turned(lane, bits) for lane, bits in zip(lanes, (1, 7, 12, 18))) & MASK
+        for lane in lanes:
+            found = ((found ^ round_of(0, lane)) * one + four) & MASK
+    found = (found + len(data)) & MASK
+    rest = len(data) - whole
+    for at in range(whole, whole + rest // 8 * 8, 8):
+        (word,) = struct.unpack_from("<Q", data, at)
+        found = (turned(found ^ round_of(0, word), 27) * one + four) & MASK
+    at = whole + rest // 8 * 8
+    if rest % 8 >= 4:
+        (word,) = struct.unpack_from("<I", data, at)
+        found = (turned(found ^ word * one & MASK, 23) * two + three) & MASK
+        at += 4
+    for byte in data[at:]:
+        found = turned(found ^ byte * five & MASK, 11) * one & MASK
+    for bits, prime in ((33, two), (29, three)):
+        found = (found ^ found >> bits) * prime & MASK
+    return found ^ found >> 32
 
 
 class Words(html.parser.HTMLParser):
@@ -206,7 +248,8 @@ class Kept(unittest.TestCase):
         monitor.step(x=1.0)
         reopen, (opened, state, *rest) = monitor.__reduce__()
         version = etlc.__version__.encode()
-        other = state.replace(version, b"9" * len(version), 1)
+        other = state[:-8].replace(version, b"9" * len(version), 1)
+        other += struct.pack("<Q", xxh64(other))
         with self.assertRaisesRegex(etlc.Error, f"saved by etlc 99+, this is {etlc.__version__}"):
             reopen(opened, other, *rest)
         for damaged in (state[:8] + b"9" + state[9:], state[:-1], b"", state + b"x"):
