@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Iterable, Iterator
 
 import numpy as np
 
-from ._types import Array, untyped
+from ._types import Array, extremes, untyped
 
 if TYPE_CHECKING:
     from .arrays import Episode, EpisodeVerdicts, Tables
@@ -114,7 +114,7 @@ def plot(episode: Episode) -> Any:
 def plot_verdicts(one: EpisodeVerdicts, ax: Any, x: Array, text: str) -> None:
     """Draws the robustness of a monitor with its bounds, and marks where it is final."""
     known = one.robustness[np.isfinite(one.robustness)]
-    low, high = (untyped.min(known), untyped.max(known)) if known.size > 0 else (0.0, 0.0)
+    low, high = extremes(known)
     room = (high - low) * 0.06 or 0.5
     ax.set_ylim(min(low, 0) - room, max(high, 0) + room)
     ax.fill_between(

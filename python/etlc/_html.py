@@ -25,8 +25,8 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]], title: str = ""
     """Returns a table with a line for each row."""
 
     def line(cells: Sequence[object], kind: str) -> str:
-        style = ' style="text-align:left"'
-        return "<tr>" + "".join(f"<{kind}{style}>{escaped(one)}</{kind}>" for one in cells) + "</tr>"
+        begin = f'<{kind} style="text-align:left">'
+        return "<tr>" + "".join(f"{begin}{escaped(one)}</{kind}>" for one in cells) + "</tr>"
 
     lines = "".join(line(row, "td") for row in rows)
     said = f"<p><b>{escaped(title)}</b></p>" if title else ""

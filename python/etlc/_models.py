@@ -201,7 +201,7 @@ class _Walk:
         self._add_all(pairs or ())
 
     def _is_library(self, module: str) -> bool:
-        """Returns whether a module belongs to Python or to an installed package, and notes which."""
+        """Returns whether a module belongs to Python or a package, and notes the version."""
         top = module.partition(".")[0]
         if top in sys.builtin_module_names or top in sys.stdlib_module_names:
             return top != "__main__"

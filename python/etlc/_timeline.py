@@ -15,7 +15,7 @@ import numpy as np
 
 from ._html import escaped
 from ._library import DECIDED, FINAL, SATISFIED, VIOLATED
-from ._types import Array, untyped
+from ._types import Array, extremes, untyped
 
 if TYPE_CHECKING:
     from .arrays import Episode
@@ -107,7 +107,7 @@ class _Drawing:
             self.bottom += _STRIP + 2
         shown = np.concatenate([lane.values, lane.levels])
         shown = shown[np.isfinite(shown)].astype("f8")
-        low, high = (float(untyped.min(shown)), float(untyped.max(shown))) if shown.size > 0 else (0.0, 0.0)
+        low, high = extremes(shown)
         room = (high - low) * 0.06 if high > low else 0.5
         self._low, self._high = low - room, high + room
 

@@ -130,7 +130,8 @@ class EpisodeVerdicts(VerdictArrays):
     def __repr__(self) -> str:
         first = self.first_alarm
         said = "no alarm" if first is None else f"first alarm at step {first}"
-        return f"<{self.name}: {len(self)} steps, {said}{_unknown(int(np.count_nonzero(self.unknown)))}>"
+        missing = _unknown(int(np.count_nonzero(self.unknown)))
+        return f"<{self.name}: {len(self)} steps, {said}{missing}>"
 
 
 class RunVerdicts(VerdictArrays):

@@ -12,7 +12,7 @@ from typing import Any, Iterable, Union
 
 import numpy as np
 
-from ._types import Array, untyped
+from ._types import Array, extremes, untyped
 from .errors import InputError
 
 
@@ -173,7 +173,8 @@ def _converted(
                 return array.astype(dtype)
         raise InputError(f"input {name!r} is {_shown(array)}, expected {dtype.name}")
     there = array if present is None else array[present != 0]
-    if kind not in "iu" or (there.size > 0 and (untyped.min(there) < least or untyped.max(there) > most)):
+    low, high = extremes(there) if kind in "iu" else (0.0, 0.0)
+    if kind not in "iu" or low < least or high > most:
         raise InputError(f"input {name!r} is {_shown(array)}, expected {expected}")
     return array.astype(dtype)
 

@@ -36,18 +36,12 @@ class Labelling:
                 break
             self.tables += (line.removeprefix("Labels go to ").removesuffix("."),)
         if not self.address.startswith("http"):
-            self._conclude()
+            self.wait()
 
     def _hear(self) -> None:
         """Reads what the program says, so that it never waits."""
         assert self._process.stderr is not None
         self._said = self._process.stderr.read()
-
-    def _conclude(self) -> None:
-        status = self._process.wait()
-        self._hearing.join()
-        self.stop()
-        concluded(status, b"", self._said)
 
     def wait(self) -> None:
         """Waits until the program ends, which `stop` or Ctrl-C does.
@@ -56,9 +50,11 @@ class Labelling:
             SpecError: it failed.
         """
         try:
-            self._process.wait()
+            status = self._process.wait()
         finally:
             self.stop()
+        if status > 0:  # it was not stopped
+            concluded(status, b"", self._said)
 
     def stop(self) -> None:
         """Ends the program."""

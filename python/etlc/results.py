@@ -41,7 +41,7 @@ class Checked(Ambiguous):
 
     diagnostics: tuple[Diagnostic, ...] = ()
 
-    _ask = "its .diagnostics; a spec that does not compile raises"
+    _ask = "its .diagnostics"
 
 
 @dataclass(frozen=True, eq=False)

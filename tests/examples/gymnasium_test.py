@@ -74,7 +74,7 @@ class Stopping(unittest.TestCase):
         return found, self.env.unwrapped.actions
 
     def test_stops_before_the_action(self):
-        for _ in range(2):  # a second episode begins anew
+        for _ in range(2):  # the second episode knows nothing of the first
             (x, reward, terminated, truncated, info), actions = self.rollout(closes_at=0.5)
             self.assertEqual((x, reward, terminated, truncated), (0.5, 0, True, False))
             self.assertEqual(actions, 4)
