@@ -186,6 +186,7 @@ class _Walk:
         self.add(type(one), f"<{type(one).__qualname__}>")
         if isinstance(reduced, str):
             self._say("named", reduced.encode())
+            self.add(getattr(one, "__dict__", None))  # what functools.lru_cache wraps, for example
             return
         parts: list[Any] = [*reduced, None, None, None]
         make, arguments, state, items, pairs = parts[:5]

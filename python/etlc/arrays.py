@@ -170,9 +170,6 @@ def _unknown(count: int) -> str:
     return f", {count} unknown" if count > 0 else ""
 
 
-#: Attributes that a copy, which has none yet, does not look up among the monitors.
-_OF_TABLES = ("monitors", "table", "distances", "thresholds", "texts", "step_seconds")
-
 Arrays = TypeVar("Arrays", bound=VerdictArrays)
 
 
@@ -204,7 +201,7 @@ class Tables(Ambiguous, Generic[Arrays]):
         return self._arrays(name, self.table[..., self.monitors.index(name)])
 
     def __getattr__(self, name: str) -> Arrays:
-        if name.startswith("_") or name in _OF_TABLES:
+        if name.startswith("_") or name in ("monitors", "table"):
             raise AttributeError(name)
         if name not in self.monitors:
             raise AttributeError(f"there is no monitor {name!r}")

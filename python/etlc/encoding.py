@@ -117,7 +117,9 @@ class Encoder:
         together: Array = np.array(rows, "f4").reshape(shape)
         return together if np.ndim(images) == 4 else together.reshape(shape[1])
 
-    __call__ = encode
+    def __call__(self, images: Any) -> Array:
+        """The same as `encode`."""
+        return self.encode(images)
 
     def _encode_in_pipe(self, image: Array) -> Array:
         process = self._process

@@ -244,6 +244,7 @@ class InProcess(Box):
     def test_the_hash_is_the_same_in_every_process(self):
         program = Path("program.py")
         program.write_text(textwrap.dedent(f"""
+            import functools
             import sys
             import numpy as np
             from etlc._models import identity_of
@@ -255,7 +256,10 @@ class InProcess(Box):
                     self.itself = self
                 def __call__(self, image):
                     '''Comments do not count.'''
-                    return helper(image) * self.weights
+                    return helper(image) * self.weights + cached(2)
+            @functools.lru_cache
+            def cached(x):
+                return x + 1.5
             def helper(image):
                 return image.mean() if "x" in {{"x", "y", "z"}} else LIMIT
             LIMIT = 3
@@ -279,7 +283,7 @@ class InProcess(Box):
             found.add(subprocess.check_output([sys.executable, "-B", program], text=True))
         self.assertEqual(len(found), 1, found)
         self.assertIn(f"numpy {np.__version__}\npython 3.", found.pop())
-        changes = (("LIMIT = 3", "LIMIT = 4"), ("image.mean()", "image.max()"), ("6.0", "7.0"),
+        changes = (("LIMIT = 3", "LIMIT = 4"), ("image.mean()", "image.max()"), ("6.0", "7.0"), ("x + 1.5", "x + 2.5"),
                    ('"d"', '"e"'), ('"z"', '"w"'))  # fmt: skip
         for old, new in changes:
             program.write_text(text.replace(old, new))
