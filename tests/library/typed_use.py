@@ -38,7 +38,8 @@ def encoded(spec: str, images: NDArray[np.uint8]) -> NDArray[np.float32]:
     """Encodes images with a model of this process."""
 
     def mean(image: NDArray[np.uint8]) -> NDArray[np.float32]:
-        return np.asarray(image, "f4")[0, 0]
+        pixel: NDArray[np.float32] = np.asarray(image, "f4")[0, 0]
+        return pixel
 
     etlc.embed(spec, "drives", output="episodes", encoder=mean)
     with etlc.Encoder(spec, encoder=mean) as encoder:
