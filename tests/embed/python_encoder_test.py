@@ -283,7 +283,8 @@ class InProcess(Box):
             found.add(subprocess.check_output([sys.executable, "-B", program], text=True))
         self.assertEqual(len(found), 1, found)
         self.assertIn(f"numpy {np.__version__}\npython 3.", found.pop())
-        changes = (("LIMIT = 3", "LIMIT = 4"), ("image.mean()", "image.max()"), ("6.0", "7.0"), ("x + 1.5", "x + 2.5"),
+        changes = (("LIMIT = 3", "LIMIT = 4"), ("image.mean()", "image.max()"), ("6.0", "7.0"),
+                   ("x + 1.5", "x + 2.5"),
                    ('"d"', '"e"'), ('"z"', '"w"'))  # fmt: skip
         for old, new in changes:
             program.write_text(text.replace(old, new))
