@@ -129,6 +129,26 @@ def plot_verdicts(one: EpisodeVerdicts, ax: Any, x: Array, text: str) -> None:
     _title(ax, one.name, text)
 
 
+def plot_figures(data: dict[str, Any]) -> Any:
+    """Draws the figures of an evaluation with their intervals, a row for each."""
+    pyplot = _needed("matplotlib.pyplot", "plot")
+    rows = list(figures(data))[::-1]
+    figure, axes = pyplot.subplots(
+        1, len(_FIGURES), sharey=True, figsize=(10, 0.4 * len(rows) + 1.2), layout="constrained"
+    )
+    for ax, name in zip(axes, _FIGURES):
+        for at, row in enumerate(rows):
+            if row[name] is not None and row[f"{name}_low"] is not None:
+                ax.plot([row[f"{name}_low"], row[f"{name}_high"]], [at, at], color="#0b4f7c")
+            ax.plot([row[name]], [at], "o", color="#0b4f7c")
+        ax.set_title(name, loc="left", fontsize="small")
+        ax.set_xlim(-0.03, 1.03)
+    keys = [key for key in ("spec", "name", "by") if rows and key in rows[0]]
+    names = [" ".join(str(row[key]) for key in keys) for row in rows]
+    axes[0].set_yticks(range(len(rows)), names)
+    return figure
+
+
 def _title(ax: Any, name: str, text: str) -> None:
     ax.set_title(f"{name}  {text}".replace("$", r"\$"), loc="left", fontsize="small")
 

@@ -38,6 +38,7 @@ class VerdictArrays(Ambiguous):
         self.lower: Array = table["lower"]
         self.upper: Array = table["upper"]
         self._status: Array = table["status"]
+        self._table = table
 
     @property
     def bounds(self) -> tuple[Array, Array]:
@@ -126,6 +127,30 @@ class EpisodeVerdicts(VerdictArrays):
         """The first step with an alarm, or None."""
         alarms = self.alarm
         return int(np.argmax(alarms)) if alarms.any() else None
+
+    def _episode(self) -> Episode:
+        """Returns an episode of this monitor alone."""
+        return Episode((self.name,), self._table[:, np.newaxis])
+
+    def to_pandas(self) -> Any:
+        """Returns a pandas.DataFrame with a row for each step.
+
+        Raises:
+            ImportError: pandas is not installed.
+        """
+        return self._episode().to_pandas()
+
+    def plot(self) -> Any:
+        """Draws the robustness and its bounds over the steps: a matplotlib.figure.Figure.
+
+        Raises:
+            ImportError: matplotlib is not installed.
+        """
+        return self._episode().plot()
+
+    def _repr_html_(self) -> str:
+        """Returns a small table and the timeline, for notebooks."""
+        return self._episode()._repr_html_()
 
     def __repr__(self) -> str:
         first = self.first_alarm

@@ -101,7 +101,7 @@ class Encoder:
 
         Raises:
             InputError: the images have another type or shape.
-            SpecError: the encoder failed; the message gives the reason.
+            SpecError: the encoder failed and is closed; the message gives the reason.
             ClosedError: it is closed.
         """
         array = as_images(images)

@@ -72,6 +72,14 @@ class Evaluation(Ambiguous):
         """
         return _frames.frame_of_figures(self.data)
 
+    def plot(self) -> Any:
+        """Draws the figures with their 95 % intervals: a matplotlib.figure.Figure.
+
+        Raises:
+            ImportError: matplotlib is not installed.
+        """
+        return _frames.plot_figures(self.data)
+
     def _repr_html_(self) -> str:
         """Returns small tables, for notebooks."""
         rows = list(_frames.figures(self.data))

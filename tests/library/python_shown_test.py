@@ -2,6 +2,7 @@
 """What notebooks show of results: small tables, timelines, frames of pandas and figures."""
 
 import html.parser
+import json
 import struct
 import sys
 import unittest
@@ -133,6 +134,12 @@ class Showing(unittest.TestCase):
         first = episode.calm.first_alarm
         self.assertAlmostEqual(float(violated.get("x")), (first - 0.5) / 39 * 816, delta=0.06)
         self.assertIn("<svg", episode._repr_html_())
+        alone = ElementTree.fromstring(self.svg_of(episode.calm))
+        self.assertEqual([one.get("class") for one in alone.iter()].count("line"), 1)
+
+    def svg_of(self, verdicts):
+        text = verdicts._repr_html_()
+        return text[text.index("<svg") :]
 
     def test_a_line_goes_through_the_extremes_of_each_pixel(self):
         steps = 100_000
@@ -209,6 +216,7 @@ class Frames(unittest.TestCase):
         np.testing.assert_array_equal(calm.step, np.arange(40))
         np.testing.assert_array_equal(calm.status, episode.calm.status)
         np.testing.assert_array_equal(calm.distance_near, episode.distances["near"])
+        self.assertEqual(len(episode.calm.to_pandas()), 40)
 
     def test_of_others(self):
         frame = self.monitor.step(z=[0, 0], x=2.0).to_pandas()
@@ -237,6 +245,22 @@ class Figures(unittest.TestCase):
         drawn = figure.axes[0].lines[0].get_ydata()
         np.testing.assert_array_equal(drawn, next(iter(episode.distances.values())))
         self.assertEqual(figure.axes[-1].get_xlabel(), "time, s")
+        figure.canvas.draw()
+        self.assertEqual(len(episode.calm.plot().axes), 1)
+
+    def test_of_an_evaluation(self):
+        path = Path(__file__).parent.parent / "evaluate" / "dock.expected.json"
+        found = etlc.Evaluation(json.loads(path.read_text()), "")
+        figure = found.plot()
+        self.assertEqual([ax.get_title("left") for ax in figure.axes],
+                         ["f1", "precision", "recall", "agreement"])  # fmt: skip
+        labels = [label.get_text() for label in figure.axes[0].get_yticklabels()]
+        self.assertEqual(labels[::-1][:2], ["near frames", "arrive steps"])
+        (low, high), (point,) = (line.get_xdata() for line in figure.axes[0].lines[-2:])
+        figures = found.data["predicates"]["near"]
+        self.assertEqual(([low, high], point), (figures["f1_interval"], figures["f1"]))
+        cells = Words(found._repr_html_()).cells
+        self.assertIn("0.8065 [0.652, 0.886]", cells)
         figure.canvas.draw()
 
 
