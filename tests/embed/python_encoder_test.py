@@ -205,8 +205,9 @@ class InProcess(Box):
 
     def test_etlc_without_the_process_refuses(self):
         self.embedded(OWN, encoder=Mean(self.weights))
-        with self.assertRaises(etlc.SpecError):
-            etlc.embed("look.etl")
+        self.refused("E1012", lambda: etlc.embed("look.etl"), "stands for a model in Python")
+        with self.assertRaisesRegex(etlc.SpecError, "stands for a model in Python|E1017"):
+            etlc.Encoder("look.etl")
 
     def test_mistakes_of_the_model(self):
         def fails(image):
