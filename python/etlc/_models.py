@@ -7,9 +7,7 @@ Python that file holds this hash, so all of etlc guards it: episodes, thresholds
 from __future__ import annotations
 
 import hashlib
-import importlib.metadata
 import os
-import platform
 import sys
 import sysconfig
 import types
@@ -53,7 +51,7 @@ class _Walk:
         self._seen: dict[int, int] = {}
         self._kept: list[object] = []  # so that no other object gets the same id
         self._path: list[str] = []
-        self.libraries: dict[str, str] = {"python": ".".join(platform.python_version_tuple()[:2])}
+        self.libraries: dict[str, str] = {"python": "{}.{}".format(*sys.version_info)}
 
     def digest(self) -> str:
         return self._hash.hexdigest()
@@ -257,6 +255,8 @@ def _names_in(code: types.CodeType) -> set[str]:
 
 
 def _version_of(package: str) -> str:
+    import importlib.metadata
+
     version = getattr(sys.modules.get(package), "__version__", None)
     if isinstance(version, str):
         return version
