@@ -6,26 +6,26 @@ Python that file holds this hash, so all of etlc guards it: episodes, thresholds
 
 from __future__ import annotations
 
+import dis
 import hashlib
+import importlib.util
 import os
 import sys
 import sysconfig
 import types
+from pathlib import Path
 from typing import Any, Callable, Iterable
 
 import numpy as np
 
 from .errors import InputError
 
-_LIBRARIES = tuple(
-    os.path.realpath(path) + os.sep
-    for path in {*sysconfig.get_paths().values(), "/usr/lib/python3/dist-packages"}
-    if path
-)
+_LIBRARIES = tuple(os.path.realpath(path) + os.sep for path in sysconfig.get_paths().values())
 _ATOMS = (type(None), bool, int, float, complex, str, bytes, bytearray, type(...))
 #: Members of a class that say nothing about what it computes.
 _NOT_COMPUTED = {"__module__", "__doc__", "__dict__", "__weakref__", "__qualname__",
-                 "__firstlineno__", "__static_attributes__", "__annotations__"}  # fmt: skip
+                 "__firstlineno__", "__static_attributes__", "__annotations__", "__parameters__",
+                 "__orig_bases__", "_abc_impl"}  # fmt: skip
 
 
 def identity_of(model: object) -> str:
@@ -108,8 +108,11 @@ class _Walk:
         elif torch is not None and isinstance(one, torch.Tensor):
             self._add_tensor(torch, one)
         elif _is(one, types.ModuleType):
+            if not self._is_library(one.__name__):
+                raise self._refusal(f"the module {one.__name__}, which is no library")
             self._say("module", one.__name__.encode())
-            self._is_library(one.__name__)
+        elif _is(one, types.MappingProxyType):
+            self.add(dict(one))
         elif _is(one, types.CodeType):
             self._add_code(one)
         elif _is(one, type, types.FunctionType, types.BuiltinFunctionType):
@@ -137,8 +140,11 @@ class _Walk:
         if is_builtin and not (receiver is None or _is(receiver, types.ModuleType)):
             self._say("method", name.encode())
             self.add(receiver, ".__self__")
-        elif self._is_library(module) or is_builtin:
+        elif self._is_library(module):
             self._say("named", f"{module}.{name}".encode())
+        elif is_builtin:  # of an extension of the user
+            self._say("named", name.encode())
+            self._say("extension", Path(sys.modules[module].__file__ or "").read_bytes())
         elif _is(one, type):
             self._say("class", name.encode())
             self._add_all(one.__bases__)
@@ -162,10 +168,35 @@ class _Walk:
             except ValueError:  # not assigned yet
                 continue
             self.add(content, f".{name}")
-        for name in sorted(_names_in(one.__code__)):
+        names, imports = _looked_up(one.__code__)
+        for name in sorted(names):
             if name in one.__globals__:
-                self.add(name)
-                self.add(one.__globals__[name], f".{name}")
+                self._add_global(name, one.__globals__[name], names)
+        for level, name in sorted(imports):
+            self._add_import("." * level + name, one.__globals__.get("__package__"), names)
+
+    def _add_global(self, name: str, value: Any, names: set[str]) -> None:
+        """Adds what a name means; of a module that is no library, what `names` mean in it."""
+        self.add(name)
+        members: dict[str, Any] = getattr(value, "__dict__", {})
+        if not _is(value, types.ModuleType) or self._is_library(value.__name__):
+            self.add(value, f".{name}")
+            return
+        for member in sorted(names & set(members)):
+            if members[member] is not value:
+                self._add_global(member, members[member], names)
+
+    def _add_import(self, name: str, package: str | None, names: set[str]) -> None:
+        """Adds a module that a function imports when it is called."""
+        try:
+            full = importlib.util.resolve_name(name, package)
+            importlib.import_module(full)
+        except ImportError:  # the function may catch it
+            self._say("absent", name.encode())
+            return
+        for end in range(1, len(full.split(".")) + 1):
+            part = ".".join(full.split(".")[:end])
+            self._add_global(part, sys.modules[part], names)
 
     def _add_code(self, code: types.CodeType) -> None:
         self._say("code", code.co_code)
@@ -204,8 +235,9 @@ class _Walk:
         top = module.partition(".")[0]
         if top in sys.builtin_module_names or top in sys.stdlib_module_names:
             return top != "__main__"
-        path = getattr(sys.modules.get(module), "__file__", None)
-        if path is None or not os.path.realpath(path).startswith(_LIBRARIES):
+        path = os.path.realpath(getattr(sys.modules.get(module), "__file__", None) or os.sep)
+        is_installed = "/site-packages/" in path or "/dist-packages/" in path
+        if not is_installed and not path.startswith(_LIBRARIES):
             return False
         self.libraries[top] = _version_of(top)
         return True
@@ -236,22 +268,27 @@ def _has_docstring(code: types.CodeType) -> bool:
 
 
 def _loads_no_first(code: types.CodeType) -> bool:
-    import dis
-
     return all(
         one.argval is not code.co_consts[0]
         for one in dis.get_instructions(code)
-        if one.opname.startswith("LOAD_CONST")
+        if one.opcode in dis.hasconst
     )
 
 
-def _names_in(code: types.CodeType) -> set[str]:
-    """Returns the names that a function, or one within it, may look up."""
+def _looked_up(code: types.CodeType) -> tuple[set[str], set[tuple[int, str]]]:
+    """Returns the names that a function, or one within it, may look up, and what it imports."""
     names = set(code.co_names)
+    imports: set[tuple[int, str]] = set()
+    before: list[Any] = [0, 0]
+    for one in dis.get_instructions(code):
+        if one.opname == "IMPORT_NAME":  # the level was loaded before the list of names
+            imports.add((before[-2] if isinstance(before[-2], int) else 0, str(one.argval)))
+        before.append(one.argval)
     for constant in code.co_consts:
         if isinstance(constant, types.CodeType):
-            names |= _names_in(constant)
-    return names
+            more, others = _looked_up(constant)
+            names, imports = names | more, imports | others
+    return names, imports
 
 
 def _version_of(package: str) -> str:

@@ -245,9 +245,12 @@ class InProcess(Box):
     def test_the_hash_is_the_same_in_every_process(self):
         program = Path("program.py")
         program.write_text(textwrap.dedent(f"""
+            import abc
+            import dataclasses
             import functools
             import sys
             import numpy as np
+            import own
             from etlc._models import identity_of
             sys.path.insert(0, {str(Path(__file__).parent)!r})
             class Model:
@@ -264,20 +267,40 @@ class InProcess(Box):
             def helper(image):
                 return image.mean() if "x" in {{"x", "y", "z"}} else LIMIT
             LIMIT = 3
+            @dataclasses.dataclass
+            class Settings(abc.ABC):
+                "How it scales."
+                scale: float = 2.0
+                names: list = dataclasses.field(default_factory=list)
+            def local(image):
+                from beside import scaled
+                import beside.deeper
+                import no_such_module_at_all
+                return beside.deeper.depth * scaled(image) * OTHER.scale
+            OTHER = Settings(3.0)
+            word = lambda image: "right"
             try:
+                assert sys.argv[1:]
                 import torch
                 torch.manual_seed(3)
                 net = torch.nn.Sequential(torch.nn.Conv2d(3, 4, 3), torch.nn.BatchNorm2d(4)).eval()
-            except ImportError:
+            except (AssertionError, ImportError):
                 net = None
-            print(identity_of([Model(), net]))
+            print(identity_of([Model(), net, local, word, lambda: own.used()]))
         """))  # fmt: skip
+        Path("own.py").write_text("def used():\n    return LEVEL + 1\nLEVEL = 4\nspare = 5\n")
+        Path("beside").mkdir()
+        Path("beside/__init__.py").write_text("from .deeper import scaled\n")
+        Path("beside/deeper.py").write_text("depth = 3\ndef scaled(x):\n    return x * 2.5\n")
         found = set()
         for seed in ("1", "2", "3"):
-            ran = subprocess.run([sys.executable, "-B", program], capture_output=True, text=True,
-                                 env={**os.environ, "PYTHONHASHSEED": seed})  # fmt: skip
+            ran = subprocess.run([sys.executable, "-B", program, "torch"], capture_output=True,
+                                 text=True, env={**os.environ, "PYTHONHASHSEED": seed})  # fmt: skip
             self.assertEqual(ran.returncode, 0, ran.stderr)
             found.add(ran.stdout)
+        self.assertEqual(len(found), 1, found)
+        found = {subprocess.check_output([sys.executable, "-B", program], text=True)}
+        Path("own.py").write_text(Path("own.py").read_text().replace("spare = 5", "spare = 6"))
         for old, new in (("Comments do not", "Nothing does not"), ("# none", "")):
             text = program.read_text()
             program.write_text(text.replace(old, new))
@@ -285,12 +308,21 @@ class InProcess(Box):
         self.assertEqual(len(found), 1, found)
         self.assertIn(f"numpy {np.__version__}\npython 3.", found.pop())
         changes = (("LIMIT = 3", "LIMIT = 4"), ("image.mean()", "image.max()"), ("6.0", "7.0"),
-                   ("x + 1.5", "x + 2.5"),
+                   ("x + 1.5", "x + 2.5"), ("Settings(3.0)", "Settings(4.0)"),
+                   ('"right"', '"left"'), ("scale: float = 2.0", "scale: float = 9.0"),
                    ('"d"', '"e"'), ('"z"', '"w"'))  # fmt: skip
         for old, new in changes:
             program.write_text(text.replace(old, new))
             found.add(subprocess.check_output([sys.executable, "-B", program], text=True))
-        self.assertEqual(len(found), len(changes))
+        program.write_text(text)
+        files = (("own.py", "4", "5"), ("own.py", "+ 1", "+ 2"), ("beside/deeper.py", "3", "4"),
+                 ("beside/deeper.py", "2.5", "2.6"))  # fmt: skip
+        for path, old, new in files:
+            before = Path(path).read_text()
+            Path(path).write_text(before.replace(old, new))
+            found.add(subprocess.check_output([sys.executable, "-B", program], text=True))
+            Path(path).write_text(before)
+        self.assertEqual(len(found), len(changes) + len(files))
 
     @unittest.skipIf(torch is None, "torch is not installed")
     def test_a_model_of_torch(self):
