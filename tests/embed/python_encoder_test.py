@@ -203,6 +203,27 @@ class InProcess(Box):
         Path("mine.model").write_text(Path("mine.model").read_text() + " ")
         self.refused("E1004", lambda: etlc.Monitor("look.etl"))
 
+    def test_thresholds_of_another_model_are_refused(self):
+        random = np.random.default_rng(8)
+        os.mkdir("recorded")
+        for n in range(6):
+            camera = random.integers(0, 256, (20, 4, 4, 3), np.uint8)
+            np.savez(f"recorded/{n}.npz", camera=camera, x=camera.mean(axis=(1, 2, 3)))
+        Path("look.etl").write_text(OWN.replace("<= 0.0001", "<= calibrated(f1)").replace(
+            "monitor near = F", "predicate close =").replace("target", "input x : f32;\ntarget")
+            + "truth close = x <= 127;\nmonitor near = F close;\n")  # fmt: skip
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            etlc.embed("look.etl", "recorded", output="all", encoder=Mean(self.weights))
+            etlc.calibrate("look.etl", "all", allow_overlap="the frames are noise")
+            etlc.Monitor("look.etl").close()
+            Path("mine.model").unlink()
+            etlc.embed("look.etl", "recorded", output="all", encoder=Mean(self.weights, 256))
+            self.refused("E0652", lambda: etlc.Monitor("look.etl"),
+                         "the model or settings of 'mine' changed")  # fmt: skip
+            etlc.calibrate("look.etl", "all", allow_overlap="the frames are noise")
+            etlc.Monitor("look.etl").close()
+
     def test_etlc_without_the_process_refuses(self):
         self.embedded(OWN, encoder=Mean(self.weights))
         self.refused("E1012", lambda: etlc.embed("look.etl"), "stands for a model in Python")
