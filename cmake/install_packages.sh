@@ -2,11 +2,14 @@
 # install_packages.sh GROUP...: installs the missing packages of these groups of packages.txt with
 # apt, as root or with sudo. Without apt it names the missing packages and fails; if nothing is
 # missing it prints nothing. With `recordings` it gets ONNX Runtime, for which Debian 12 has no
-# package, from npm into build/onnxruntime, where tests look for it.
+# package, from npm into build/onnxruntime, where tests look for it; with `test`, pyright into
+# build/pyright.
 set -euo pipefail
 list=$(dirname "${BASH_SOURCE[0]}")/packages.txt
 onnxruntime=1.30.0
 library=$(dirname "$list")/../build/onnxruntime/libonnxruntime.so.$onnxruntime
+pyright=1.1.414
+checker=$(dirname "$list")/../build/pyright
 
 # The package is for many machines; only the library for this one is kept.
 get_onnxruntime() {
@@ -24,10 +27,23 @@ get_onnxruntime() {
     rm -rf "$box"
 }
 
-wants_onnxruntime=
-if [[ " $* " = *" recordings "* && ! -e $library ]]; then
-    wants_onnxruntime=yes
-fi
+get_pyright() {
+    local box
+    box=$(mktemp -d)
+    echo "Getting pyright $pyright"
+    npm pack --silent --pack-destination "$box" "pyright@$pyright" >/dev/null &&
+        mkdir -p "$checker" &&
+        tar -C "$checker" -xzf "$box/pyright-$pyright.tgz" --strip-components=1 ||
+        echo "It cannot be got from npm: mypy alone will check types." >&2
+    rm -rf "$box"
+}
+
+from_npm=()
+[[ " $* " != *" recordings "* || -e $library ]] || from_npm+=(get_onnxruntime)
+[[ " $* " != *" test "* || -e $checker ]] || from_npm+=(get_pyright)
+get_from_npm() {
+    for get in "${from_npm[@]}"; do "$get"; done
+}
 
 packages=()
 for group in "$@"; do
@@ -47,11 +63,11 @@ missing=()
 for package in "${packages[@]}"; do
     grep -qxF -- "$package" <<<"$installed" || missing+=("$package")
 done
-if [ -n "$wants_onnxruntime" ] && ! command -v npm >/dev/null; then
+if [ ${#from_npm[@]} -gt 0 ] && ! command -v npm >/dev/null; then
     missing+=(npm)
 fi
 if [ ${#missing[@]} -eq 0 ]; then
-    [ -z "$wants_onnxruntime" ] || get_onnxruntime
+    get_from_npm
     exit 0
 fi
 
@@ -71,4 +87,4 @@ as_root+=(env DEBIAN_FRONTEND=noninteractive)
 "${as_root[@]}" apt-get -qq update
 "${as_root[@]}" apt-get -qq install --no-install-recommends -o Dpkg::Use-Pty=0 "${missing[@]}" \
     >/dev/null
-[ -z "$wants_onnxruntime" ] || get_onnxruntime
+get_from_npm

@@ -12,8 +12,15 @@ of all functions.
 """
 
 from ._library import library as _native
+from .arrays import (
+    BatchEpisode,
+    BatchVerdicts,
+    Episode,
+    EpisodeVerdicts,
+    RunVerdicts,
+    VerdictArrays,
+)
 from .batch import Batch
-from .commands import Evaluation, Written, calibrate, embed, evaluate, fit, incident
 from .errors import (
     AmbiguousError,
     BusyError,
@@ -26,19 +33,16 @@ from .errors import (
     SpecError,
     UndecidedError,
 )
+from .encoding import Encoder
 from .description import REFERENCE_FRAMES, Input, Measurement, Measurements
+from .judging import crossvalidate, evaluate, report
+from .labelling import Labelling, label, propose
+from .learning import calibrate, embed, fit, merge, suggest
 from .monitor import Monitor
-from .verdicts import (
-    BatchEpisode,
-    BatchVerdicts,
-    Episode,
-    EpisodeVerdicts,
-    Explanation,
-    RunVerdicts,
-    Verdict,
-    VerdictArrays,
-    Verdicts,
-)
+from .results import Checked, Evaluation, Run, Suggestions, Written
+from .specs import check, compile
+from .traces import explain, incident, run
+from .verdicts import Explanation, Verdict, Verdicts
 
 __version__: str = _native.etlc_version().decode()
 
@@ -48,31 +52,46 @@ __all__ = [
     "BatchEpisode",
     "BatchVerdicts",
     "BusyError",
+    "Checked",
     "ClosedError",
     "Diagnostic",
     "Episode",
     "EpisodeVerdicts",
+    "Encoder",
     "Error",
     "EtlcWarning",
     "Evaluation",
     "Explanation",
     "Input",
     "InputError",
+    "Labelling",
     "Measurement",
     "Measurements",
     "Monitor",
     "NotKeptError",
     "REFERENCE_FRAMES",
+    "Run",
     "RunVerdicts",
     "SpecError",
+    "Suggestions",
     "UndecidedError",
     "Verdict",
     "VerdictArrays",
     "Verdicts",
     "Written",
     "calibrate",
+    "check",
+    "compile",
+    "crossvalidate",
     "embed",
     "evaluate",
+    "explain",
     "fit",
     "incident",
+    "label",
+    "merge",
+    "propose",
+    "report",
+    "run",
+    "suggest",
 ]

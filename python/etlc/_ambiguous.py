@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import Any, ClassVar, NoReturn
+from typing import Any, ClassVar, NoReturn, cast
 
 import numpy as np
 
@@ -43,7 +43,7 @@ class Ambiguous:
 
     def _content(self) -> tuple[Any, ...]:
         """Returns the values to compare: for a dataclass all its fields."""
-        return tuple(getattr(self, field.name) for field in fields(self))
+        return tuple(getattr(self, field.name) for field in fields(cast(Any, self)))
 
     def _shown(self) -> str:
         kind = type(self).__name__

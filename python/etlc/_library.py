@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import importlib
 import os
 from ctypes import POINTER, c_char_p, c_double, c_float, c_int32, c_int64, c_size_t, c_uint32
 from ctypes import c_uint64, c_void_p
@@ -74,6 +75,15 @@ class Column(ctypes.Structure):
         ("data", c_void_p), ("present", c_void_p), ("stride", c_int64), ("count", c_uint32),
         ("type", c_uint32),
     ]  # fmt: skip
+
+
+def advance(columns: Any, steps: int) -> None:
+    """Leads columns to the samples after these steps."""
+    for column in columns:
+        if column.data is not None:
+            column.data += steps * column.stride
+        if column.present is not None:
+            column.present += steps
 
 
 class Grid(ctypes.Structure):
@@ -149,11 +159,11 @@ def own(name: str, in_wheel: str) -> Path | None:
     """Finds a file installed with this package: inside it for a wheel, else below its prefix."""
     places = [NATIVE / in_wheel]
     try:
-        from . import _installed  # type: ignore[attr-defined]
+        installed: Any = importlib.import_module("._installed", __package__)
     except ImportError:
         pass  # the source tree
     else:
-        places.append(Path(os.path.normpath(_HERE / getattr(_installed, name))))
+        places.append(Path(os.path.normpath(_HERE / getattr(installed, name))))
     return next((place for place in places if place.exists()), None)
 
 

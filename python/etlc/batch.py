@@ -1,5 +1,6 @@
 """Steps the monitors of a spec for many environments at once."""
 
+# pyright: reportPrivateUsage=false
 from __future__ import annotations
 
 from ctypes import byref, c_uint64
@@ -7,12 +8,13 @@ from typing import TYPE_CHECKING, Any, Iterable, Mapping, Union
 
 import numpy as np
 
+from ._arguments import is_whole
 from ._library import call, library
-from ._types import Array
+from ._types import Array, untyped
 from .description import Described, Measurements
 from .errors import InputError
 from .grids import Grids, joined, warn_of_absent
-from .verdicts import VERDICT_DTYPE, BatchEpisode, BatchVerdicts
+from .arrays import VERDICT_DTYPE, BatchEpisode, BatchVerdicts
 
 if TYPE_CHECKING:
     from .monitor import Monitor
@@ -155,12 +157,12 @@ class Batch(Described):
         Returns:
             The verdicts; those of the other environments are undecided.
         """
-        chosen, place, size = self._chosen(which)
+        kept = self._chosen(which)  # it holds what its address points to
         table = np.zeros((self._size, len(self.monitors)), VERDICT_DTYPE)
         for name in ("robustness", "lower", "upper"):
             table[name] = np.nan
         call(
-            library.etlc_finish_batch, self._session, place, size, table.ctypes.data, table.size
+            library.etlc_finish_batch, self._session, *kept[1:], table.ctypes.data, table.size
         )
         return BatchVerdicts(self.monitors, table)
 
@@ -208,9 +210,7 @@ class Batch(Described):
         return f"<etlc.Batch {self.name}: {self._size} environments, {', '.join(self.monitors)}>"
 
     def _number(self, environment: Any) -> int:
-        if isinstance(environment, (bool, np.bool_)) or not isinstance(
-            environment, (int, np.integer)
-        ):
+        if not is_whole(environment):
             raise InputError(f"environment is {environment!r}, expected a whole number")
         if not 0 <= environment < self._size:
             raise InputError(
@@ -222,7 +222,7 @@ class Batch(Described):
         """Returns a byte for each environment (None: all), its place and size."""
         if which is None:
             return None, None, self._size
-        array = np.asarray(which if isinstance(which, np.ndarray) else _listed(which))
+        array: Array = np.asarray(_listed(which))
         if array.dtype == np.bool_:
             if array.shape != (self._size,):
                 raise InputError(
@@ -237,7 +237,9 @@ class Batch(Described):
         return chosen, chosen.ctypes.data, self._size
 
 
-def _listed(which: Any) -> list[Any]:
+def _listed(which: Any) -> Any:
+    if isinstance(which, np.ndarray):
+        return untyped.asarray(which)
     try:
         return list(which)
     except TypeError:

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Union
+from typing import Any, Iterable, Union
 
 import numpy as np
 
-from ._types import Array
+from ._types import Array, extremes, untyped
 from .errors import InputError
 
 
@@ -93,8 +93,9 @@ def as_rows(
             )
     present = None
     if masked:
-        mask: Array = np.ma.getmaskarray(value)  # type: ignore[no-untyped-call]
-        present = np.ascontiguousarray(~mask.any(axis=tuple(range(axes, mask.ndim)))).view("u1")
+        mask: Array = untyped.ma.getmaskarray(value)
+        hidden: Array = mask.any(axis=tuple(range(axes, len(mask.shape))))
+        present = np.ascontiguousarray(~hidden).view("u1")
     is_list = isinstance(value, (list, tuple))
     rows = array if array.dtype == dtype else _converted(name, array, dtype, is_list, present)
     is_packed = len(shape) == 0 or shape[0] == 1 or rows.strides[-1] == dtype.itemsize
@@ -105,6 +106,27 @@ def as_rows(
     return Rows(array.shape[:axes], rows, present)
 
 
+def as_embedding(value: Any) -> Array:
+    """Returns what a model makes of an image as float32 (D,)."""
+    array = _array("embedding", value)
+    if array.ndim == 2 and array.shape[0] == 1:
+        array = array[0]
+    if array.ndim != 1 or array.size == 0 or array.dtype.kind != "f":
+        raise InputError(f"the encoder returned {_shown(array)}, expected floats of the shape (D,)")
+    return np.ascontiguousarray(array.astype("f4"))
+
+
+def as_images(value: Any) -> Array:
+    """Returns one image or several as uint8 (N, rows, columns, 3)."""
+    array = _array("image", value)
+    if array.dtype != np.uint8 or array.ndim not in (3, 4) or array.shape[-1] != 3:
+        raise InputError(
+            f"images are {_shown(array)}, expected uint8 of the shape (rows, columns, 3) or "
+            "(N, rows, columns, 3), red first"
+        )
+    return np.ascontiguousarray(array if array.ndim == 4 else array[np.newaxis])
+
+
 def _shape_text(shape: tuple[Axis, ...]) -> str:
     return f"({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
 
@@ -113,9 +135,7 @@ def _array(name: str, value: Any) -> Array:
     """Converts to a numpy array. Refuses masked arrays, whose mask would be lost."""
     if isinstance(value, np.ma.MaskedArray):
         raise InputError(f"input {name!r} is a masked array; one that is missing is None")
-    if isinstance(value, (list, tuple)) and any(
-        isinstance(one, np.ma.MaskedArray) for one in value
-    ):
+    if any(isinstance(one, np.ma.MaskedArray) for one in _listed(value)):
         raise InputError(f"input {name!r} has masked arrays in a list; numpy.ma.stack joins them")
     try:
         return np.asarray(value)
@@ -127,6 +147,12 @@ def _array(name: str, value: Any) -> Array:
                 "this process: pass x.detach().cpu().numpy()"
             ) from None
         raise InputError(f"input {name!r} is no array: {error}") from None
+
+
+def _listed(value: Any) -> Iterable[Any]:
+    is_list = isinstance(value, (list, tuple))
+    values: Iterable[Any] = value
+    return values if is_list else ()
 
 
 def _converted(
@@ -147,7 +173,8 @@ def _converted(
                 return array.astype(dtype)
         raise InputError(f"input {name!r} is {_shown(array)}, expected {dtype.name}")
     there = array if present is None else array[present != 0]
-    if kind not in "iu" or (there.size > 0 and (there.min() < least or there.max() > most)):
+    low, high = extremes(there) if kind in "iu" else (0.0, 0.0)
+    if kind not in "iu" or low < least or high > most:
         raise InputError(f"input {name!r} is {_shown(array)}, expected {expected}")
     return array.astype(dtype)
 

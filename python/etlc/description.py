@@ -1,5 +1,6 @@
 """What a compiled spec says of itself."""
 
+# pyright: reportPrivateUsage=false
 from __future__ import annotations
 
 import ctypes
@@ -9,7 +10,7 @@ from typing import Any, Mapping
 
 import numpy as np
 
-from . import _library
+from . import _html, _library
 from ._ambiguous import Ambiguous
 from ._library import BOOL, F16, F32, I8, call, decoded, library
 from ._types import Array
@@ -149,11 +150,22 @@ class Described(Names):
         self._nearest = [bool(one.has_nearest) for one in predicates]
         self._predicate_at = {decoded(one.name): p for p, one in enumerate(predicates)}
         self._monitor_at = {name: m for m, name in enumerate(self.monitors)}
-        self._let_at = {}
+        self._let_at: dict[str, int] = {}
         for let in range(spec.lets):
             name = c_char_p()
             call(library.etlc_describe_let, self._session, let, byref(name))
             self._let_at[(name.value or b"").decode()] = let
+
+    def _repr_html_(self) -> str:
+        """Returns small tables of inputs, predicates and monitors, for notebooks."""
+        inputs = (
+            (one.name, f"{one.dtype}{list(one.shape) or ''}") for one in self.inputs.values()
+        )
+        return "".join((
+            _html.table(("input", "type"), inputs, f"{self!r}"),
+            _html.table(("predicate", ""), self.predicates.items()),
+            _html.table(("monitor", "formula"), self.formulas.items()),
+        ))  # fmt: skip
 
     def close(self) -> None:
         """Closes it. Every later call except close() raises ClosedError."""

@@ -1,5 +1,6 @@
 """Exceptions and warnings, with the messages and diagnostics of etlc."""
 
+# pyright: reportPrivateUsage=false
 from __future__ import annotations
 
 import json

@@ -1,13 +1,13 @@
 """Samples of all inputs for the calls that take rows of steps."""
 
+# pyright: reportPrivateUsage=false
 from __future__ import annotations
 
 import ctypes
 from typing import Any, Mapping
 
-import numpy as np
-
 from . import _library, conversion
+from ._arguments import is_mapping
 from ._types import Array
 from .description import Described
 from .errors import EtlcWarning, InputError, warn
@@ -83,7 +83,7 @@ class Grids:
 
 def joined(arrays: Mapping[str, Any] | None, more: dict[str, Any]) -> dict[str, Any]:
     """Joins the two ways of giving samples."""
-    if arrays is not None and not isinstance(arrays, Mapping):
+    if arrays is not None and not is_mapping(arrays):
         raise InputError(f"arrays is of {type(arrays).__name__}, expected a dict by input")
     return {**(arrays or {}), **more}
 

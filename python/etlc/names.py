@@ -1,5 +1,6 @@
 """The names of monitors, which verdicts are looked up by."""
 
+# pyright: reportPrivateUsage=false
 from __future__ import annotations
 
 import difflib

@@ -1,23 +1,20 @@
-"""The verdicts of monitors, for one step and for an episode."""
+"""The verdicts of monitors after one step."""
 
+# pyright: reportPrivateUsage=false
 from __future__ import annotations
 
 from dataclasses import dataclass
 from struct import Struct
-from typing import Any, Generic, Iterator, TypeVar
+from typing import Any, Iterator
 
-import numpy as np
-
+from . import _frames, _html
 from ._ambiguous import Ambiguous
 from ._library import ALARM, DECIDED, FINAL, FULFILLED, SATISFIED, VIOLATED
-from ._types import Array
 from .errors import AmbiguousError, InputError, NotKeptError
 from .names import Names, names_of, no_such
 
 _VERDICT = Struct("=3fI")
-VERDICT_DTYPE = np.dtype(
-    [("robustness", "f4"), ("lower", "f4"), ("upper", "f4"), ("status", "u4")]
-)
+_HEAD = ("monitor", "status", "robustness", "lower", "upper")
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +33,10 @@ class Explanation(Ambiguous):
 
     def __str__(self) -> str:
         return self.text
+
+    def _repr_html_(self) -> str:
+        """Returns the text, for notebooks."""
+        return _html.preformatted(self.text)
 
 
 class Verdict(Ambiguous):
@@ -142,6 +143,10 @@ class Verdict(Ambiguous):
             text += f", {self.robustness:.6g} in [{self.lower:.6g}, {self.upper:.6g}]"
         return text + ">"
 
+    def _repr_html_(self) -> str:
+        """Returns a small table, for notebooks."""
+        return _html.table(_HEAD, _frames.rows_of_step([self]))
+
 
 class Verdicts(Ambiguous):
     """The verdicts of all monitors after one step: `verdicts.NAME` or `verdicts["NAME"]`.
@@ -177,7 +182,7 @@ class Verdicts(Ambiguous):
         return len(self._monitor.monitors)
 
     def __contains__(self, one: object) -> bool:
-        return _contains(self, one, "its .alarms")
+        return contains(self, one, "its .alarms")
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._monitor.monitors]
@@ -197,255 +202,27 @@ class Verdicts(Ambiguous):
         """The verdicts that are violated for good, in the order of the spec."""
         return [verdict for verdict in self if verdict.alarm]
 
+    def to_pandas(self) -> Any:
+        """Returns a pandas.DataFrame with a row for each monitor.
+
+        Raises:
+            ImportError: pandas is not installed.
+        """
+        return _frames.frame_of_step(self)
+
     def __repr__(self) -> str:
         return f"Verdicts({', '.join(map(repr, self))})"
 
+    def _repr_html_(self) -> str:
+        """Returns a small table, for notebooks."""
+        return _html.table(_HEAD, _frames.rows_of_step(self))
 
-class VerdictArrays(Ambiguous):
-    """The verdicts of one monitor, as arrays: of a batch at a step, or at all steps of a run.
 
-    Its truth value raises AmbiguousError: use `alarm.any()`.
-
-    Attributes:
-        name: the name of the monitor.
-        robustness, lower, upper: float32; NaN where undecided.
-    """
-
-    __hash__ = None  # type: ignore[assignment]
-    _ask = "its .alarm.any(), .satisfied, .violated, ..."
-
-    def __init__(self, name: str, table: Array) -> None:
-        self.name = name
-        self.robustness: Array = table["robustness"]
-        self.lower: Array = table["lower"]
-        self.upper: Array = table["upper"]
-        self._status: Array = table["status"]
-
-    @property
-    def bounds(self) -> tuple[Array, Array]:
-        """(lower, upper)."""
-        return self.lower, self.upper
-
-    @property
-    def alarm(self) -> Array:
-        """bool: violated for good."""
-        return self._has(ALARM)
-
-    @property
-    def fulfilled(self) -> Array:
-        """bool: satisfied for good."""
-        return self._has(FULFILLED)
-
-    @property
-    def satisfied(self) -> Array:
-        """bool."""
-        return self._has(SATISFIED)
-
-    @property
-    def violated(self) -> Array:
-        """bool."""
-        return self._has(VIOLATED)
-
-    @property
-    def decided(self) -> Array:
-        """bool."""
-        return self._has(DECIDED)
-
-    @property
-    def unknown(self) -> Array:
-        """bool: a missing sample leaves it open."""
-        return self._has(DECIDED, among=DECIDED | SATISFIED | VIOLATED)
-
-    @property
-    def final(self) -> Array:
-        """bool."""
-        return self._has(FINAL)
-
-    def _has(self, bits: int, among: int | None = None) -> Array:
-        """Returns where these bits are set, and of `among` no others."""
-        found: Array = (self._status & (bits if among is None else among)) == bits
-        return found
-
-    @property
-    def status(self) -> Array:
-        """str: "satisfied", "violated", "unknown" or "undecided"."""
-        places = [~self.decided, self.satisfied, self.violated]
-        return np.select(places, ["undecided", "satisfied", "violated"], "unknown")
-
-    def __len__(self) -> int:
-        return len(self._status)
-
-    def _content(self) -> tuple[Any, ...]:
-        numbers = (self.robustness, self.lower, self.upper, self._status)
-        return self.name, self._status.shape, *(column.tobytes() for column in numbers)
-
-    def _counted(self) -> str:
-        return f"{int(self.alarm.sum())} alarms"
-
-    def __repr__(self) -> str:
-        shape = " x ".join(map(str, self._status.shape))
-        missing = int(self.unknown.sum())
-        return f"<{self.name}: {shape} verdicts, {self._counted()}{_unknown(missing)}>"
-
-
-class EpisodeVerdicts(VerdictArrays):
-    """The verdicts of one monitor at every step of an episode, as arrays of N steps.
-
-    Its truth value raises AmbiguousError: use `alarm.any()`.
-
-    Attributes:
-        name: the name of the monitor.
-        robustness, lower, upper: float32; NaN where undecided.
-    """
-
-    _ask = "its .first_alarm, .alarm.any(), .satisfied[-1], .violated[-1], ..."
-
-    @property
-    def first_alarm(self) -> int | None:
-        """The first step with an alarm, or None."""
-        alarms = self.alarm
-        return int(np.argmax(alarms)) if alarms.any() else None
-
-    def __repr__(self) -> str:
-        first = self.first_alarm
-        said = "no alarm" if first is None else f"first alarm at step {first}"
-        return f"<{self.name}: {len(self)} steps, {said}{_unknown(int(self.unknown.sum()))}>"
-
-
-class RunVerdicts(VerdictArrays):
-    """The verdicts of one monitor for rows of steps: environments or plans.
-
-    Its truth value raises AmbiguousError: use `alarm.any()`.
-
-    Attributes:
-        name: the name of the monitor.
-        robustness, lower, upper: float32, the last axis is that of steps; NaN where undecided.
-    """
-
-    _ask = "its .first_alarm, .alarm.any(axis=-1), .satisfied[..., -1], .violated[..., -1], ..."
-
-    @property
-    def first_alarm(self) -> Array:
-        """int, per row: the first step with an alarm; -1 where there is none."""
-        alarms = self.alarm
-        if alarms.shape[-1] == 0:
-            return np.full(alarms.shape[:-1], -1)
-        return np.where(alarms.any(axis=-1), alarms.argmax(axis=-1), -1)
-
-    def _counted(self) -> str:
-        return f"alarms in {int((self.first_alarm >= 0).sum())} rows"
-
-
-def _unknown(count: int) -> str:
-    return f", {count} unknown" if count > 0 else ""
-
-
-Arrays = TypeVar("Arrays", bound=VerdictArrays)
-
-
-class Tables(Ambiguous, Generic[Arrays]):
-    """The verdicts of all monitors, as arrays: `verdicts.NAME` or `verdicts["NAME"]`.
-
-    Its truth value raises AmbiguousError.
-
-    Attributes:
-        table: a structured array with the fields robustness, lower, upper and status; its last
-            axis is that of monitors.
-        monitors: the names of the monitors, in the order of the last axis.
-    """
-
-    __hash__ = None  # type: ignore[assignment]
-    _ask = "the .alarm.any(), .violated, ... of one of its monitors"
-    _arrays: type[Arrays]
-
-    def __init__(self, monitors: tuple[str, ...], table: Array) -> None:
-        self.monitors = monitors
-        self.table = table
-
-    def __getitem__(self, name: str) -> Arrays:
-        if name not in self.monitors:
-            raise InputError(f"there is no monitor {name!r}, only {', '.join(self.monitors)}")
-        return self._arrays(name, self.table[..., self.monitors.index(name)])
-
-    def __getattr__(self, name: str) -> Arrays:
-        if name.startswith("_") or name in ("monitors", "table"):
-            raise AttributeError(name)
-        if name not in self.monitors:
-            raise AttributeError(f"there is no monitor {name!r}")
-        return self[name]
-
-    def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self.monitors]
-
-    def keys(self) -> tuple[str, ...]:
-        """The names of the monitors, so that dict() has the verdicts by name."""
-        return self.monitors
-
-    def __iter__(self) -> Iterator[Arrays]:
-        return (self[name] for name in self.monitors)
-
-    def __len__(self) -> int:
-        return len(self.table)
-
-    def __contains__(self, one: object) -> bool:
-        return _contains(self, one, self._ask)
-
-    def _content(self) -> tuple[Any, ...]:
-        return self.monitors, self.table.shape, self.table.tobytes()
-
-    def __repr__(self) -> str:
-        return f"{type(self).__name__}({', '.join(map(repr, self))})"
-
-
-class Episode(Tables[EpisodeVerdicts]):
-    """The verdicts of all monitors for an episode: `episode.NAME` or `episode["NAME"]`.
-
-    Its truth value raises AmbiguousError: `len` is its number of steps.
-
-    Attributes:
-        table: a structured array (N steps, M monitors) with the fields robustness, lower, upper
-            and status.
-        monitors: the names of the monitors, in the order of the columns.
-    """
-
-    _ask = "the .first_alarm, .alarm.any(), .violated[-1], ... of one of its monitors"
-    _arrays = EpisodeVerdicts
-
-
-class BatchVerdicts(Tables[VerdictArrays]):
-    """The verdicts of all monitors of a batch at a step: `verdicts.NAME` or `verdicts["NAME"]`.
-
-    Its truth value raises AmbiguousError: `len` is its number of environments.
-
-    Attributes:
-        table: a structured array (N environments, M monitors) with the fields robustness, lower,
-            upper and status.
-        monitors: the names of the monitors, in the order of the columns.
-    """
-
-    _arrays = VerdictArrays
-
-
-class BatchEpisode(Tables[RunVerdicts]):
-    """The verdicts of all monitors for rows of steps, of environments or plans.
-
-    Its truth value raises AmbiguousError: `len` is its number of environments, or of plans.
-
-    Attributes:
-        table: a structured array (N rows, T steps, M monitors) with the fields robustness, lower,
-            upper and status; (N environments, K plans, T steps, M monitors) where each environment
-            has several plans.
-        monitors: the names of the monitors, in the order of the columns.
-    """
-
-    _ask = "the .first_alarm, .alarm.any(axis=-1), ... of one of its monitors"
-    _arrays = RunVerdicts
-
-
-def _contains(verdicts: Verdicts | Tables[Any], one: object, ask: str) -> bool:
+def contains(verdicts: Any, one: object, ask: str) -> bool:
     """Implements `in` for verdicts; "violated", or a name, would be ambiguous."""
-    if isinstance(one, (Verdict, VerdictArrays)):
-        return any(one == other for other in verdicts)
+    among = list(verdicts)
+    if isinstance(one, Ambiguous) and isinstance(one, tuple(map(type, among))):
+        return any(one == other for other in among)
     raise AmbiguousError(
         f"{one!r} in {verdicts._shown()} is ambiguous: ask for {ask}, or for a name in .monitors"
     )

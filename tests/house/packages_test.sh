@@ -54,6 +54,9 @@ library=$(echo "$box"/top/build/onnxruntime/libonnxruntime.so.*)
     fail "with npm: $output $calls"
 try 0 "" recordings
 [ "$status$output$calls" = 0 ] || fail "what is there is got again: $output $calls"
+try 0 "" test
+[[ $status = 0 && $calls == "npm pack"*pyright@* && $output == *"Getting pyright"* ]] ||
+    fail "does not get pyright: $output $calls"
 
 try 1000 "antlr4"
 [[ $status = 0 && $calls == sudo*install*antlr4* ]] || fail "does not use sudo: $output $calls"

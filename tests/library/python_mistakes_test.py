@@ -74,7 +74,9 @@ class Truth(unittest.TestCase):
             batch, plans, plans.high, together, together.high, batch.measure("is_high"),
             monitor, steps, steps.high, verdicts, verdicts.high, verdicts.high.why,
             monitor.measure("is_high"), monitor.inputs["x"], place, etlc.Written(Path("f"), "r"),
-            etlc.Evaluation({}, "r"), etlc.EtlcWarning("w"),
+            etlc.Evaluation({}, "r"), etlc.EtlcWarning("w"), etlc.Checked(),
+            etlc.Suggestions({}), etlc.Run(steps, np.zeros((30, 6))),
+            etlc.Labelling.__new__(etlc.Labelling), etlc.Encoder.__new__(etlc.Encoder),
         ]  # fmt: skip
         made += [
             getattr(etlc, name)("m") for name in etlc.__all__ if name.endswith("Error")

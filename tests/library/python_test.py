@@ -112,12 +112,14 @@ class Describing(unittest.TestCase):
 
 
     def test_the_page_has_an_example_of_every_call(self):
-        page = (SPECS.parent.parent / "docs" / "python.md").read_text()
+        docs = SPECS.parent.parent / "docs"
+        page = (docs / "python.md").read_text() + (docs / "python_commands.md").read_text()
         examples = "".join(re.findall(r"```python\n(.*?)```", page, re.S))
         calls = [name for name in etlc.__all__ if not inspect.isclass(getattr(etlc, name))]
         for kind in (etlc.Monitor, etlc.Verdict, etlc.Verdicts, etlc.Episode,
                      etlc.EpisodeVerdicts, etlc.Explanation, etlc.Batch, etlc.BatchVerdicts,
-                     etlc.BatchEpisode, etlc.VerdictArrays, etlc.RunVerdicts):  # fmt: skip
+                     etlc.BatchEpisode, etlc.VerdictArrays, etlc.RunVerdicts, etlc.Run,
+                     etlc.Encoder, etlc.Labelling):  # fmt: skip
             calls += [name for name, _ in inspect.getmembers(kind) if not name.startswith("_")]
         calls += [name for name in vars(etlc.Monitor(text=DOCK)) if not name.startswith("_")]
         self.assertGreater(len(calls), 50)

@@ -34,7 +34,7 @@ if /usr/bin/python3 -c 'import numpy' 2>"$box/log"; then
     said=$(env -u LD_LIBRARY_PATH -u ETLC_LIBRARY -u ETLC_COMMAND PYTHONDONTWRITEBYTECODE=1 \
         PYTHONPATH="$box/moved/lib/python3/dist-packages" /usr/bin/python3 -c 'import etlc
 monitor = etlc.Monitor(text="spec t; input x : f32; monitor m = F x > 1;")
-print(monitor.monitors, etlc._library.library._name, etlc.commands.command_path())')
+print(monitor.monitors, etlc._library.library._name, etlc._process.command_path())')
     expect "$said" "('m',) $(echo "$box"/moved/lib*/libetlc.so.1) $box/moved/bin/etlc"
     mv "$box/moved" "$box/prefix"
 fi

@@ -63,6 +63,6 @@ verdicts=$("$box/root/usr/bin/etlc" run "$box/t.etl" --trace "$data/trace.h5") |
 said=$(env -u LD_LIBRARY_PATH -u ETLC_LIBRARY -u ETLC_COMMAND PYTHONDONTWRITEBYTECODE=1 \
     PYTHONPATH=$box/root/usr/lib/python3/dist-packages \
     /usr/bin/python3 -c 'import etlc, sys
-print(etlc.__version__, etlc.Monitor(sys.argv[1]).monitors, etlc.commands.command_path())
+print(etlc.__version__, etlc.Monitor(sys.argv[1]).monitors, etlc._process.command_path())
 ' "$box/t.etl") || fail "import etlc"
 [ "$said" = "$version ('m',) $box/root/usr/bin/etlc" ] || fail "the Python package says: $said"

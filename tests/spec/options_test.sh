@@ -32,6 +32,8 @@ expected="ast, graph, plan, hpp, params, dot or report"
 refuses "--emit: found 'hp', expected $expected; did you mean 'hpp'?" \
     t.etl --emit hp
 refuses "--onnxruntime excludes --encoder-cmd" embed t.etl --onnxruntime a.so --encoder-cmd cat
+refuses "--pipe encodes frames of standard input, and writes no files" embed t.etl --pipe net \
+    --data a --output b
 refuses "--diagnostics: found 'xml', expected text or json" t.etl --check --diagnostics xml
 refuses "-W: found 'all', expected error" t.etl --check -Wall
 # A misspelt command is not taken for a spec.

@@ -85,6 +85,11 @@ TEST(CommandLine, ThePageIsThatOfTheTableOfOptions) {
                   std::filesystem::path(ETLC_SOURCE_DIR) / "docs" / "command_line.md");
 }
 
+TEST(CommandLine, ThePythonPackageHasTheTableOfOptions) {
+    expect_golden(driver::python_options(),
+                  std::filesystem::path(ETLC_SOURCE_DIR) / "python" / "etlc" / "_options.py");
+}
+
 TEST(Diagnostics, CodesAreSortedAndUnique) {
     const auto& codes = diag::all_codes();
     for (std::size_t i = 1; i < codes.size(); ++i) EXPECT_LT(codes[i - 1].code, codes[i].code);

@@ -43,6 +43,28 @@ std::vector<std::string> network_arguments(const check::Encoder& encoder,
     return arguments;
 }
 
+/// The program that encodes.
+struct Call {
+    std::string program;
+    std::vector<std::string> arguments;
+    data::Child::Options options;
+};
+
+Call call_of(const check::Encoder& encoder, const std::string& model_path, const Running& running) {
+    if (running.command.empty())
+        return {
+            data::embedder_path(), network_arguments(encoder, model_path, running.onnxruntime), {}};
+    Call call{"/bin/sh", {"-c", running.command}, {}};
+    call.options.whole_environment = true;
+    call.options.variables = {"ETLC_ENCODER=" + encoder.name, "ETLC_MODEL=" + model_path};
+    return call;
+}
+
+Failure not_run(const Running& running) {
+    if (running.command.empty()) return data::no_embedder();
+    return {Code::encoder_failed, "there is no shell to run the command"};
+}
+
 }  // namespace
 
 std::optional<Failure> settle(Running& running) {
@@ -72,23 +94,22 @@ std::optional<Failure> settle(Running& running) {
     return std::nullopt;
 }
 
+diag::Failure become(const check::Encoder& encoder, const std::string& model_path,
+                     const Running& running) {
+    const Call call = call_of(encoder, model_path, running);
+    data::Child::become(call.program, call.arguments, call.options);
+    return not_run(running);
+}
+
 diag::Result<std::unique_ptr<Encoder>> Encoder::start(const check::Encoder& encoder,
                                                       const std::string& model_path,
                                                       const Running& running) {
-    data::Child::Options options{
-        .max_silence_seconds = running.max_silence_seconds, .fed = true, .heard = true};
-    std::unique_ptr<data::Child> child;
-    if (running.command.empty()) {
-        child = data::Child::start(data::embedder_path(),
-                                   network_arguments(encoder, model_path, running.onnxruntime),
-                                   options);
-        if (!child) return data::no_embedder();
-    } else {
-        options.whole_environment = true;
-        options.variables = {"ETLC_ENCODER=" + encoder.name, "ETLC_MODEL=" + model_path};
-        child = data::Child::start("/bin/sh", {"-c", running.command}, options);
-        if (!child) return Failure{Code::encoder_failed, "there is no shell to run the command"};
-    }
+    Call call = call_of(encoder, model_path, running);
+    call.options.max_silence_seconds = running.max_silence_seconds;
+    call.options.fed = true;
+    call.options.heard = true;
+    auto child = data::Child::start(call.program, call.arguments, call.options);
+    if (!child) return not_run(running);
     return std::unique_ptr<Encoder>(new Encoder(encoder, running, std::move(child)));
 }
 

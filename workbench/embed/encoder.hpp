@@ -37,6 +37,11 @@ struct Trouble {
 /// Finds the library that runs networks, unless a command encodes.
 std::optional<diag::Failure> settle(Running& running);
 
+/// Replaces this process by the encoder: frames on standard input, embeddings on standard output.
+/// Returns why it cannot be run. `model_path`: as in Encoder::start.
+diag::Failure become(const check::Encoder& encoder, const std::string& model_path,
+                     const Running& running);
+
 class Encoder {
 public:
     /// Receives the embeddings of a source, row by row.

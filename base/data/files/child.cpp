@@ -138,6 +138,14 @@ std::unique_ptr<Child> Child::start(const std::string& program,
                                             std::move(output->out), std::move(errors->out)));
 }
 
+void Child::become(const std::string& program, const std::vector<std::string>& arguments,
+                   const Options& options) {
+    std::vector<std::string> words = {program};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<std::string> settings = environment(options);
+    ::execve(program.c_str(), pointers(words).data(), pointers(settings).data());
+}
+
 Child::~Child() {
     stop();
 }

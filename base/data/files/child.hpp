@@ -31,6 +31,9 @@ public:
     static std::unique_ptr<Child> start(const std::string& program,
                                         const std::vector<std::string>& arguments,
                                         const Options& options);
+    /// Replaces this process by a program, with the same streams. Returns where it cannot be run.
+    static void become(const std::string& program, const std::vector<std::string>& arguments,
+                       const Options& options);
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
     ~Child();

@@ -60,6 +60,9 @@ std::optional<std::string> page_of_trace(const source::File& spec, const Compile
 
 /// `etlc embed`: writes the file of embeddings, and an episode for each recording (of its shard).
 bool embed(const source::File& file, const Request& request, diag::Sink& sink);
+/// `etlc embed --pipe`: becomes the encoder, unless the embeddings of the spec are another's.
+/// Returns where that fails.
+bool pipe_frames(const source::File& file, const Request& request, diag::Sink& sink);
 /// `etlc fit`: writes the file of fitted entries. The report goes to standard output, or to
 /// standard error where the file goes to standard output; so does that of `etlc calibrate`.
 bool fit(const source::File& file, const Request& request, diag::Sink& sink);

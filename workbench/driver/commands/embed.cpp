@@ -191,6 +191,7 @@ std::string report(const check::Model& model, const embedded::File& file,
 }  // namespace
 
 bool embed(const source::File& file, const Request& request, diag::Sink& sink) {
+    if (!request.embed.pipe.empty()) return pipe_frames(file, request, sink);
     ast::Spec spec = parse::parse(file, sink);
     check::Options options;
     options.settings = request.check.settings;

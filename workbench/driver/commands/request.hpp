@@ -73,6 +73,7 @@ struct Request : pipeline::Options {
         /// Cameras of data sets and arrays by input; "" stands for all inputs.
         std::map<std::string, std::string> cameras;
         std::string references;  ///< folder for the reference frames; empty: they are not written
+        std::string pipe;        ///< encoder of the frames on standard input; empty: none
     } embed;
 
     struct Fit {

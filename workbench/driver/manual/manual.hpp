@@ -1,4 +1,5 @@
-// `etlc --completion SHELL`, `etlc --man` and docs/command_line.md, made from the table of options.
+// `etlc --completion SHELL`, `etlc --man`, docs/command_line.md and a module of the Python package,
+// made from the table of options.
 // Keeps true: every command and every option is in each of them.
 #pragma once
 
@@ -40,6 +41,9 @@ std::string manual_page(const std::vector<CommandHelp>& commands, const std::str
 
 /// Makes docs/command_line.md.
 std::string command_line_page();
+
+/// Makes python/etlc/_options.py.
+std::string python_options();
 
 /// Run `etlc --completion SHELL` and `etlc --man`, and return the exit status.
 int completion_command(const std::string& shell);

@@ -231,6 +231,9 @@ std::string mistake_in_embedding(const Request& request) {
     if (request.data.empty() != request.output.empty())
         return request.data.empty() ? "-o takes the episodes of --data, which is missing"
                                     : "--data needs -o FOLDER, where the episodes go";
+    const std::string& pipe = request.embed.pipe;
+    if (!pipe.empty() && !(request.data.empty() && request.embed.references.empty()))
+        return "--pipe encodes frames of standard input, and writes no files";
     if (request.shard.shards > 0 && request.data.empty())
         return "--shard takes a part of the recordings of --data, which is missing";
     return "";

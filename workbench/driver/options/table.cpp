@@ -301,14 +301,14 @@ std::vector<Option> make_options() {
         {embed, "-o,--output", text("FOLDER", in(&Call::output)),
          "folder for the episodes, .npz files"},
         {embed, "--embedded", file(in(&Call::check, &check::Options::embedded_path)),
-         "file for the embeddings of what the spec names (default: SPEC.embedded.npz beside the "
-         "spec)"},
+         "file for the embeddings of what the spec names (default: SPEC.embedded.npz beside it)"},
         {embed, "--shard", form("I/N", read_shard),
          "make episodes only of this shard of the recordings; the first shard also encodes what "
          "the spec names"},
         {embed, "--write-reference", text("FOLDER", in(&Call::embed, &Call::Embed::references)),
-         "folder for the reference frames, .png files: a robot encodes them to show that its "
-         "encoder is that of calibration"},
+         "folder for the reference frames, .png files, by which a robot checks its encoder"},
+        {embed, "--pipe", text("ENCODER", in(&Call::embed, &Call::Embed::pipe)),
+         "encode frames of standard input with this encoder, in the format of docs/encoders.md"},
         {embed, "--onnxruntime",
          text("PATH", in(&Call::embed, &Call::Embed::running, &embed::Running::onnxruntime)),
          "ONNX Runtime, which runs the models: the library or its folder (default: "

@@ -114,6 +114,9 @@ Model read_model(const std::string& path, const std::string& output) {
     if (!file) refuse(kRefused, "cannot be read");
     Model model;
     model.bytes.assign(std::istreambuf_iterator<char>(file), {});
+    if (model.bytes.starts_with("a model in Python\n"))
+        refuse(kRefused,
+               "stands for a model in Python: etlc.embed(..., encoder=...) runs it there");
     auto interface = interface_of(model.bytes);
     if (!interface) refuse(kRefused, "is no ONNX model, or a damaged one");
     choose_output(*interface, output);

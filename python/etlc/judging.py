@@ -1,0 +1,166 @@
+"""The commands that compare monitors with ground truth: `evaluate`, `crossvalidate`, `report`."""
+
+from __future__ import annotations
+
+import json as json_module
+import tempfile
+from pathlib import Path
+from typing import Any, Iterable, Mapping
+
+from ._keywords import FilePath, FilePaths, checks_names, words_of
+from ._process import run
+from .results import Evaluation, Written
+
+
+@checks_names
+def evaluate(
+    specs: FilePaths,
+    data: FilePaths,
+    *,
+    thresholds: FilePath | None = None,
+    fitted: FilePath | None = None,
+    embedded: FilePath | None = None,
+    settings: Mapping[str, object] | None = None,
+    names: Mapping[str, str] | None = None,
+    groups: str | None = None,
+    labels: FilePaths | None = None,
+    label_by: str | None = None,
+    allow_overlap: str | None = None,
+    folds: int | None = None,
+    by_episode: bool = False,
+    variants: str | Iterable[str] | None = None,
+    json: FilePath | None = None,
+    csv: FilePath | None = None,
+    shard: str | tuple[int, int] | None = None,
+    part: FilePath | None = None,
+    values: str | None = None,
+    targets_as: str | None = None,
+    max_state: int | None = None,
+    max_code: int | None = None,
+    max_work: int | None = None,
+    jobs: int | None = None,
+    warnings_are_errors: bool = False,
+) -> Evaluation:
+    """Compares predicates and monitors with ground truth on recorded episodes.
+
+    Args:
+        specs: the path of the spec, or of several, which are compared side by side.
+        data: episodes: files (.csv, .npz, .h5), folders, data sets or patterns.
+        thresholds, fitted, embedded: files for the spec; by default those beside it.
+        folds: calibrate on all folds but one and evaluate on that one, in turn.
+        by_episode: also report each episode, the worst first.
+        variants: also judge the monitors on failures made of the episodes: "cut", "swapped",
+            "reversed", "frozen".
+        json, csv: also write the figures into these files.
+        shard, part: read one shard of the episodes, and write a part for `merge`.
+        settings, names, groups, labels, label_by, allow_overlap, jobs, warnings_are_errors: as in
+            `calibrate`.
+        values, targets_as, max_state, max_code, max_work: as in `compile`.
+
+    Raises:
+        SpecError: the command failed; the message gives the reason.
+        InputError: an argument is invalid.
+    """
+    return _judged("evaluate", locals())
+
+
+@checks_names
+def crossvalidate(
+    specs: FilePaths,
+    data: FilePaths,
+    *,
+    thresholds: FilePath | None = None,
+    fitted: FilePath | None = None,
+    embedded: FilePath | None = None,
+    settings: Mapping[str, object] | None = None,
+    names: Mapping[str, str] | None = None,
+    groups: str | None = None,
+    labels: FilePaths | None = None,
+    label_by: str | None = None,
+    allow_overlap: str | None = None,
+    folds: int | None = None,
+    by_episode: bool = False,
+    variants: str | Iterable[str] | None = None,
+    json: FilePath | None = None,
+    csv: FilePath | None = None,
+    values: str | None = None,
+    targets_as: str | None = None,
+    max_state: int | None = None,
+    max_code: int | None = None,
+    max_work: int | None = None,
+    jobs: int | None = None,
+    warnings_are_errors: bool = False,
+) -> Evaluation:
+    """Fits, calibrates and evaluates a spec with one set of episodes, in folds.
+
+    Args:
+        specs, data: as in `evaluate`.
+        folds: their number; by default 5.
+        thresholds, fitted, embedded, settings, names, groups, labels, label_by, allow_overlap,
+            by_episode, variants, json, csv, values, targets_as, max_state, max_code, max_work,
+            jobs, warnings_are_errors: as in `evaluate`.
+
+    Raises:
+        SpecError: the command failed; the message gives the reason.
+        InputError: an argument is invalid.
+    """
+    return _judged("crossvalidate", locals())
+
+
+@checks_names
+def report(
+    spec: FilePath,
+    data: FilePaths,
+    output: FilePath,
+    *,
+    thresholds: FilePath | None = None,
+    fitted: FilePath | None = None,
+    embedded: FilePath | None = None,
+    settings: Mapping[str, object] | None = None,
+    names: Mapping[str, str] | None = None,
+    groups: str | None = None,
+    labels: FilePaths | None = None,
+    label_by: str | None = None,
+    allow_overlap: str | None = None,
+    frames: str | None = None,
+    size: int | None = None,
+    no_truths: bool = False,
+    values: str | None = None,
+    targets_as: str | None = None,
+    max_state: int | None = None,
+    max_code: int | None = None,
+    max_work: int | None = None,
+    jobs: int | None = None,
+    warnings_are_errors: bool = False,
+) -> Written:
+    """Writes a page about recorded episodes, with the figures of `evaluate`.
+
+    Args:
+        spec, data: as in `evaluate`.
+        output: the page, an .html file.
+        frames: camera frames: an array of the episodes, or a pattern: "camera/{episode}/*.png".
+        size: the size of the page in MB.
+        no_truths: show the verdicts without comparing them with truths.
+        thresholds, fitted, embedded, settings, names, groups, labels, label_by, allow_overlap,
+            values, targets_as, max_state, max_code, max_work, jobs, warnings_are_errors: as in
+            `evaluate`.
+
+    Raises:
+        SpecError: the command failed; the message gives the reason.
+        InputError: an argument is invalid.
+    """
+    ran = run(words_of("report", locals()))
+    return Written(Path(output), ran.report, ran.diagnostics)
+
+
+def _judged(command: str, given: dict[str, Any]) -> Evaluation:
+    """Runs the command, and reads the figures that it wrote."""
+    words = {("spec" if name == "specs" else name): value for name, value in given.items()}
+    if words.get("shard") is not None:
+        ran = run(words_of(command, words))
+        return Evaluation({}, ran.report, ran.diagnostics)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(words["json"] or Path(folder) / "evaluation.json")
+        ran = run(words_of(command, {**words, "json": path}))
+        found = json_module.loads(path.read_text(encoding="utf-8"))
+    return Evaluation(found, ran.report, ran.diagnostics)

@@ -1,0 +1,141 @@
+"""The page on which episodes are labelled: `label`, and `propose`."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import threading
+from typing import Mapping
+
+from ._keywords import FilePath, FilePaths, checks_names, words_of
+from ._process import concluded, run, started
+from .results import Suggestions
+
+
+class Labelling:
+    """A page that is served: `label` makes one. Always true.
+
+    Use it as a context manager, or call `stop`; labels are in their tables at any time.
+
+    Attributes:
+        address: the page, for a browser on this machine.
+        tables: the tables of labels.
+    """
+
+    def __init__(self, process: subprocess.Popen[bytes]) -> None:
+        """For `label`. Raises if the program ends before it serves the page."""
+        assert process.stdout is not None and process.stderr is not None
+        self._process = process
+        self._said = b""
+        self._hearing = threading.Thread(target=self._hear, daemon=True)
+        self._hearing.start()
+        self.address: str = process.stdout.readline().decode().strip()
+        self.tables: tuple[str, ...] = ()
+        while line := process.stdout.readline().decode(errors="replace").strip():
+            if not line.startswith("Labels go to "):
+                break
+            self.tables += (line.removeprefix("Labels go to ").removesuffix("."),)
+        if not self.address.startswith("http"):
+            self.wait()
+
+    def _hear(self) -> None:
+        """Reads what the program says, so that it never waits."""
+        assert self._process.stderr is not None
+        self._said = self._process.stderr.read()
+
+    def wait(self) -> None:
+        """Waits until the program ends, which `stop` or Ctrl-C does.
+
+        Raises:
+            SpecError: it failed.
+        """
+        try:
+            status = self._process.wait()
+        finally:
+            self.stop()
+        if status > 0:  # it was not stopped
+            concluded(status, b"", self._said)
+
+    def stop(self) -> None:
+        """Ends the program."""
+        if self._process.poll() is None:
+            self._process.terminate()
+        self._process.wait()
+        self._hearing.join()
+        for stream in (self._process.stdout, self._process.stderr):
+            if stream is not None:
+                stream.close()
+
+    def __enter__(self) -> Labelling:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+
+    def __repr__(self) -> str:
+        return f"<etlc.Labelling {self.address}: {', '.join(self.tables)}>"
+
+
+@checks_names
+def label(
+    spec: FilePath,
+    data: FilePaths,
+    *,
+    labels: FilePath | None = None,
+    frames: str | None = None,
+    camera: str | None = None,
+    port: int | None = None,
+    embedded: FilePath | None = None,
+    settings: Mapping[str, object] | None = None,
+    names: Mapping[str, str] | None = None,
+    groups: str | None = None,
+    jobs: int | None = None,
+    warnings_are_errors: bool = False,
+) -> Labelling:
+    """Serves a page, on this machine alone, on which you label the predicates of a spec.
+
+    Args:
+        spec: the path of the spec.
+        data: episodes: files (.csv, .npz, .h5), folders, data sets or patterns.
+        labels: the table of labels to write; by default labels.csv beside the episodes.
+        frames: camera frames: an array of the episodes, or a pattern: "camera/{episode}/*.png".
+        camera: the camera of a data set.
+        port: that of the page; by default any free one.
+        embedded, settings, names, groups, jobs, warnings_are_errors: as in `calibrate`.
+
+    Returns:
+        The page, until it is stopped; open its `address` in a browser.
+
+    Raises:
+        SpecError: there is no page; the message gives the reason.
+        InputError: an argument is invalid.
+    """
+    return Labelling(started(words_of("label", locals())))
+
+
+@checks_names
+def propose(
+    spec: FilePath,
+    data: FilePaths,
+    *,
+    labels: FilePath | None = None,
+    camera: str | None = None,
+    embedded: FilePath | None = None,
+    settings: Mapping[str, object] | None = None,
+    names: Mapping[str, str] | None = None,
+    groups: str | None = None,
+    jobs: int | None = None,
+    warnings_are_errors: bool = False,
+) -> Suggestions:
+    """Proposes labels for the episodes without (`etlc label --proposals`).
+
+    Args:
+        spec, data, labels, camera, embedded, settings, names, groups, jobs, warnings_are_errors:
+            as in `label`.
+
+    Raises:
+        SpecError: the command failed; the message gives the reason.
+        InputError: an argument is invalid.
+    """
+    ran = run(words_of("label", {**locals(), "proposals": True}))
+    return Suggestions(json.loads(ran.report), ran.diagnostics)
