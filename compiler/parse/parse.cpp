@@ -11,6 +11,7 @@
 #include "parse/stream/slices.hpp"
 #include "parse/stream/tokens.hpp"
 #include "parse/syntax_error.hpp"
+#include "parse/token_words.hpp"
 #include "source/utf8.hpp"
 
 namespace etlc::parse {

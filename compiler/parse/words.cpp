@@ -1,7 +1,7 @@
 #include "parse/words.hpp"
 
 #include "EtlLexer.h"
-#include "parse/stream/tokens.hpp"
+#include "parse/token_words.hpp"
 
 namespace etlc::parse {
 

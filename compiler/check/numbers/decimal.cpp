@@ -72,9 +72,9 @@ Decimal Decimal::of(double value) {
     char* const last = buffer.data() + buffer.size();
     constexpr double kWhole = 1e15;  // whole numbers up to it are common, and have few digits
     const bool is_short = std::abs(value) < kWhole && value == std::trunc(value);
-    const auto end = is_short ? std::to_chars(buffer.data(), last, static_cast<std::int64_t>(value))
-                              : std::to_chars(buffer.data(), last, value,
-                                              std::chars_format::scientific, 800);
+    const auto end =
+        is_short ? std::to_chars(buffer.data(), last, static_cast<std::int64_t>(value))
+                 : std::to_chars(buffer.data(), last, value, std::chars_format::scientific, 800);
     return parse({buffer.data(), static_cast<std::size_t>(end.ptr - buffer.data())});
 }
 

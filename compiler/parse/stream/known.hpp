@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -13,7 +15,7 @@
 
 namespace etlc::parse {
 
-/// What a slice says: the name in `spec NAME;`, or a declaration.
+/// The meaning of a slice: the name in `spec NAME;`, or a declaration.
 using Said = std::variant<ast::Name, ast::Declaration>;
 
 /// The slices without errors of one state of a text. A slice of the same text says the same

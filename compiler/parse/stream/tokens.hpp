@@ -12,7 +12,6 @@
 #include "antlr4-runtime.h"
 #include "ast/ast.hpp"
 #include "diag/diag.hpp"
-#include "parse/words.hpp"
 #include "source/source.hpp"
 
 namespace etlc::parse {
@@ -26,9 +25,6 @@ Tokens tokens_of(const source::File& file);
 
 /// Turns the tokens of the text `before` into those of the file, and lexes only what changed.
 void update(Tokens& tokens, std::string_view before, const source::File& file);
-
-/// Returns all but EOF.
-std::vector<Word> words_of(const Tokens& tokens, const source::File& file);
 
 source::Span span_of(const Token& token);
 source::Span span_of(const antlr4::ParserRuleContext& context);
