@@ -33,8 +33,27 @@ void append(std::string& bytes, std::uint32_t number, unsigned size) {
     for (unsigned i = 0; i < size; ++i) bytes += static_cast<char>(number >> (8 * i) & 0xFFU);
 }
 
-/// Returns the picture as a file that browsers show and that costs no compression: a bitmap of
-/// blue, green and red, rows from the bottom, each padded to four bytes.
+Failure of_path(const Failure& failure, const std::string& path) {
+    return {failure.code, fmt::format("{}: {}", path, failure.message)};
+}
+
+diag::Result<ImageFile> image_file(const std::string& path) {
+    auto bytes = data::read_file(path, kMostFileBytes, Code::not_pictures);
+    if (!bytes) return of_path(bytes.failure(), path);
+    if (bytes->starts_with("\x89PNG")) return ImageFile{"image/png", std::move(*bytes)};
+    if (bytes->starts_with("\xFF\xD8\xFF")) return ImageFile{"image/jpeg", std::move(*bytes)};
+    return Failure{Code::not_pictures, path + ": expected a PNG or JPEG file"};
+}
+
+/// Returns the number at the end of a name: 3 for "pick-000003".
+std::optional<std::uint64_t> number_at_end(const std::string& name) {
+    const std::size_t last = name.find_last_not_of("0123456789");
+    return data::parse_whole<std::uint64_t>(
+        std::string_view(name).substr(last == std::string::npos ? 0 : last + 1));
+}
+
+}  // namespace
+
 ImageFile bitmap(const Picture& picture) {
     constexpr std::uint32_t kHead = 54;
     const std::uint32_t row = (3 * picture.width + 3) / 4 * 4;
@@ -56,27 +75,6 @@ ImageFile bitmap(const Picture& picture) {
     }
     return {"image/bmp", std::move(bytes)};
 }
-
-Failure of_path(const Failure& failure, const std::string& path) {
-    return {failure.code, fmt::format("{}: {}", path, failure.message)};
-}
-
-diag::Result<ImageFile> image_file(const std::string& path) {
-    auto bytes = data::read_file(path, kMostFileBytes, Code::not_pictures);
-    if (!bytes) return of_path(bytes.failure(), path);
-    if (bytes->starts_with("\x89PNG")) return ImageFile{"image/png", std::move(*bytes)};
-    if (bytes->starts_with("\xFF\xD8\xFF")) return ImageFile{"image/jpeg", std::move(*bytes)};
-    return Failure{Code::not_pictures, path + ": expected a PNG or JPEG file"};
-}
-
-/// Returns the number at the end of a name: 3 for "pick-000003".
-std::optional<std::uint64_t> number_at_end(const std::string& name) {
-    const std::size_t last = name.find_last_not_of("0123456789");
-    return data::parse_whole<std::uint64_t>(
-        std::string_view(name).substr(last == std::string::npos ? 0 : last + 1));
-}
-
-}  // namespace
 
 /// Returns the episode of a data set that shows this one, or an empty text.
 std::string Frames::dataset_episode(const Episode& episode) const {

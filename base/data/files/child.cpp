@@ -211,6 +211,19 @@ bool Child::wait(std::string_view& bytes) {
     return !deaf_;
 }
 
+void Child::await(const std::vector<Child*>& children, int or_this, int milliseconds) {
+    std::vector<pollfd> waiting = {{or_this, POLLIN, 0}};
+    for (const Child* child : children) {
+        waiting.push_back({*child->output_, POLLIN, 0});
+        waiting.push_back({*child->errors_, POLLIN, 0});
+    }
+    if (::poll(waiting.data(), waiting.size(), milliseconds) <= 0) return;
+    for (std::size_t i = 0; i < children.size(); ++i) {
+        if (waiting[2 * i + 2].revents != 0) children[i]->hear();
+        if (waiting[2 * i + 1].revents != 0) children[i]->receive();
+    }
+}
+
 void Child::receive() {
     constexpr std::size_t kPiece = 1U << 18U;
     if (taken_ > 0) arrived_.erase(0, std::exchange(taken_, 0));

@@ -48,6 +48,12 @@ public:
     bool at_end();
     /// Returns how many bytes have arrived and were not read.
     std::size_t arrived() const { return arrived_.size() - taken_; }
+    /// Returns whether all of its output has been read, and no more comes.
+    bool is_over() const { return !output_ && arrived() == 0; }
+
+    /// Waits until one of these programs writes, the descriptor `or_this` can be read (-1: none),
+    /// or the time is over (less than 0: never), and takes what has arrived.
+    static void await(const std::vector<Child*>& children, int or_this, int milliseconds);
 
     /// Says how it ended, after `read` failed: "was stopped by signal 11 (Segmentation fault)".
     /// Waits for it.
