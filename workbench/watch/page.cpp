@@ -46,6 +46,7 @@ std::string page_of(const plan::Plan& plan, const PageText& text) {
         {"spec",
          {{"name", model.name}, {"path", text.spec_path}, {"step_seconds", model.step_seconds}}},
         {"source", text.source},
+        {"frames", text.has_frames},
         {"past", kPast},
         {"predicates", Json::array()},
         {"monitors", Json::array()}};

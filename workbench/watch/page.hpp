@@ -25,6 +25,7 @@ namespace etlc::watch {
 struct PageText {
     std::string spec_path;
     std::string source;  ///< what is watched
+    bool has_frames = false;
 };
 std::string page_of(const plan::Plan& plan, const PageText& text);
 

@@ -80,21 +80,24 @@ private:
         return true;
     }
 
+    /// Opens the source last: while encoders start, its frames would be lost.
     bool open_camera() {
         if (!has_only_encoded_inputs()) return false;
-        const double length = plan_.model->step_seconds;
-        auto frames = data::LiveFrames::open(request_.video, length > 0 ? 1 / length : 0);
-        if (!frames) return fail(frames.failure());
+        if (const auto failure = data::why_no_source(request_.video)) return fail(*failure);
         embed::Request asked{request_.running, request_.version, {}, {}, {}};
         auto encoders = Encoders::start(*plan_.model, plan_.inputs, std::move(asked), stop_, sink_);
         if (!encoders) return false;
+        const double length = plan_.model->step_seconds;
+        auto frames = data::LiveFrames::open(request_.video, length > 0 ? 1 / length : 0);
+        if (!frames) return fail(frames.failure());
         camera_ = std::make_unique<Camera>(std::move(*frames), std::move(encoders),
                                            data::is_live_source(request_.video), length, stop_);
         return true;
     }
 
     bool open_page() {
-        auto page = Page::start(request_.port, page_of(plan_, {request_.spec_path, source()}));
+        auto page = Page::start(request_.port,
+                                page_of(plan_, {request_.spec_path, source(), camera_ != nullptr}));
         if (!page) {
             sink_.report(data::in_file(page.failure(), "the page"));
             return false;

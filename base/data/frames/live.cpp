@@ -1,8 +1,11 @@
 #include "data/frames/live.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 
 #include "data/files/file.hpp"
@@ -29,10 +32,21 @@ bool is_live_source(const std::string& source) {
             !std::filesystem::is_directory(source, error));
 }
 
+std::optional<Failure> why_no_source(const std::string& source) {
+    if (source.find("://") != std::string::npos) return std::nullopt;
+    if (!is_live_source(source)) {
+        const auto why = why_unreadable(source);
+        if (why) return Failure{Code::unreadable_video, *why};
+    } else if (::access(source.c_str(), R_OK) != 0) {
+        return Failure{Code::unreadable_video,
+                       fmt::format("cannot be read: {}", std::strerror(errno))};
+    }
+    return std::nullopt;
+}
+
 diag::Result<std::unique_ptr<LiveFrames>> LiveFrames::open(const std::string& source, double rate) {
     const bool is_live = is_live_source(source);
-    if (!is_live)
-        if (auto why = why_unreadable(source)) return Failure{Code::unreadable_video, *why};
+    if (auto failure = why_no_source(source)) return *failure;
     std::vector<std::string> arguments = {"video", source, "--pace", is_live ? "live" : "real"};
     if (!is_live && rate > 0)
         arguments.insert(arguments.end(), {"--rate", fmt::format("{}", rate)});

@@ -25,6 +25,9 @@ struct LiveFrame {
 /// Returns whether frames go on to arrive while nobody reads them: false for a file.
 bool is_live_source(const std::string& source);
 
+/// Says why there is no such source, as far as that shows without opening it.
+std::optional<diag::Failure> why_no_source(const std::string& source);
+
 class LiveFrames {
 public:
     /// Opens a source. `rate`: steps a second of a file, as FrameChoice::rate. Failures do not

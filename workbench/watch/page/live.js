@@ -134,6 +134,7 @@ function hold() {
 
 function begin() {
   beginTheme();
+  document.querySelector("figure").hidden = !data.frames;
   document.title = `${data.spec.name}: etlc watch`;
   document.getElementById("title").textContent = data.spec.name;
   document.getElementById("subtitle").textContent = data.source;

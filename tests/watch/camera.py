@@ -1,0 +1,101 @@
+"""A camera for tests: a named pipe into which a thread writes grey frames at its own times, and
+`etlc watch` as a process."""
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "embed"))
+from networks import Graph  # noqa: E402
+
+WIDTH, HEIGHT = 64, 48
+DARK, LIGHT = 20, 200
+RATE = 30
+SPEC = """spec look;
+rate 30 Hz;
+encoder net = load("net.onnx"), image [8, 8];
+input z : f32[3] by net;
+target bright = [[1, 1, 1]];
+predicate light = min l2(z, bright) <= 0.8;
+monitor lit = F[0, 500 ms] light;
+monitor seen = F light;
+sliding monitor now = light;
+"""
+
+
+def make_network(path):
+    """The mean of each colour: three numbers from 0 to 1."""
+    graph = Graph()
+    mean = graph.node("Flatten", graph.node("GlobalAveragePool", "x"))
+    graph.save(path, [1, 3, 8, 8], mean, 3)
+
+
+def make_project(folder, etlc, spec=SPEC, *words):
+    folder = pathlib.Path(folder)
+    make_network(str(folder / "net.onnx"))
+    (folder / "look.etl").write_text(spec)
+    subprocess.run([etlc, "embed", "look.etl", *words], cwd=folder, check=True,
+                   stdout=subprocess.DEVNULL)
+
+
+def y4m_head(rate=RATE):
+    return f"YUV4MPEG2 W{WIDTH} H{HEIGHT} F{rate}:1 Ip A1:1 C420jpeg\n".encode()
+
+
+def y4m_frame(level):
+    return b"FRAME\n" + bytes([level]) * (WIDTH * HEIGHT) + bytes([128]) * (WIDTH * HEIGHT // 2)
+
+
+def wait_until(end):
+    """Waits for a time without the delays of a long sleep."""
+    while (left := end - time.monotonic()) > 0:
+        time.sleep(left if left > 0.002 else 0)
+
+
+class Camera:
+    """Writes a frame for each of `frames`, at its time: (seconds, level)."""
+
+    def __init__(self, folder, frames, rate=RATE):
+        self.path = os.path.join(folder, "camera")
+        os.mkfifo(self.path)
+        self.frames, self.rate = frames, rate
+        self.begun = None  # when the first frame was written
+        self.thread = threading.Thread(target=self._write, daemon=True)
+        self.thread.start()
+
+    def _write(self):
+        try:
+            with open(self.path, "wb", buffering=0) as pipe:
+                pipe.write(y4m_head(self.rate))
+                self.begun = time.monotonic()
+                for seconds, level in self.frames:
+                    wait_until(self.begun + seconds)
+                    pipe.write(y4m_frame(level))
+        except BrokenPipeError:
+            pass
+
+
+def at_rate(levels, rate=RATE, begin=0.0):
+    return [(begin + number / rate, level) for number, level in enumerate(levels)]
+
+
+class Watch:
+    def __init__(self, etlc, folder, *words, stdin=None):
+        self.process = subprocess.Popen([etlc, "watch", "look.etl", *words], cwd=folder,
+                                        stdin=stdin, stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE, text=True)
+
+    def line(self):
+        return self.process.stdout.readline().rstrip("\n")
+
+    def stop(self, number=signal.SIGINT):
+        self.process.send_signal(number)
+        return self.end()
+
+    def end(self):
+        """Returns the lines that are left, the messages and the exit status."""
+        out, err = self.process.communicate(timeout=120)
+        return out.splitlines(), err, self.process.returncode
