@@ -2,11 +2,14 @@
 `etlc watch` as a process."""
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
 import threading
 import time
+
+import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "embed"))
 from networks import Graph  # noqa: E402
@@ -24,6 +27,50 @@ monitor lit = F[0, 500 ms] light;
 monitor seen = F light;
 sliding monitor now = light;
 """
+
+
+# A command that encodes as the network does; `times`: embeddings for each frame behind the
+# reference frames.
+ENCODER = """import struct, sys, time
+import numpy as np
+frames, embeddings = sys.stdin.buffer, sys.stdout.buffer
+embeddings.write(struct.pack("<I", 3))
+number = 0
+while head := frames.read(8):
+    height, width = struct.unpack("<II", head)
+    pixels = np.frombuffer(frames.read(height * width * 3), np.uint8)
+    is_reference = (height, width) == (480, 640)
+    if not is_reference: time.sleep({seconds})
+    z = pixels.reshape(-1, 3).mean(0) / 255 + {shift}
+    for _ in range(1 if is_reference else {times}): embeddings.write(z.astype("<f4").tobytes())
+    embeddings.flush()
+"""
+
+
+BY_COMMAND = ("--encoder-cmd", f"'{sys.executable}' encode.py")
+
+
+def make_encoder(folder, seconds=0.0, shift=0, times=1):
+    (pathlib.Path(folder) / "encode.py").write_text(
+        ENCODER.format(seconds=seconds, shift=shift, times=times))
+
+
+def run(etlc, folder, *words, **more):
+    return subprocess.run([etlc, *words], cwd=folder, capture_output=True, text=True, timeout=120,
+                          **more)
+
+
+def write_video(folder, levels, rate=RATE):
+    (pathlib.Path(folder) / "video.y4m").write_bytes(
+        y4m_head(rate) + b"".join(map(y4m_frame, levels)))
+    subprocess.run(["ffmpeg", "-y", "-v", "error", "-i", "video.y4m", "-c:v", "libx264", "-bf", "2",
+                    "-g", "12", "video.mp4"], cwd=folder, check=True)
+
+
+def changes_of(lines, name):
+    """Returns (step, status) of the lines about a monitor or an input."""
+    pattern = re.compile(rf"step (\d+)(?: \(\S+ s\))?: {name} (.*?)(?:, .*)?$")
+    return [(int(found[1]), found[2]) for found in map(pattern.match, lines) if found]
 
 
 def make_network(path):
@@ -82,6 +129,16 @@ def at_rate(levels, rate=RATE, begin=0.0):
     return [(begin + number / rate, level) for number, level in enumerate(levels)]
 
 
+def blinking(count, longest=7):
+    """Dark and light in runs of 1 to `longest` frames, which no regular delay matches."""
+    random = np.random.default_rng(3)
+    levels, level = [], DARK
+    while len(levels) < count:
+        levels += [level] * random.integers(1, longest + 1)
+        level = DARK + LIGHT - level
+    return levels[:count]
+
+
 class Watch:
     def __init__(self, etlc, folder, *words, stdin=None):
         self.process = subprocess.Popen([etlc, "watch", "look.etl", *words], cwd=folder,
@@ -90,6 +147,19 @@ class Watch:
 
     def line(self):
         return self.process.stdout.readline().rstrip("\n")
+
+    def lines_until(self, beginning):
+        """Reads lines up to the one that begins so; returns them with the times of their arrival."""
+        lines = []
+        while not lines or not lines[-1][1].startswith(beginning):
+            line = self.line()
+            assert line, (lines, self.end())
+            lines.append((time.monotonic(), line))
+        return lines
+
+    def write(self, text):
+        self.process.stdin.write(text)
+        self.process.stdin.flush()
 
     def stop(self, number=signal.SIGINT):
         self.process.send_signal(number)

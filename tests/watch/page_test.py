@@ -4,7 +4,7 @@ the verdict on it belong together, at every moment; two pages, a pause of the so
 import sys
 import tempfile
 
-from camera import DARK, LIGHT, Camera, Watch, at_rate, make_project
+from camera import Camera, Watch, at_rate, blinking, make_project
 
 sys.path.insert(0, sys.argv[2])
 from browser import Browser  # noqa: E402
@@ -47,14 +47,6 @@ def watch_together(page, moments):
             steps.append(shown["frame"])
             greys.add(shown["grey"] > 128)
     return steps, greys
-
-
-def blinking(count):
-    """Dark and light in runs of 1 to 7 frames, which no regular delay matches."""
-    levels = []
-    while len(levels) < count:
-        levels += [LIGHT if len(levels) % 2 else DARK] * (1 + len(levels) * 5 % 7)
-    return levels[:count]
 
 
 def main():

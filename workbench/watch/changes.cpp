@@ -42,7 +42,7 @@ std::string Changes::of_monitor(std::size_t m, std::uint64_t step, const etlmon:
     if (monitor.sliding && monitor.horizon > 0 && verdict.decided())
         words += fmt::format(", about {}", when(*plan_.model, evaluator.position(m)));
     return fmt::format("{}: {} {}{}\n", when(*plan_.model, step), monitor.name, words,
-                       verdict.alarm() && !monitor.sliding ? ": alarm" : "");
+                       verdict.alarm() ? ": alarm" : "");
 }
 
 std::string Changes::of_input(check::Index input, std::uint64_t step,

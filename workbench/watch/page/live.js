@@ -33,6 +33,7 @@ function drawTimelines() {
   view.timelines = before || new Timelines(document.getElementById("tracks"),
     episodeOf(view.steps), { move: () => {}, drawn: () => {} });
   view.timelines.draw();
+  view.timelines.moveTo(-1);  // no cursor
 }
 
 function valueCell(value) {
