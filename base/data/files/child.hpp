@@ -48,8 +48,10 @@ public:
     bool at_end();
     /// Returns how many bytes have arrived and were not read.
     std::size_t arrived() const { return arrived_.size() - taken_; }
+    /// Returns whether no more output comes than has arrived.
+    bool has_ended() const { return !output_; }
     /// Returns whether all of its output has been read, and no more comes.
-    bool is_over() const { return !output_ && arrived() == 0; }
+    bool is_over() const { return has_ended() && arrived() == 0; }
 
     /// Waits until one of these programs writes, the descriptor `or_this` can be read (-1: none),
     /// or the time is over (less than 0: never), and takes what has arrived.

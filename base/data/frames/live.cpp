@@ -56,6 +56,10 @@ diag::Result<std::unique_ptr<LiveFrames>> LiveFrames::open(const std::string& so
     return std::unique_ptr<LiveFrames>(new LiveFrames(std::move(decoder)));
 }
 
+std::size_t LiveFrames::missing() const {
+    return has_head_ ? std::size_t{3} * next_.frame.height * next_.frame.width : kHeadBytes;
+}
+
 diag::Result<bool> LiveFrames::take(LiveFrame& frame) {
     if (!has_head_) {
         std::array<char, kHeadBytes> head{};
@@ -69,11 +73,10 @@ diag::Result<bool> LiveFrames::take(LiveFrame& frame) {
         next_.frame.width = frames::number_at(head.data() + 12);
         has_head_ = true;
     }
-    const std::uint64_t pixels = std::uint64_t{next_.frame.height} * next_.frame.width;
-    if (pixels == 0 || pixels > frames::kMaxPixels)
+    if (missing() == 0 || missing() > 3 * frames::kMaxPixels)
         return Failure{Code::unreadable_video, "what decodes it sent no frame"};
-    if (decoder_->arrived() < 3 * pixels) return false;
-    next_.frame.rgb.resize(3 * pixels);
+    if (decoder_->arrived() < missing()) return false;
+    next_.frame.rgb.resize(missing());
     decoder_->read(next_.frame.rgb.data(), next_.frame.rgb.size());
     std::swap(frame, next_);
     has_head_ = false;

@@ -38,12 +38,16 @@ public:
     Child& decoder() { return *decoder_; }
     /// Takes a frame, if a whole one has arrived.
     diag::Result<bool> take(LiveFrame& frame);
-    bool is_over() const { return decoder_->is_over(); }
+    /// Returns whether no whole frame is left, and no more come.
+    bool is_over() const { return decoder_->has_ended() && decoder_->arrived() < missing(); }
     /// Returns how the source ended, once it is over: nothing where that was its end.
     std::optional<diag::Failure> ending();
 
 private:
     explicit LiveFrames(std::unique_ptr<Child> decoder) : decoder_(std::move(decoder)) {}
+
+    /// Returns the bytes that are to come of the next frame or its head.
+    std::size_t missing() const;
 
     std::unique_ptr<Child> decoder_;
     bool has_head_ = false;  ///< that of the next frame has been read, into `next_`
