@@ -149,7 +149,7 @@ class Watch:
         return self.process.stdout.readline().rstrip("\n")
 
     def lines_until(self, beginning):
-        """Reads lines up to the one that begins so; returns them with the times of their arrival."""
+        """Reads lines up to the one that begins so; returns (time of arrival, line)."""
         lines = []
         while not lines or not lines[-1][1].startswith(beginning):
             line = self.line()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """page_test.py ETLC BROWSER_FOLDER: the page of `etlc watch` in headless Chromium: the frame and
-the verdict on it belong together, at every moment; two pages, a pause of the source, and its end."""
+the verdict on it belong together at every moment; two pages, a pause of the source, its end."""
 import sys
 import tempfile
 

@@ -8,8 +8,9 @@ import sys
 import tempfile
 import time
 
-from camera import BY_COMMAND, DARK, LIGHT, RATE, SPEC, Camera, Watch, at_rate, blinking, changes_of, \
-    make_encoder, make_project, run, write_video
+from camera import BY_COMMAND, DARK, LIGHT, RATE, SPEC, Camera, Watch, at_rate, blinking, \
+    changes_of, make_encoder, make_project, run, write_video
+
 
 ETLC = sys.argv[1]
 NO_RATE = SPEC.replace("rate 30 Hz;\n", "").replace("500 ms", "15")

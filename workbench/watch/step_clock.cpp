@@ -10,9 +10,17 @@ namespace {
 using std::chrono::duration;
 using std::chrono::duration_cast;
 
-/// The part of a frame's distance to its step by which the clock moves. The distance is at most
-/// half a step, so the clock moves by at most 0.5 % of a step a step.
-constexpr double kFollows = 0.01;
+/// The part of a frame's distance to its step by which the clock moves, and the largest distance
+/// that counts: together at most 0.5 % of a step a step.
+constexpr double kFollows = 0.02;
+constexpr double kMostFollowed = 0.25;
+/// A frame may be late by this part of a step; frames of a slow camera are, before a step has none.
+constexpr double kLate = 0.75;
+/// A distance that changes by more shows that the steps of camera and spec have slipped.
+constexpr double kSlip = 0.5;
+/// The clock does not follow a camera that has slipped within so many steps: one whose clock
+/// differs by more than 0.5 % always has.
+constexpr std::uint64_t kFreeSteps = 250;
 /// The weight of a new interval in the mean.
 constexpr double kNewest = 0.1;
 /// A frame may be on its way for this long, in steps, when its step is given up.
@@ -28,25 +36,40 @@ double StepClock::behind(Time time) const {
     return duration<double>(time - *last_).count() / step_;
 }
 
-/// A frame belongs to the step to which it is nearest. Where frames come faster than steps, it may
-/// be early by half the time between frames only: the next frame is then no nearer.
+/// A frame belongs to the next step, unless it is early by more than half the time between frames,
+/// so that the next frame is nearer, or late by most of a step.
 std::uint64_t StepClock::take(Time frame) {
     if (step_ == 0) return 1;
+    note_interval(frame);
+    if (!last_) {
+        last_ = frame;
+        return 1;
+    }
+    const double place = behind(frame);
+    double steps = std::floor(place + (interval_ > 0 ? 0.5 * interval_ : 0.5));
+    if (steps < 1) return 0;
+    if (steps > 1 && place - (steps - 1) < kLate) --steps;
+    *last_ += steps_long(steps, step_);
+    const auto count = static_cast<std::uint64_t>(steps);
+    follow(place - steps, count);
+    return count;
+}
+
+void StepClock::note_interval(Time frame) {
     if (frame_) {
         const double interval = std::min(duration<double>(frame - *frame_).count() / step_, 1.0);
         interval_ = interval_ == 0 ? interval : interval_ + kNewest * (interval - interval_);
     }
     frame_ = frame;
-    if (!last_) {
-        last_ = frame;
-        return 1;
-    }
-    const double early = interval_ > 0 ? 0.5 * interval_ : 0.5;
-    const double steps = std::floor(behind(frame) + early);
-    if (steps < 1) return 0;
-    *last_ += steps_long(steps, step_);
-    *last_ += steps_long(kFollows * std::clamp(behind(frame), -0.5, 0.5), step_);
-    return static_cast<std::uint64_t>(steps);
+}
+
+/// Moves the clock towards a frame that is `distance` steps behind its step.
+void StepClock::follow(double distance, std::uint64_t steps) {
+    const bool has_slipped = std::abs(distance - distance_) > kSlip;
+    distance_ = distance;
+    free_ = has_slipped ? kFreeSteps : free_ - std::min(free_, steps);
+    if (free_ > 0) return;
+    *last_ += steps_long(kFollows * std::clamp(distance, -kMostFollowed, kMostFollowed), step_);
 }
 
 std::optional<StepClock::Time> StepClock::next_overdue() const {

@@ -30,11 +30,15 @@ public:
 private:
     /// Returns how many steps after the last one a time is.
     double behind(Time time) const;
+    void note_interval(Time frame);
+    void follow(double distance, std::uint64_t steps);
 
     double step_;
     std::optional<Time> last_;   ///< time of the last step
     std::optional<Time> frame_;  ///< of the last frame
     double interval_ = 0;        ///< mean time between frames, in steps; 0: unknown
+    double distance_ = 0;        ///< of the last step's frame behind its step, in steps
+    std::uint64_t free_ = 0;     ///< steps for which the clock does not follow
 };
 
 }  // namespace etlc::watch

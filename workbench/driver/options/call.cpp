@@ -49,8 +49,8 @@ constexpr Row kCommands[] = {
      "recorded "
      "episodes."},
     {Command::watch, "watch", "SPEC.etl --video SOURCE",
-     "Steps a spec's monitors with a camera, a stream, a video or a trace as it comes, and prints a "
-     "line where\nsomething changes, until the source ends or you press Ctrl-C."}};
+     "Steps a spec's monitors with a camera, a stream, a video or a trace as it comes, and prints "
+     "a line where\nsomething changes, until the source ends or you press Ctrl-C."}};
 static_assert(std::size(kCommands) == kCommandCount);
 
 }  // namespace

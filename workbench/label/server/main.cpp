@@ -110,7 +110,7 @@ private:
     std::vector<std::string> hosts_;
 };
 
-/// What etlc says: answers, and events, of which the last ones are kept. Ends with etlc.
+/// Listens to etlc: to answers, and to events, of which the last ones are kept. Ends with etlc.
 class Etlc {
 public:
     struct Answer {
