@@ -67,11 +67,12 @@ ImageFile bitmap(const Picture& picture) {
     append(bytes, 1, 2);
     append(bytes, 24, 2);
     for (int i = 0; i < 6; ++i) append(bytes, 0, 4);
-    for (std::size_t y = picture.height; y-- > 0;) {
-        for (std::size_t x = 0; x < picture.width; ++x)
-            for (std::size_t c = 3; c-- > 0;)
-                bytes += picture.pixels[3 * (y * picture.width + x) + c];
-        bytes.append(row - 3 * picture.width, '\0');
+    bytes.resize(kHead + std::size_t{row} * picture.height);
+    char* to = &bytes[kHead];
+    for (std::size_t y = picture.height; y-- > 0; to += row) {
+        const char* const from = &picture.pixels[3 * y * picture.width];
+        for (std::size_t x = 0; x < 3 * std::size_t{picture.width}; x += 3)
+            for (std::size_t c = 0; c < 3; ++c) to[x + c] = from[x + 2 - c];
     }
     return {"image/bmp", std::move(bytes)};
 }

@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -225,12 +226,14 @@ void Child::await(const std::vector<Child*>& children, int or_this, int millisec
 }
 
 void Child::receive() {
-    constexpr std::size_t kPiece = 1U << 18U;
     if (taken_ > 0) arrived_.erase(0, std::exchange(taken_, 0));
     const std::size_t before = arrived_.size();
-    arrived_.resize(before + kPiece);
+    int ready = 0;
+    if (::ioctl(*output_, FIONREAD, &ready) != 0 || ready <= 0) ready = 1;
+    const auto piece = static_cast<std::size_t>(ready);
+    arrived_.resize(before + piece);
     const ssize_t got =
-        uninterrupted([&] { return ::read(*output_, arrived_.data() + before, kPiece); });
+        uninterrupted([&] { return ::read(*output_, arrived_.data() + before, piece); });
     arrived_.resize(before + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
     if (got <= 0) output_ = Descriptor();
 }
