@@ -100,6 +100,8 @@ def encoders(folder):
     time.sleep(1)
     _, errors, status = watch.stop(signal.SIGINT)
     assert status == 0 and not errors, (status, errors)
+    refused(folder, 1, *video, *BY_COMMAND, "--encoder-timeout", "1",
+            what=["no embedding of a frame for 1 second", "flush", "[E1013]"])
 
 
 def calls(folder):

@@ -55,6 +55,8 @@ public:
     std::optional<diag::Failure> add(const data::Frame& frame, const std::string& name, Done done);
     /// Takes the embeddings that have arrived.
     std::optional<diag::Failure> take() { return take(false); }
+    /// Returns whether it has made the embeddings of all frames so far.
+    bool is_idle() const { return taken_ == given_; }
     /// Waits for the embeddings of all frames so far.
     std::optional<diag::Failure> take_all() { return take(true); }
     /// The program that runs, for Child::await.

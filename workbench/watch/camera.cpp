@@ -43,7 +43,7 @@ diag::Result<bool> Camera::wait() {
     }
     std::vector<data::Child*> children = encoders_->children();
     if (!is_over && wants_frames()) children.push_back(&frames_->decoder());
-    data::Child::await(children, stop_.descriptor(), is_over ? -1 : patience());
+    data::Child::await(children, stop_.descriptor(), patience());
     if (!encoders_->take()) return fail();
     if (!is_over && wants_frames())
         if (const auto taken = take_frames(); !taken) return taken;
@@ -59,13 +59,14 @@ diag::Result<bool> Camera::take_frames() {
     }
 }
 
-/// Returns the milliseconds until a step is overdue, less than 0 for ever.
+/// Returns the milliseconds until a step is overdue, or until it is time to look at the encoders.
 int Camera::patience() const {
     using namespace std::chrono;
+    constexpr std::int64_t kLongest = 1000;
     const auto next = clock_.next_overdue();
-    if (!next) return -1;
+    if (!next) return kLongest;
     const auto left = ceil<milliseconds>(*next - steady_clock::now()).count();
-    return static_cast<int>(std::clamp<std::int64_t>(left, 0, 1000));
+    return static_cast<int>(std::clamp<std::int64_t>(left, 0, kLongest));
 }
 
 void Camera::add(data::LiveFrame& frame) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -27,7 +28,8 @@ constexpr int kPatienceMilliseconds = 1000;
 std::unique_ptr<Encoders> Encoders::start(const check::Model& model,
                                           const std::vector<Index>& inputs, embed::Request request,
                                           const Stop& stop, diag::Sink& sink) {
-    std::unique_ptr<Encoders> encoders(new Encoders(model, sink));
+    std::unique_ptr<Encoders> encoders(
+        new Encoders(model, request.running.max_silence_seconds, sink));
     if (!encoders->is_suitable(inputs, request) || !encoders->start_all(inputs, request.running) ||
         !encoders->compare_all(stop))
         return nullptr;
@@ -97,11 +99,10 @@ bool Encoders::compare(Index input, const Stop& stop) {
         };
         if (auto failure = encoder.add(data::reference_frame(frame), "a reference frame", done))
             return fail(input, *failure);
+        given_ = std::chrono::steady_clock::now();
         while (!is_there) {
             data::Child::await({&encoder.child()}, stop.descriptor(), kPatienceMilliseconds);
-            if (stop.is_asked()) return false;
-            if (auto failure = encoder.child().is_over() ? encoder.take_all() : encoder.take())
-                return fail(input, *failure);
+            if (stop.is_asked() || !take(input)) return false;
         }
         if (expected.size() != data::kReferenceFrames * row.size()) continue;
         const double difference =
@@ -118,6 +119,7 @@ bool Encoders::compare(Index input, const Stop& stop) {
 
 bool Encoders::give(const data::Frame& frame) {
     waiting_ = encoders_.size();
+    given_ = std::chrono::steady_clock::now();
     for (const auto& [input, encoder] : encoders_) {
         const auto done = [this, at = input](std::vector<float> row) {
             rows_[at] = std::move(row);
@@ -129,10 +131,22 @@ bool Encoders::give(const data::Frame& frame) {
 }
 
 bool Encoders::take() {
-    for (const auto& [input, encoder] : encoders_)
-        if (auto failure = encoder->child().is_over() ? encoder->take_all() : encoder->take())
-            return fail(input, *failure);
-    return true;
+    const auto takes = [this](const auto& one) { return take(one.first); };
+    return waiting_ == 0 || std::all_of(encoders_.begin(), encoders_.end(), takes);
+}
+
+bool Encoders::take(Index input) {
+    embed::Encoder& encoder = *encoders_.at(input);
+    const bool is_late = std::chrono::steady_clock::now() - given_ > most_;
+    if (auto failure = encoder.child().is_over() ? encoder.take_all() : encoder.take())
+        return fail(input, *failure);
+    if (!is_late || encoder.is_idle()) return true;
+    return fail(input,
+                {Code::encoder_failed,
+                 fmt::format("'{}' has made no embedding of a frame for {}; it has "
+                             "to write, and flush, one after every frame",
+                             model_.encoders[model_.inputs[input].encoder].name,
+                             diag::counted(static_cast<std::uint64_t>(most_.count()), "second"))});
 }
 
 }  // namespace etlc::watch

@@ -4,6 +4,7 @@
 // fingerprint is that of the spec's embeddings, and what it makes of the reference frames too.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -39,12 +40,15 @@ public:
     const std::vector<data::Child*>& children() const { return children_; }
 
 private:
-    Encoders(const check::Model& model, diag::Sink& sink) : model_(model), sink_(sink) {}
+    Encoders(const check::Model& model, int seconds, diag::Sink& sink)
+        : model_(model), sink_(sink), most_(seconds) {}
 
     bool is_suitable(const std::vector<check::Index>& inputs, embed::Request& request);
     bool start_all(const std::vector<check::Index>& inputs, const embed::Running& running);
     bool compare_all(const Stop& stop);
     bool compare(check::Index input, const Stop& stop);
+    /// Takes what has arrived of an encoder; false where it has failed, or is silent too long.
+    bool take(check::Index input);
     bool fail(check::Index input, const diag::Failure& failure);
 
     const check::Model& model_;
@@ -52,6 +56,8 @@ private:
     std::map<check::Index, std::unique_ptr<embed::Encoder>> encoders_;  ///< by input
     std::map<check::Index, std::vector<float>> rows_;                   ///< by input
     std::vector<data::Child*> children_;
+    std::chrono::seconds most_;  ///< --encoder-timeout
+    std::chrono::steady_clock::time_point given_;
     std::size_t waiting_ = 0;  ///< embeddings of the last frame that are to come
 };
 

@@ -217,7 +217,7 @@ std::vector<Option> make_own_options() {
          "print as JSON what the labelled episodes propose for the others, and serve no page"},
 
         // etlc watch
-        {watch, "--video", file(in(&Call::watch, &Call::Watch::video)),
+        {watch, "--video", text("SOURCE", in(&Call::watch, &Call::Watch::video)),
          "what to watch: a camera (/dev/video0), an address (rtsp://..., http://..., tcp://...), a "
          "named pipe, or a video file, at its own speed"},
         {watch, "--trace", checked_trace(), "- watches a trace on standard input, CSV, row by row",
