@@ -68,7 +68,7 @@ std::optional<std::string> Service::read_text() {
 }
 
 std::optional<Asked> Service::next(int or_this) {
-    if (or_this >= 0 && child_->arrived() == 0) data::Child::await({child_.get()}, or_this, -1);
+    if (or_this >= 0 && child_->arrived() == 0) data::Child::await({child_.get()}, {or_this}, -1);
     has_ended_ = has_ended_ || child_->is_over();
     if (has_ended_ || (or_this >= 0 && child_->arrived() == 0)) return std::nullopt;
     auto path = read_text();

@@ -30,7 +30,10 @@ bool Camera::is_ready() {
 void Camera::give_out() {
     Due& due = due_.front();
     has_frame_ = due.has_frame;
-    if (has_frame_) std::swap(frame_, due.frame);
+    if (has_frame_) {
+        spare_ = std::move(frame_);
+        frame_ = std::move(due.frame);
+    }
     due_.pop_front();
 }
 
@@ -41,9 +44,8 @@ diag::Result<bool> Camera::wait() {
         if (auto failure = frames_->ending()) return *failure;
         return false;
     }
-    std::vector<data::Child*> children = encoders_->children();
-    if (!is_over && wants_frames()) children.push_back(&frames_->decoder());
-    data::Child::await(children, stop_.descriptor(), patience());
+    const int source = !is_over && wants_frames() ? frames_->descriptor() : -1;
+    data::Child::await(encoders_->children(), {stop_.descriptor(), source}, patience());
     if (!encoders_->take()) return fail();
     if (!is_over && wants_frames())
         if (const auto taken = take_frames(); !taken) return taken;
@@ -83,8 +85,8 @@ void Camera::add(data::LiveFrame& frame) {
             ++counts_.dropped;
         }
     add_absent(steps - 1);
-    due_.push_back({true, false, {}});
-    std::swap(due_.back().frame, frame.frame);
+    due_.push_back({true, false, std::move(frame.frame)});
+    frame.frame = std::move(spare_);
 }
 
 void Camera::add_absent(std::uint64_t steps) {

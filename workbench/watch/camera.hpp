@@ -75,7 +75,8 @@ private:
     StepClock clock_;
     std::deque<Due> due_;
     data::LiveFrame arrived_;
-    data::Frame frame_;
+    data::Frame frame_;  ///< of the last step that has one
+    data::Frame spare_;  ///< whose memory the next frame takes
     bool has_frame_ = false;
     bool has_failed_ = false;
     CameraCounts counts_;

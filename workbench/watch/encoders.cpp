@@ -101,7 +101,7 @@ bool Encoders::compare(Index input, const Stop& stop) {
             return fail(input, *failure);
         given_ = std::chrono::steady_clock::now();
         while (!is_there) {
-            data::Child::await({&encoder.child()}, stop.descriptor(), kPatienceMilliseconds);
+            data::Child::await({&encoder.child()}, {stop.descriptor()}, kPatienceMilliseconds);
             if (stop.is_asked() || !take(input)) return false;
         }
         if (expected.size() != data::kReferenceFrames * row.size()) continue;

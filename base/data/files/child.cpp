@@ -212,16 +212,32 @@ bool Child::wait(std::string_view& bytes) {
     return !deaf_;
 }
 
-void Child::await(const std::vector<Child*>& children, int or_this, int milliseconds) {
-    std::vector<pollfd> waiting = {{or_this, POLLIN, 0}};
+std::size_t Child::take(char* to, std::size_t n) {
+    std::size_t taken = std::min(n, arrived());
+    if (taken > 0) read(to, taken);
+    pollfd waiting{*output_, POLLIN, 0};
+    while (taken < n && output_ && ::poll(&waiting, 1, 0) > 0) {
+        const ssize_t got = uninterrupted([&] { return ::read(*output_, to + taken, n - taken); });
+        if (got <= 0)
+            output_ = Descriptor();
+        else
+            taken += static_cast<std::size_t>(got);
+    }
+    return taken;
+}
+
+void Child::await(const std::vector<Child*>& children, const std::vector<int>& others,
+                  int milliseconds) {
+    std::vector<pollfd> waiting;
     for (const Child* child : children) {
         waiting.push_back({*child->output_, POLLIN, 0});
         waiting.push_back({*child->errors_, POLLIN, 0});
     }
+    for (const int other : others) waiting.push_back({other, POLLIN, 0});
     if (::poll(waiting.data(), waiting.size(), milliseconds) <= 0) return;
     for (std::size_t i = 0; i < children.size(); ++i) {
-        if (waiting[2 * i + 2].revents != 0) children[i]->hear();
-        if (waiting[2 * i + 1].revents != 0) children[i]->receive();
+        if (waiting[2 * i + 1].revents != 0) children[i]->hear();
+        if (waiting[2 * i].revents != 0) children[i]->receive();
     }
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -20,7 +19,6 @@ using diag::Failure;
 
 /// A camera may be silent for as long as it likes: the steps go on without it.
 constexpr int kLongSilenceSeconds = 2'000'000;
-constexpr std::size_t kHeadBytes = 16;  ///< the time, height and width
 
 }  // namespace
 
@@ -56,30 +54,33 @@ diag::Result<std::unique_ptr<LiveFrames>> LiveFrames::open(const std::string& so
     return std::unique_ptr<LiveFrames>(new LiveFrames(std::move(decoder)));
 }
 
-std::size_t LiveFrames::missing() const {
-    return has_head_ ? std::size_t{3} * next_.frame.height * next_.frame.width : kHeadBytes;
+diag::Result<bool> LiveFrames::take(LiveFrame& frame) {
+    for (;;) {
+        std::string& pixels = next_.frame.rgb;
+        char* const to = has_head_ ? pixels.data() : head_.data();
+        const std::size_t whole = has_head_ ? pixels.size() : head_.size();
+        filled_ += decoder_->take(to + filled_, whole - filled_);
+        if (filled_ < whole) return false;
+        filled_ = 0;
+        has_head_ = !has_head_;
+        if (!has_head_) {
+            std::swap(frame, next_);
+            return true;
+        }
+        if (!read_head()) return Failure{Code::unreadable_video, "what decodes it sent no frame"};
+    }
 }
 
-diag::Result<bool> LiveFrames::take(LiveFrame& frame) {
-    if (!has_head_) {
-        std::array<char, kHeadBytes> head{};
-        if (decoder_->arrived() < head.size()) return false;
-        decoder_->read(head.data(), head.size());
-        const std::uint64_t microseconds =
-            frames::number_at(head.data()) |
-            static_cast<std::uint64_t>(frames::number_at(head.data() + 4)) << 32U;
-        next_.time = LiveTime(std::chrono::microseconds(microseconds));
-        next_.frame.height = frames::number_at(head.data() + 8);
-        next_.frame.width = frames::number_at(head.data() + 12);
-        has_head_ = true;
-    }
-    if (missing() == 0 || missing() > 3 * frames::kMaxPixels)
-        return Failure{Code::unreadable_video, "what decodes it sent no frame"};
-    if (decoder_->arrived() < missing()) return false;
-    next_.frame.rgb.resize(missing());
-    decoder_->read(next_.frame.rgb.data(), next_.frame.rgb.size());
-    std::swap(frame, next_);
-    has_head_ = false;
+bool LiveFrames::read_head() {
+    const std::uint64_t microseconds =
+        frames::number_at(head_.data()) |
+        static_cast<std::uint64_t>(frames::number_at(head_.data() + 4)) << 32U;
+    next_.time = LiveTime(std::chrono::microseconds(microseconds));
+    next_.frame.height = frames::number_at(head_.data() + 8);
+    next_.frame.width = frames::number_at(head_.data() + 12);
+    const std::uint64_t pixels = std::uint64_t{next_.frame.height} * next_.frame.width;
+    if (pixels == 0 || pixels > frames::kMaxPixels) return false;
+    next_.frame.rgb.resize(3 * pixels);
     return true;
 }
 

@@ -3,7 +3,9 @@
 // nothing here waits; a source that only pauses is not over.
 #pragma once
 
+#include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -34,23 +36,26 @@ public:
     /// repeat the source.
     static diag::Result<std::unique_ptr<LiveFrames>> open(const std::string& source, double rate);
 
-    /// The program that decodes, for Child::await.
-    Child& decoder() { return *decoder_; }
+    /// The descriptor that can be read when more has come, for Child::await.
+    int descriptor() const { return decoder_->output(); }
     /// Takes a frame, if a whole one has arrived.
     diag::Result<bool> take(LiveFrame& frame);
-    /// Returns whether no whole frame is left, and no more come.
-    bool is_over() const { return decoder_->has_ended() && decoder_->arrived() < missing(); }
+    /// Returns whether `take` has taken all frames, and no more come.
+    bool is_over() const { return decoder_->has_ended(); }
     /// Returns how the source ended, once it is over: nothing where that was its end.
     std::optional<diag::Failure> ending();
 
 private:
     explicit LiveFrames(std::unique_ptr<Child> decoder) : decoder_(std::move(decoder)) {}
 
-    /// Returns the bytes that are to come of the next frame or its head.
-    std::size_t missing() const;
+    static constexpr std::size_t kHeadBytes = 16;  ///< the time, height and width
+
+    bool read_head();
 
     std::unique_ptr<Child> decoder_;
-    bool has_head_ = false;  ///< that of the next frame has been read, into `next_`
+    bool has_head_ = false;   ///< that of the next frame is whole
+    std::size_t filled_ = 0;  ///< bytes of its head, or of its pixels
+    std::array<char, kHeadBytes> head_{};
     LiveFrame next_;
 };
 
