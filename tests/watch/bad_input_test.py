@@ -110,6 +110,11 @@ def calls(folder):
     (path / "bare.etl").write_text("spec bare; input x : f32; monitor m = G x > 0;\n")
     refused(folder, 1, "more.etl", "--video", "video.mp4", "--embedded", "look.embedded.npz",
             what=["'charge' is made by no encoder", "--trace -", "[E0804]"])
+    (path / "two.etl").write_text(SPEC + "input y : f32[3] by net;\n"
+                                  "monitor alike = G l2(y, bright) < 9;\n")
+    refused(folder, 1, "two.etl", "--video", "video.mp4", "--embedded", "look.embedded.npz",
+            what=["'y' is by the encoder of another input", "[E1002]"])
+    refused(folder, 1, "look.etl", "--trace", "-", "-Werror", what=["[W1001]"], input="z[0]\n")
     refused(folder, 1, "bare.etl", "--video", "video.mp4", what=["'x' is made by no encoder"])
     video = ("look.etl", "--video", "video.mp4")
     refused(folder, 2, "look.etl", what=["--video SOURCE", "--trace -"])

@@ -89,6 +89,18 @@ def a_camera_that_pauses():
     delays = sorted(at - camera.begun - (int(re.match(r"step (\d+)", line)[1]) + first) / RATE
                     for at, line in lines if re.match(r"step \d+ .*: now (viol|sat)", line))
     assert delays[len(delays) // 2] < 0.1, delays
+    print(f"a line followed its frame by {1000 * delays[len(delays) // 2]:.1f} ms (median)")
+
+
+def a_camera_that_freezes():
+    """It repeats its frame to the bit, and `stale after` counts that as missing."""
+    with tempfile.TemporaryDirectory() as folder:
+        make_project(folder, ETLC, SPEC.replace("by net;\ntarget", "by net, stale after 5;\ntarget"))
+        Camera(folder, at_rate(blinking(30, 1) + [LIGHT] * 30 + blinking(30, 1)))
+        lines, errors, status = Watch(ETLC, folder, "--video", "camera").end()
+    assert status == 0 and not errors, (status, errors)
+    said = [what for _, what in changes_of(lines, "input z")][-2:]
+    assert said == ["is stale", "is there again"], lines
 
 
 def a_slow_encoder_shifts_nothing():
@@ -165,6 +177,7 @@ def main():
     a_file_is_as_embed_and_run()
     a_slow_encoder_loses_no_frame_of_a_file()
     a_camera_that_pauses()
+    a_camera_that_freezes()
     a_slow_encoder_shifts_nothing()
     a_camera_of_another_rate()
     a_trace_as_it_comes()

@@ -104,7 +104,11 @@ bool Encoders::compare(Index input, const Stop& stop) {
             data::Child::await({&encoder.child()}, {stop.descriptor()}, kPatienceMilliseconds);
             if (stop.is_asked() || !take(input)) return false;
         }
-        if (expected.size() != data::kReferenceFrames * row.size()) continue;
+        if (expected.size() != data::kReferenceFrames * row.size())
+            return fail(input, {Code::other_encoder,
+                                fmt::format("what '{}' made of the reference frames is not known: "
+                                            "run etlc embed again",
+                                            of.name)});
         const double difference =
             data::relative_difference(row.data(), &expected[frame * row.size()], row.size());
         if (difference > kMostDifference)

@@ -40,7 +40,10 @@ public:
 
     bool run() {
         if (!request_.video.empty() && !open_camera()) return is_stopped();
-        if (request_.has_page && !open_page()) return false;
+        if (request_.video.empty())
+            episodes::warn_of_unmarked(*plan_.model, plan_.inputs,
+                                       {std::string(data::kStandardInput)}, request_.names, sink_);
+        if (sink_.refused() || (request_.has_page && !open_page())) return false;
         step_through();
         const auto trouble = incidents_ ? incidents_->close() : std::nullopt;
         if (trouble) sink_.report(*trouble);
@@ -110,7 +113,6 @@ private:
         const episodes::Wanted wanted{plan_.model, plan_.inputs, {}, {}, nullptr, {}};
         if (!camera_) {
             const std::string trace(data::kStandardInput);
-            episodes::warn_of_unmarked(*plan_.model, plan_.inputs, {trace}, request_.names, sink_);
             return episodes::Recording::open(wanted, trace, {request_.names, nullptr});
         }
         return episodes::Recording::open(

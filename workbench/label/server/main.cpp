@@ -34,6 +34,7 @@ using etlc::data::frames::number_at;
 constexpr const char* kHost = "127.0.0.1";
 constexpr int kGood = 200;
 constexpr int kForbidden = 403;
+constexpr const char* kEnd = "/events/end";       ///< a page has gone, which no page says itself
 constexpr std::size_t kConnections = 32;          ///< a browser opens six for a page
 constexpr std::size_t kMostRequests = 1'000'000;  ///< of a connection
 
@@ -197,7 +198,7 @@ void send_events(Etlc& etlc, const Etlc::Answer& begin, httplib::Response& respo
                 text = "data: " + *event + "\n\n";
             return sink.write(text.data(), text.size());
         },
-        [&etlc](bool) { etlc.ask("/events/end", ""); });
+        [&etlc](bool) { etlc.ask(kEnd, ""); });
 }
 
 void answer(Etlc& etlc, const std::string& path, const httplib::Request& request,
@@ -247,7 +248,8 @@ int serve() {
     });
     Etlc etlc;
     const auto pass = [&](const httplib::Request& request, httplib::Response& response) {
-        if (const auto path = door.path(request)) answer(etlc, *path, request, response);
+        const auto path = door.path(request);
+        if (path && *path != kEnd) answer(etlc, *path, request, response);
     };
     server.Get(".*", pass);
     server.Post(".*", pass);
