@@ -4,6 +4,7 @@ are in files, which `etlc incident` reads."""
 import pathlib
 import re
 import signal
+import subprocess
 import sys
 import tempfile
 
@@ -74,6 +75,29 @@ def many_alarms():
             pathlib.Path(camera.path).unlink()
 
 
+def alarms_in_a_row():
+    """A monitor that begins again may alarm at every step: each alarm is said, and has its file
+    at once."""
+    spec = "spec look; input x : f32; repeating monitor now = G x >= 0;"
+    with tempfile.TemporaryDirectory() as folder:
+        pathlib.Path(folder, "look.etl").write_text(spec)
+        watch = Watch(ETLC, folder, "--trace", "-", "--record", "kept", "--recorder", "1,9,3",
+                      stdin=subprocess.PIPE)
+        for step, row in enumerate(["x\n1", "-1", "-2", "-3"]):
+            watch.write(row + "\n")
+            line = watch.line()
+            assert line.startswith(f"step {step}: now "), line
+            assert line.endswith(": alarm") == (step > 0), line
+            kept = list(incidents(folder).values())
+            assert len(kept) == step, (step, kept)
+            assert all(number + 1 in alarms for number, (_, alarms) in enumerate(kept)), kept
+        watch.write("-4\n")  # for which there is no room
+        assert watch.line().endswith(": alarm")
+        lines, errors, status = watch.stop()
+        assert status == 0 and not errors, (status, errors)
+        assert lines[-1] == "3 incidents in kept; 1 more alarm found no room", lines
+
+
 def a_full_disk():
     """What cannot be written is said at once, and the rest goes on."""
     with tempfile.TemporaryDirectory() as folder:
@@ -96,6 +120,7 @@ def main():
     for number in SIGNALS:
         at_the_first_alarm(number)
     many_alarms()
+    alarms_in_a_row()
     a_full_disk()
 
 

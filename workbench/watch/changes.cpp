@@ -34,7 +34,9 @@ std::string Changes::of_monitor(std::size_t m, std::uint64_t step, const etlmon:
     const plan::Monitor& monitor = plan_.monitors[m];
     std::string words = status(verdict);
     if (!monitor.sliding && verdict.decided()) words += verdict.final() ? " for good" : " so far";
-    if (words == said_[m]) return "";
+    // A monitor that begins again has another final verdict each time.
+    const bool repeats = monitor.restarts == check::Restarts::when_final && verdict.final();
+    if (words == said_[m] && !repeats) return "";
     said_[m] = words;
     // Where a sample is missing, the robustness is only a bound.
     if (verdict.decided() && !verdict.unknown())

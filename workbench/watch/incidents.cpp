@@ -25,10 +25,12 @@ std::string Incidents::path(std::uint32_t incident) const {
         .string();
 }
 
+/// As the recorder counts: each alarm of a monitor that begins again with it is a new one.
 bool Incidents::begins(const std::vector<Verdict>& verdicts) {
     bool begins = false;
     for (std::size_t m = 0; m < verdicts.size(); ++m) {
-        begins = begins || (verdicts[m].alarm() && !alarms_[m]);
+        const bool repeats = plan_.monitors[m].restarts == check::Restarts::when_final;
+        begins = begins || (verdicts[m].alarm() && (repeats || !alarms_[m]));
         alarms_[m] = verdicts[m].alarm();
     }
     return begins;
