@@ -8,7 +8,7 @@ import subprocess
 import sys
 import tempfile
 
-from camera import DARK, LIGHT, RATE, Camera, Watch, at_rate, make_project, run
+from camera import DARK, LIGHT, RATE, Camera, Watch, at_last, at_rate, make_project, run
 
 ETLC = sys.argv[1]
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)
@@ -119,7 +119,7 @@ def a_full_disk():
 def main():
     for number in SIGNALS:
         at_the_first_alarm(number)
-    many_alarms()
+    at_last(many_alarms)
     alarms_in_a_row()
     a_full_disk()
 

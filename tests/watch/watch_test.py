@@ -3,13 +3,14 @@
 import pathlib
 import re
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
 import time
 
-from camera import BY_COMMAND, DARK, LIGHT, RATE, SPEC, Camera, Watch, at_rate, blinking, \
-    changes_of, make_encoder, make_project, run, write_video
+from camera import BY_COMMAND, DARK, LIGHT, RATE, SPEC, Camera, Watch, at_last, at_rate, \
+    blinking, changes_of, make_encoder, make_project, run, write_video
 
 
 ETLC = sys.argv[1]
@@ -144,6 +145,31 @@ def a_camera_of_another_rate():
         assert abs(light + lost - RATE) <= 3, (light, lost, lines)
 
 
+def a_stream():
+    """An address is watched as a pipe is, until the other side ends."""
+    with tempfile.TemporaryDirectory() as folder:
+        make_project(folder, ETLC)
+        levels = [DARK] * 60 + [LIGHT] * 60
+        write_video(folder, levels)
+        with socket.socket() as unused:
+            unused.bind(("127.0.0.1", 0))
+            address = f"tcp://127.0.0.1:{unused.getsockname()[1]}"
+        sender = subprocess.Popen(["ffmpeg", "-v", "error", "-re", "-i", "video.mp4", "-c:v",
+                                   "libx264", "-tune", "zerolatency", "-f", "mpegts",
+                                   address + "?listen=1"], cwd=folder)
+        for _ in range(100):
+            watch = Watch(ETLC, folder, "--video", address)
+            lines, errors, status = watch.end()
+            if "Connection refused" not in errors:
+                break
+            time.sleep(0.1)  # it does not listen yet
+        sender.wait(timeout=60)
+    assert status == 0 and not errors, (status, errors)
+    light = [step for step, what in changes_of(lines, "now") if what == "satisfied"]
+    came = int(re.match(r"(\d+) frames", lines[-1])[1])
+    assert abs(light[0] - (60 - (len(levels) - came))) <= 3, (light, came, lines)
+
+
 def a_trace_as_it_comes():
     """A row is judged when it comes; the end of input and Ctrl-C end it, and a cut row does not
     count."""
@@ -176,10 +202,11 @@ def a_trace_as_it_comes():
 def main():
     a_file_is_as_embed_and_run()
     a_slow_encoder_loses_no_frame_of_a_file()
-    a_camera_that_pauses()
-    a_camera_that_freezes()
-    a_slow_encoder_shifts_nothing()
-    a_camera_of_another_rate()
+    at_last(a_camera_that_pauses)
+    at_last(a_camera_that_freezes)
+    at_last(a_slow_encoder_shifts_nothing)
+    at_last(a_camera_of_another_rate)
+    at_last(a_stream)
     a_trace_as_it_comes()
 
 
