@@ -168,6 +168,19 @@ class Watch:
             lines.append((time.monotonic(), line))
         return lines
 
+    def lines_containing(self, part):
+        """Reads lines up to one that contains this."""
+        while part not in (line := self.line()):
+            assert line, self.end()
+
+    def child(self, name):
+        """The number of the process of this name that it has started."""
+        own = self.process.pid
+        for child in pathlib.Path(f"/proc/{own}/task/{own}/children").read_text().split():
+            if pathlib.Path(f"/proc/{child}/comm").read_text().strip() == name:
+                return int(child)
+        raise AssertionError(f"no process {name}")
+
     def write(self, text):
         self.process.stdin.write(text)
         self.process.stdin.flush()

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """page_test.py ETLC BROWSER_FOLDER: the page of `etlc watch` in headless Chromium: the frame and
 the verdict on it belong together at every moment; two pages, a pause of the source, its end."""
+import os
+import signal
 import sys
 import tempfile
 
@@ -81,6 +83,8 @@ def main():
         page.wait("document.getElementById('frame').dataset.step !== ''")
         watch_together(page, 20)
 
+        os.kill(watch.child("etlc-serve"), signal.SIGKILL)
+        watch.lines_containing("the page has ended: etlc-serve was stopped by signal 9")
         lines, errors, status = watch.stop()
         assert status == 0 and not errors, (status, errors)
         page.wait("document.getElementById('trouble').textContent.includes('has ended')")

@@ -134,6 +134,14 @@ void Page::serve() {
         if (const auto asked = service_->next(*wake_)) service_->answer(answer(*asked));
         send_events();
     }
+    if (is_ended_) return;
+    const std::lock_guard lock(mutex_);
+    ending_ = service_->ending().message;
+}
+
+std::optional<std::string> Page::take_ending() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(ending_, std::nullopt);
 }
 
 void Page::send_events() {

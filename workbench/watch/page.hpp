@@ -9,6 +9,7 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -45,6 +46,8 @@ public:
     const std::string& address() const { return service_->address(); }
     /// Adds a step. `step`: of step_json; `frame`: null where it has none.
     void add(std::string step, const data::Frame* frame);
+    /// Returns once why the page is served no more; else nothing.
+    std::optional<std::string> take_ending();
 
 private:
     Page(std::unique_ptr<label::Service> service, std::string html);
@@ -60,6 +63,7 @@ private:
     std::mutex mutex_;
     std::deque<std::string> past_;    ///< the last steps, for a page that is opened now
     std::deque<std::string> events_;  ///< to be sent
+    std::optional<std::string> ending_;
     std::thread thread_;
 };
 

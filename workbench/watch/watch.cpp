@@ -152,12 +152,19 @@ private:
         for (std::size_t m = 0; m < verdicts.size(); ++m)
             if (monitors_.reports(plan_.monitors[m].index)) summary_.add(m, steps_, verdicts[m]);
         const auto trouble = incidents_ ? incidents_->step(evaluator, verdicts) : std::nullopt;
-        if (page_)
-            page_->add(step_json(plan_, steps_, verdicts, evaluator),
-                       camera_ ? camera_->frame() : nullptr);
-        const std::string lines = changes_.after(steps_, verdicts, evaluator) + changed(trouble);
+        std::string lines = changes_.after(steps_, verdicts, evaluator) + changed(trouble);
+        if (page_) lines += show(verdicts);
         ++steps_;
         return lines.empty() || request_.print(source::visible_lines(lines));
+    }
+
+    /// Passes a step to the page; returns the line that says that the page has ended.
+    std::string show(const std::vector<etlmon::Verdict>& verdicts) {
+        page_->add(step_json(plan_, steps_, verdicts, monitors_.evaluator()),
+                   camera_ ? camera_->frame() : nullptr);
+        const auto why = page_->take_ending();
+        return why ? fmt::format("{}: the page has ended: {}\n", when(*plan_.model, steps_), *why)
+                   : "";
     }
 
     /// Returns the line that says that incidents cannot be written, or can again.
