@@ -113,7 +113,8 @@ def main():
     make_video("short.mp4", 1)
     pathlib.Path("look.etl").write_text(SPEC)
     subprocess.run([ETLC, "embed", "look.etl"], check=True, stdout=subprocess.DEVNULL)
-    parts = {"alone": alone, "etlc embed": embed, "etlc watch": watch, "with a page": watch_with_page}
+    parts = {"alone": alone, "etlc embed": embed, "etlc watch": watch,
+             "with a page": watch_with_page}
     taken = {name: [] for name in parts}
     for _ in range(ROUNDS):
         for name, part in parts.items():

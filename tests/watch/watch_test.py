@@ -96,7 +96,7 @@ def a_camera_that_pauses():
 def a_camera_that_freezes():
     """It repeats its frame to the bit, and `stale after` counts that as missing."""
     with tempfile.TemporaryDirectory() as folder:
-        make_project(folder, ETLC, SPEC.replace("by net;\ntarget", "by net, stale after 5;\ntarget"))
+        make_project(folder, ETLC, SPEC.replace("f32[3] by net", "f32[3] by net, stale after 5"))
         Camera(folder, at_rate(blinking(30, 1) + [LIGHT] * 30 + blinking(30, 1)))
         lines, errors, status = Watch(ETLC, folder, "--video", "camera").end()
     assert status == 0 and not errors, (status, errors)
