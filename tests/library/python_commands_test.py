@@ -24,7 +24,7 @@ from etlc._keywords import keyword_of
 from etlc._options import OPTIONS
 
 #: Commands that serve a program, and have no function.
-WITHOUT = {"lsp"}
+WITHOUT = {"lsp", "watch"}
 #: The functions of each command, with the options that each of them does not take, or sets itself.
 FUNCTIONS = {
     "compile": {
@@ -35,7 +35,7 @@ FUNCTIONS = {
     "fit": {"fit": {"--suggest", "--json"}, "suggest": {"--output", "--json"}},
     "label": {"label": {"--proposals"}, "propose": {"--proposals", "--frames", "--port"}},
     "embed": {"embed": {"--pipe"}},  # etlc.Encoder has it
-    "run": {"run": {"--summary"}},
+    "run": {"run": {"--summary", "--changes"}},
     "explain": {"explain": {"--format"}},
 }  # fmt: skip
 #: Arguments that the command line cannot have.
@@ -82,7 +82,8 @@ class Table(unittest.TestCase):
             taken = {one.name for by, _, _, left in functions() if by == command for one in left}
             for option in options:
                 if command not in WITHOUT and option.name != "--diagnostics":
-                    own = {"--pipe", "--summary", "--check", "--format", "--json", "--proposals"}
+                    own = {"--pipe", "--summary", "--changes", "--check", "--format", "--json",
+                           "--proposals"}
                     self.assertIn(option.name, taken | own, command)
 
     def test_every_keyword_is_described(self):

@@ -18,7 +18,7 @@
 #include "driver/options/call.hpp"
 #include "driver/options/mistakes.hpp"
 #include "driver/process/process.hpp"
-#include "label/serve.hpp"
+#include "label/service.hpp"
 #include "library/open.hpp"
 #include "lsp/lsp.hpp"
 #include "report/page.hpp"
@@ -98,7 +98,7 @@ bool can_make_pages() {
 
 int run_trace(Call& call) {
     const bool has_other_output =
-        call.run.summary || !call.run.html.empty() || !call.run.svg.empty();
+        call.run.summary || call.run.changes || !call.run.html.empty() || !call.run.svg.empty();
     if (has_other_output && !call.has("--output")) call.output.clear();
     if (!call.run.html.empty() && !can_make_pages()) return kFailed;
     return on_plan<run>(call);
@@ -113,6 +113,17 @@ int make_labels(Call& call) {
     if (!missing.empty()) print_error(fmt::format("etlc: {}\n", missing));
     if (!missing.empty() || (!call.label.proposals && !can_make_pages())) return kFailed;
     return on_spec<label>(call);
+}
+
+/// Steps before and after an alarm, and incidents that may be open at a time.
+const plan::RecorderRequest kUsualRecorder = {{150, false, "150"}, {60, false, "60"}, 4};
+
+int watch_source(Call& call) {
+    const std::string missing = call.watch.has_page ? label::what_serving_lacks() : "";
+    if (!missing.empty()) print_error(fmt::format("etlc: {}\n", missing));
+    if (!missing.empty() || (call.watch.has_page && !can_make_pages())) return kFailed;
+    if (!call.watch.record.empty() && !call.recorder) call.recorder = kUsualRecorder;
+    return on_plan<watch>(call);
 }
 
 int evaluate_specs(Call& call) {
@@ -133,7 +144,7 @@ int merge(Call& call);
 constexpr int (*kFunctions[])(Call& call) = {
     compile_spec,      run_trace,      on_spec<embed>, on_spec<fit>, on_spec<calibrate>,
     evaluate_specs,    evaluate_specs, serve_editors,  merge,        on_plan<explain>,
-    on_plan<incident>, make_report,    make_labels};
+    on_plan<incident>, make_report,    make_labels,    watch_source};
 static_assert(std::size(kFunctions) == kCommandCount);
 
 int execute(Command command, int argc, char** argv, episodes::Sharing* merged = nullptr) {

@@ -120,12 +120,7 @@ std::optional<Trouble> Encoder::add(data::FrameSource& frames, const std::string
         const auto more = frames.next(frame);
         if (!more) return Trouble{more.failure(), false, jobs_.back().frames};
         if (!*more) break;
-        std::string head;
-        append(head, frame.height);
-        append(head, frame.width);
-        if (!child_->give(head) || !child_->give(frame.rgb)) return Trouble{stopped()};
-        ++jobs_.back().frames;
-        ++given_;
+        if (auto failure = pass(frame)) return Trouble{std::move(*failure)};
         if (auto failure = take(false)) return Trouble{std::move(*failure)};
     }
     jobs_.back().complete = true;
@@ -133,14 +128,27 @@ std::optional<Trouble> Encoder::add(data::FrameSource& frames, const std::string
     return std::nullopt;
 }
 
+std::optional<Failure> Encoder::add(const data::Frame& frame, const std::string& name, Done done) {
+    if (dimension_ > 0 && taken_ == given_ && child_->arrived() > 0) return surplus();
+    jobs_.push_back({name, 0, true, {}, std::move(done)});
+    return pass(frame);
+}
+
+std::optional<Failure> Encoder::pass(const data::Frame& frame) {
+    std::string head;
+    append(head, frame.height);
+    append(head, frame.width);
+    if (!child_->give(head) || !child_->give(frame.rgb)) return stopped();
+    ++jobs_.back().frames;
+    ++given_;
+    return std::nullopt;
+}
+
 std::optional<Trouble> Encoder::finish() {
     child_->give_no_more();
     if (auto failure = take(true)) return Trouble{std::move(*failure)};
     has_surplus_ = !child_->at_end();
-    if (has_surplus_)
-        return Trouble{
-            {Code::encoder_failed, fmt::format("'{}' wrote more than {}, one a frame", name_,
-                                               diag::counted(taken_, "embedding"))}};
+    if (has_surplus_) return Trouble{surplus()};
     if (child_->exit_status() != 0) return Trouble{stopped()};
     return std::nullopt;
 }
@@ -204,6 +212,11 @@ void Encoder::finish_jobs() {
         jobs_.front().done(std::move(jobs_.front().rows));
         jobs_.pop_front();
     }
+}
+
+Failure Encoder::surplus() const {
+    return {Code::encoder_failed, fmt::format("'{}' wrote more than {}, one a frame", name_,
+                                              diag::counted(taken_, "embedding"))};
 }
 
 Failure Encoder::stopped() {

@@ -1,7 +1,7 @@
 // A running encoder: a network in etlc-embed, or a command of the user.
-// Takes: frames. Gives: one embedding per frame, in order. Keeps true: all embeddings are finite
-// and have the dimension that the encoder declared; an encoder may process several frames at a
-// time.
+// Takes: frames, of whole sources or one by one. Gives: one embedding per frame, in order. Keeps
+// true: all embeddings are finite and have the dimension that the encoder declared; an encoder may
+// process several frames at a time.
 #pragma once
 
 #include <cstdint>
@@ -55,6 +55,17 @@ public:
     /// Passes it all frames of a source. `done` is called when their embeddings are complete, at
     /// the latest by `finish`; messages call the source `name`.
     std::optional<Trouble> add(data::FrameSource& frames, const std::string& name, Done done);
+    /// Passes it one frame. `done` is called by a later `take`. Fails where it has written more
+    /// embeddings than it got frames: none may belong to its frame.
+    std::optional<diag::Failure> add(const data::Frame& frame, const std::string& name, Done done);
+    /// Takes the embeddings that have arrived.
+    std::optional<diag::Failure> take() { return take(false); }
+    /// Returns whether it has made the embeddings of all frames so far.
+    bool is_idle() const { return taken_ == given_; }
+    /// Waits for the embeddings of all frames so far.
+    std::optional<diag::Failure> take_all() { return take(true); }
+    /// The program that runs, for Child::await.
+    data::Child& child() { return *child_; }
     /// Ends the input and waits for all embeddings.
     std::optional<Trouble> finish();
 
@@ -83,10 +94,12 @@ private:
 
     /// Reads the embeddings that have arrived; with `all`, waits for those of all frames.
     std::optional<diag::Failure> take(bool all);
+    std::optional<diag::Failure> pass(const data::Frame& frame);
     std::optional<diag::Failure> take_dimension();
     std::optional<diag::Failure> take_row(Job& job);
     void finish_jobs();
     diag::Failure stopped();
+    diag::Failure surplus() const;
 
     std::string name_;
     std::uint32_t expected_;  ///< dimension of its inputs; 0 where it has none

@@ -33,30 +33,6 @@ void append(std::string& bytes, std::uint32_t number, unsigned size) {
     for (unsigned i = 0; i < size; ++i) bytes += static_cast<char>(number >> (8 * i) & 0xFFU);
 }
 
-/// Returns the picture as a file that browsers show and that costs no compression: a bitmap of
-/// blue, green and red, rows from the bottom, each padded to four bytes.
-ImageFile bitmap(const Picture& picture) {
-    constexpr std::uint32_t kHead = 54;
-    const std::uint32_t row = (3 * picture.width + 3) / 4 * 4;
-    std::string bytes = "BM";
-    append(bytes, kHead + row * picture.height, 4);
-    append(bytes, 0, 4);
-    append(bytes, kHead, 4);
-    append(bytes, kHead - 14, 4);
-    append(bytes, picture.width, 4);
-    append(bytes, picture.height, 4);
-    append(bytes, 1, 2);
-    append(bytes, 24, 2);
-    for (int i = 0; i < 6; ++i) append(bytes, 0, 4);
-    for (std::size_t y = picture.height; y-- > 0;) {
-        for (std::size_t x = 0; x < picture.width; ++x)
-            for (std::size_t c = 3; c-- > 0;)
-                bytes += picture.pixels[3 * (y * picture.width + x) + c];
-        bytes.append(row - 3 * picture.width, '\0');
-    }
-    return {"image/bmp", std::move(bytes)};
-}
-
 Failure of_path(const Failure& failure, const std::string& path) {
     return {failure.code, fmt::format("{}: {}", path, failure.message)};
 }
@@ -77,6 +53,29 @@ std::optional<std::uint64_t> number_at_end(const std::string& name) {
 }
 
 }  // namespace
+
+ImageFile bitmap(const Picture& picture) {
+    constexpr std::uint32_t kHead = 54;
+    const std::uint32_t row = (3 * picture.width + 3) / 4 * 4;
+    std::string bytes = "BM";
+    append(bytes, kHead + row * picture.height, 4);
+    append(bytes, 0, 4);
+    append(bytes, kHead, 4);
+    append(bytes, kHead - 14, 4);
+    append(bytes, picture.width, 4);
+    append(bytes, picture.height, 4);
+    append(bytes, 1, 2);
+    append(bytes, 24, 2);
+    for (int i = 0; i < 6; ++i) append(bytes, 0, 4);
+    bytes.resize(kHead + std::size_t{row} * picture.height);
+    char* to = &bytes[kHead];
+    for (std::size_t y = picture.height; y-- > 0; to += row) {
+        const char* const from = &picture.pixels[3 * y * picture.width];
+        for (std::size_t x = 0; x < 3 * std::size_t{picture.width}; x += 3)
+            for (std::size_t c = 0; c < 3; ++c) to[x + c] = from[x + 2 - c];
+    }
+    return {"image/bmp", std::move(bytes)};
+}
 
 /// Returns the episode of a data set that shows this one, or an empty text.
 std::string Frames::dataset_episode(const Episode& episode) const {

@@ -30,6 +30,10 @@ struct ImageFile {
     std::string bytes;
 };
 
+/// Returns the picture as a file that browsers show and that costs no compression: a bitmap of
+/// blue, green and red, rows from the bottom, each padded to four bytes.
+ImageFile bitmap(const report::Picture& picture);
+
 class Frames {
 public:
     explicit Frames(FramesRequest request) : request_(std::move(request)) {}

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "label/desk.hpp"
@@ -19,6 +20,11 @@ struct PageRequest {
     double step_seconds = 0;
     std::vector<bool> has_frames;  ///< per episode
 };
+
+/// Returns a page with its own files, those of the report that it shares, and data as JSON.
+/// `html` is the name of its frame among `own`.
+std::string page_with(const std::vector<report::PageFile>& own, std::string_view html,
+                      const std::string& data);
 
 std::string page_of(const Desk& desk, const PageRequest& request);
 

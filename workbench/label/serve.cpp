@@ -1,40 +1,24 @@
 #include "label/serve.hpp"
 
-#include <fmt/format.h>
-#include <sys/random.h>
-#include <unistd.h>
-
 #include <chrono>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
-#include "data/files/child.hpp"
 #include "data/text/number.hpp"
-#include "label/server/protocol.hpp"
+#include "label/service.hpp"
 
 namespace etlc::label {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-using data::frames::number_at;
 using diag::Code;
 using diag::Failure;
 using episodes::Label;
 
-constexpr std::string_view kServer = "etlc-serve";
-/// Longer than anybody labels: etlc-serve is silent while nobody does.
-constexpr int kSilenceSeconds = 2'000'000;
 /// A page that has not asked for so long is closed.
 constexpr std::chrono::seconds kGone{6};
-
-struct Answer {
-    std::uint32_t status = 200;
-    std::string type = "application/json";
-    std::string content;
-};
 
 Answer answered(const Json& json, std::uint32_t status = 200) {
     return {status, "application/json", json.dump(-1, ' ', false, Json::error_handler_t::replace)};
@@ -59,14 +43,6 @@ Json json_of(const Marks& marks) {
     for (const Interval& one : *marks)
         intervals.push_back({one.start, one.end, code_of_label(one.label)});
     return intervals;
-}
-
-std::string random_token() {
-    std::string bytes(protocol::kTokenSize / 2, '\0');
-    std::string token;
-    if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) return "";
-    for (const char c : bytes) token += fmt::format("{:02x}", static_cast<unsigned char>(c));
-    return token;
 }
 
 /// Answers the requests of pages.
@@ -209,60 +185,17 @@ private:
     Clock::time_point heard_;
 };
 
-/// Reads a text of etlc-serve.
-std::optional<std::string> read_text(data::Child& child) {
-    char size[4];
-    if (!child.read(size, sizeof size)) return std::nullopt;
-    if (number_at(size) > 2 * protocol::kMostContent) return std::nullopt;
-    std::string text(number_at(size), '\0');
-    if (!child.read(text.data(), text.size())) return std::nullopt;
-    return text;
-}
-
-Failure ended(data::Child& child) {
-    const std::string said = child.last_words();
-    return {Code::unwritable_output,
-            said.empty() ? fmt::format("{} {}", kServer, child.ending()) : said};
-}
-
 }  // namespace
 
-std::string what_serving_lacks() {
-    const std::string path = data::helper_path(kServer);
-    if (::access(path.c_str(), X_OK) == 0) return "";
-    return fmt::format(
-        "{} cannot be run, which serves the page; etlc builds it where it finds cpp-httplib "
-        "(Debian: libcpp-httplib-dev); of the packages of etlc, etlc-serve has it",
-        kServer);
-}
-
 Failure serve(Desk& desk, Frames& frames, Background& background, const ServeRequest& request) {
-    const std::string token = random_token();
-    const auto child =
-        token.empty() ? nullptr
-                      : data::Child::start(
-                            data::helper_path(kServer), {},
-                            {.max_silence_seconds = kSilenceSeconds, .fed = true, .heard = true});
-    if (!child) return {Code::unwritable_output, fmt::format("{} cannot be run", kServer)};
-    std::string head;
-    data::frames::append(head, request.port);
-    protocol::append(head, token);
-    char port[4];
-    if (!child->give(head) || !child->read(port, sizeof port)) return ended(*child);
-    if (!request.ready(fmt::format("http://127.0.0.1:{}/{}/", number_at(port), token)))
+    auto service = Service::start(request.port);
+    if (!service) return service.failure();
+    if (!request.ready((*service)->address()))
         return {Code::unwritable_output, "the address of the page cannot be printed"};
     Clerk clerk(desk, frames, background, request.page);
-    for (;;) {
-        const auto path = read_text(*child);
-        const auto content = path ? read_text(*child) : std::nullopt;
-        if (!content) return ended(*child);
-        const Answer answer = clerk.answer(*path, *content);
-        std::string bytes;
-        data::frames::append(bytes, answer.status);
-        protocol::append(bytes, answer.type);
-        protocol::append(bytes, answer.content);
-        if (!child->give(bytes)) return ended(*child);
-    }
+    while (const auto asked = (*service)->next())
+        if (!(*service)->answer(clerk.answer(asked->path, asked->content))) break;
+    return (*service)->ending();
 }
 
 }  // namespace etlc::label

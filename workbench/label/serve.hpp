@@ -21,9 +21,6 @@ struct ServeRequest {
     std::function<bool(const std::string& address)> ready;
 };
 
-/// Says why this etlc cannot serve pages, or returns an empty text.
-std::string what_serving_lacks();
-
 /// Serves until the process is stopped. Returns why it ended otherwise.
 diag::Failure serve(Desk& desk, Frames& frames, Background& background,
                     const ServeRequest& request);

@@ -212,22 +212,6 @@ private:
 
 }  // namespace
 
-std::string base64(std::string_view bytes) {
-    constexpr std::string_view kDigits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    char* to = grown(text, (bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::size_t here = std::min<std::size_t>(3, bytes.size() - i);
-        std::uint32_t bits = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            bits = bits << 8U | (k < here ? static_cast<std::uint8_t>(bytes[i + k]) : 0U);
-        for (std::size_t k = 0; k < 4; ++k)
-            *to++ = k <= here ? kDigits[bits >> (18 - 6 * k) & 63U] : '=';
-    }
-    return text;
-}
-
 std::string deflated(std::string_view bytes) {
     uLongf size = compressBound(bytes.size());
     std::string out(size, '\0');

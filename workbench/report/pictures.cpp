@@ -284,27 +284,4 @@ std::string address(const Picture& picture) {
     return "data:image/png;base64," + base64(png(picture));
 }
 
-Picture shrunk(std::string_view pixels, std::uint32_t width, std::uint32_t height,
-               std::uint32_t channels, std::uint32_t most) {
-    const std::uint32_t factor = (std::max(width, height) + most - 1) / most;
-    Picture result{std::max(width / factor, 1U), std::max(height / factor, 1U), ""};
-    for (std::size_t y = 0; y < result.height; ++y)
-        for (std::size_t x = 0; x < result.width; ++x)
-            for (std::size_t c = 0; c < 3; ++c) {
-                std::uint32_t sum = 0;
-                std::uint32_t count = 0;
-                for (std::size_t v = y * factor;
-                     v < std::min<std::size_t>((y + 1) * factor, height); ++v)
-                    for (std::size_t u = x * factor;
-                         u < std::min<std::size_t>((x + 1) * factor, width); ++u) {
-                        const std::size_t channel = channels == 1 ? 0 : c;
-                        sum +=
-                            static_cast<std::uint8_t>(pixels[(v * width + u) * channels + channel]);
-                        ++count;
-                    }
-                result.pixels += static_cast<char>(sum / std::max(count, 1U));
-            }
-    return result;
-}
-
 }  // namespace etlc::report

@@ -12,14 +12,8 @@ using check::kNone;
 using episodes::Label;
 using etlmon::Verdict;
 
-std::uint32_t code_of(Label label) {
+std::uint32_t code_of_label(Label label) {
     return label == Label::yes ? kYes : label == Label::no ? kNo : kUnknown;
-}
-
-std::uint32_t code_of(const Verdict& verdict) {
-    if (!verdict.decided()) return kUndecided;
-    const std::uint32_t status = verdict.satisfied() ? kYes : verdict.violated() ? kNo : kUnknown;
-    return status + (verdict.final() ? kFinal : 0);
 }
 
 Outcome outcome_of(const explain::History& history, bool sliding) {
@@ -52,6 +46,12 @@ bool has_row(const check::Predicate& predicate, const check::Model& model) {
 }
 
 }  // namespace
+
+std::uint32_t code_of(const Verdict& verdict) {
+    if (!verdict.decided()) return kUndecided;
+    const std::uint32_t status = verdict.satisfied() ? kYes : verdict.violated() ? kNo : kUnknown;
+    return status + (verdict.final() ? kFinal : 0);
+}
 
 TrackReader::TrackReader(const Scene& scene)
     : scene_(scene),
@@ -132,7 +132,7 @@ void TrackReader::note_frame(const episodes::Recording& recording, Tracks& track
         if (truth_of_[m] != kNone) note_truth(m);
     }
     for (Codes& track : tracks.codes)
-        track.values.push_back(code_of(recording.label(scene_.predicates[track.index])));
+        track.values.push_back(code_of_label(recording.label(scene_.predicates[track.index])));
     for (Numbers& track : tracks.numbers) {
         const Plane& plane = scene_.planes[track.index];
         const float* z = atoms_->evaluator().point(plane.point);

@@ -72,6 +72,9 @@ inline constexpr std::uint32_t kUnknown = 2;
 inline constexpr std::uint32_t kUndecided = 3;
 inline constexpr std::uint32_t kFinal = 4;  ///< added to a final verdict
 
+/// Returns the code of a verdict.
+std::uint32_t code_of(const etlmon::Verdict& verdict);
+
 /// The outcome of a monitor.
 struct Outcome {
     std::uint32_t status = kUndecided;      ///< code of its last verdict

@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -219,13 +220,44 @@ bool Child::wait(std::string_view& bytes) {
     return !deaf_;
 }
 
+std::size_t Child::take(char* to, std::size_t n) {
+    std::size_t taken = std::min(n, arrived());
+    if (taken > 0) read(to, taken);
+    pollfd waiting{*output_, POLLIN, 0};
+    while (taken < n && output_ && ::poll(&waiting, 1, 0) > 0) {
+        const ssize_t got = uninterrupted([&] { return ::read(*output_, to + taken, n - taken); });
+        if (got <= 0)
+            output_ = Descriptor();
+        else
+            taken += static_cast<std::size_t>(got);
+    }
+    return taken;
+}
+
+void Child::await(const std::vector<Child*>& children, const std::vector<int>& others,
+                  int milliseconds) {
+    std::vector<pollfd> waiting;
+    for (const Child* child : children) {
+        waiting.push_back({*child->output_, POLLIN, 0});
+        waiting.push_back({*child->errors_, POLLIN, 0});
+    }
+    for (const int other : others) waiting.push_back({other, POLLIN, 0});
+    if (::poll(waiting.data(), waiting.size(), milliseconds) <= 0) return;
+    for (std::size_t i = 0; i < children.size(); ++i) {
+        if (waiting[2 * i + 1].revents != 0) children[i]->hear();
+        if (waiting[2 * i].revents != 0) children[i]->receive();
+    }
+}
+
 void Child::receive() {
-    constexpr std::size_t kPiece = 1U << 18U;
     if (taken_ > 0) arrived_.erase(0, std::exchange(taken_, 0));
     const std::size_t before = arrived_.size();
-    arrived_.resize(before + kPiece);
+    int ready = 0;
+    if (::ioctl(*output_, FIONREAD, &ready) != 0 || ready <= 0) ready = 1;
+    const auto piece = static_cast<std::size_t>(ready);
+    arrived_.resize(before + piece);
     const ssize_t got =
-        uninterrupted([&] { return ::read(*output_, arrived_.data() + before, kPiece); });
+        uninterrupted([&] { return ::read(*output_, arrived_.data() + before, piece); });
     arrived_.resize(before + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
     if (got <= 0) output_ = Descriptor();
 }

@@ -51,6 +51,20 @@ public:
     bool at_end();
     /// Returns how many bytes have arrived and were not read.
     std::size_t arrived() const { return arrived_.size() - taken_; }
+    /// Returns whether no more output comes than has arrived.
+    bool has_ended() const { return !output_; }
+    /// Returns whether all of its output has been read, and no more comes.
+    bool is_over() const { return has_ended() && arrived() == 0; }
+
+    /// Takes up to `n` bytes of its output that are there, without waiting; returns their number.
+    std::size_t take(char* to, std::size_t n);
+    /// The descriptor of its output, for `await`.
+    int output() const { return *output_; }
+
+    /// Waits until one of these programs writes, one of the descriptors can be read (-1: none), or
+    /// the time is over (less than 0: never), and takes what the programs have written.
+    static void await(const std::vector<Child*>& children, const std::vector<int>& others,
+                      int milliseconds);
 
     /// Says how it ended, after `read` failed: "was stopped by signal 11 (Segmentation fault)".
     /// Waits for it.

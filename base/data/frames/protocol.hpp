@@ -2,12 +2,13 @@
 //
 // Frames, on the standard output of `etlc-embed video FILE ...`, `etlc-embed images FILE...` and
 // `etlc-embed given`, and the standard input of encoders: for each frame its height and width, 32
-// bits each, then height x width x 3 bytes. Images, on the standard input of `etlc-embed given`:
-// for each the size of its file, 32 bits, then the bytes of the file. The bytes of a PNG file, on
-// the standard output of `etlc-embed png`, which reads one frame. Embeddings, on the standard
-// output of encoders: once their dimension, 32 bits, then for every frame as many float32. The
-// version and the path of ONNX Runtime, a line each, on the standard output of `etlc-embed
-// onnxruntime`. All numbers are little-endian. The last line of standard error explains a failure.
+// bits each, then height x width x 3 bytes; with `--pace`, in front of these, the microseconds of
+// the machine's steady clock, 64 bits. Images, on the standard input of `etlc-embed given`: for
+// each the size of its file, 32 bits, then the bytes of the file. The bytes of a PNG file, on the
+// standard output of `etlc-embed png`, which reads one frame. Embeddings, on the standard output of
+// encoders: once their dimension, 32 bits, then for every frame as many float32. The version and
+// the path of ONNX Runtime, a line each, on the standard output of `etlc-embed onnxruntime`. All
+// numbers are little-endian. The last line of standard error explains a failure.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,7 @@
 #include "data/frames/reference.hpp"
 
+#include <cmath>
+#include <limits>
 #include <vector>
 
 namespace etlc::data {
@@ -77,6 +79,16 @@ Frame reference_frame(std::uint32_t index) {
 
 std::unique_ptr<FrameSource> reference_frames() {
     return std::make_unique<ReferenceFrames>();
+}
+
+double relative_difference(const float* z, const float* r, std::size_t elements) {
+    double difference = 0, length = 0;
+    for (std::size_t i = 0; i < elements; ++i) {
+        difference += (double{z[i]} - r[i]) * (double{z[i]} - r[i]);
+        length += double{r[i]} * r[i];
+    }
+    const double relative = std::sqrt(difference / (length > 0 ? length : 1));
+    return std::isfinite(relative) ? relative : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace etlc::data

@@ -4,6 +4,7 @@
 // symmetry, so that another crop, filter, flip or order of channels changes their embeddings.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
@@ -18,5 +19,8 @@ Frame reference_frame(std::uint32_t index);
 
 /// Returns a source of all reference frames.
 std::unique_ptr<FrameSource> reference_frames();
+
+/// Returns |z - r| / |r|, or |z| where r is 0; infinity where it is not finite.
+double relative_difference(const float* z, const float* r, std::size_t elements);
 
 }  // namespace etlc::data

@@ -47,6 +47,10 @@ bool explain(const source::File& spec, const Compiled& compiled, const Request& 
 /// damaged, or that was written by a monitor of another spec, other data or other thresholds.
 bool incident(const source::File& spec, const Compiled& compiled, const Request& request,
               diag::Sink& sink);
+/// `etlc watch`: steps the monitors with a camera or a trace as it comes, until it ends or somebody
+/// asks for the end.
+bool watch(const source::File& spec, const Compiled& compiled, const Request& request,
+           diag::Sink& sink);
 /// `etlc report`: writes a page about recorded episodes, with the figures of `etlc evaluate`.
 bool report(const source::File& spec, const Compiled& compiled, const Request& request,
             diag::Sink& sink);

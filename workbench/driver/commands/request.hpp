@@ -63,10 +63,18 @@ struct Request : pipeline::Options {
     struct Run {
         bool summary = false;    ///< a line for each monitor, on standard output
         bool distances = false;  ///< a column for the distance or expression of each predicate
+        bool changes = false;    ///< a line for each change, on standard output
         bool finish = false;     ///< also the positions reported after the end of the trace
         std::string html;        ///< page of the trace; empty: none
         std::string svg;         ///< picture of its timelines; empty: none
     } run;
+
+    struct Watch {
+        std::string video;  ///< path or address; empty: the trace
+        bool has_page = false;
+        std::uint32_t port = 0;  ///< of the page; 0: any free one
+        std::string record;      ///< folder of incidents; empty: none
+    } watch;
 
     struct Embed {
         embed::Running running;

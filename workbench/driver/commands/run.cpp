@@ -20,147 +20,14 @@
 #include "plan/evaluate/evaluator.hpp"
 #include "plan/recorder_plan.hpp"
 #include "source/escape.hpp"
+#include "watch/changes.hpp"
+#include "watch/summary.hpp"
 
 namespace etlc::driver {
 
 namespace {
 
 using etlmon::Verdict;
-
-/// The figures of `etlc run --summary`, in constant memory.
-class RunSummary {
-public:
-    explicit RunSummary(const plan::Plan& plan) : plan_(plan), monitors_(plan.monitors.size()) {}
-
-    /// Adds a verdict about a new position of the monitor.
-    void add(std::size_t monitor, std::uint64_t step, const etlmon::Verdict& verdict);
-
-    std::string text(std::uint64_t steps, const plan::Evaluator& evaluator) const;
-
-private:
-    /// A robustness and its step.
-    struct At {
-        std::uint64_t step = 0;
-        float robustness = 0;
-    };
-    struct OfMonitor {
-        std::uint64_t decided = 0;
-        std::uint64_t violated = 0;
-        std::uint64_t unknown = 0;
-        std::optional<std::uint64_t> first_violated;
-        std::optional<At> worst;  ///< least known robustness
-        std::optional<std::uint64_t> final_since;
-        std::uint64_t alarms = 0;
-        std::uint64_t fulfilled = 0;
-        std::optional<std::uint64_t> first_alarm;
-        etlmon::Verdict last;
-    };
-    std::string of_prefix(const OfMonitor& monitor) const;
-    std::string of_repeating(const OfMonitor& monitor) const;
-    std::string of_sliding(const OfMonitor& monitor, std::uint64_t horizon) const;
-    std::string of_input(check::Index input, const plan::SampleCounts& counts) const;
-    std::string when(std::uint64_t step) const;
-
-    const plan::Plan& plan_;
-    std::vector<OfMonitor> monitors_;
-};
-
-/// Returns "satisfied", "violated", "unknown" or "undecided".
-const char* status(const etlmon::Verdict& verdict) {
-    if (!verdict.decided()) return "undecided";
-    return verdict.satisfied() ? "satisfied" : verdict.violated() ? "violated" : "unknown";
-}
-
-void RunSummary::add(std::size_t monitor, std::uint64_t step, const etlmon::Verdict& verdict) {
-    if (!verdict.decided()) return;
-    OfMonitor& m = monitors_[monitor];
-    const At here{step, verdict.robustness};
-    ++m.decided;
-    if (verdict.unknown()) ++m.unknown;
-    if (verdict.violated()) {
-        ++m.violated;
-        if (!m.first_violated) m.first_violated = step;
-    }
-    const bool known = !verdict.unknown();  // the robustness of an unknown verdict is only a bound
-    if (known && (!m.worst || here.robustness < m.worst->robustness)) m.worst = here;
-    if (!verdict.final())
-        m.final_since.reset();
-    else if (!m.final_since)
-        m.final_since = step;
-    if (verdict.fulfilled()) ++m.fulfilled;
-    if (verdict.alarm()) {
-        ++m.alarms;
-        if (!m.first_alarm) m.first_alarm = step;
-    }
-    m.last = verdict;
-}
-
-/// Returns "step 5 (1.25 s)".
-std::string RunSummary::when(std::uint64_t step) const {
-    const double length = plan_.model->step_seconds;
-    if (length == 0) return fmt::format("step {}", step);
-    return fmt::format("step {} ({:.6g} s)", step, static_cast<double>(step) * length);
-}
-
-std::string RunSummary::of_prefix(const OfMonitor& m) const {
-    std::string text = fmt::format("{} so far", status(m.last));
-    if (m.final_since)
-        text = fmt::format("{} for good from {} on", status(m.last), when(*m.final_since));
-    return text + fmt::format(", robustness {:.6g}", m.last.robustness);
-}
-
-std::string RunSummary::of_repeating(const OfMonitor& m) const {
-    std::string text = diag::counted(m.alarms, "alarm");
-    if (m.first_alarm) text += fmt::format(", the first at {}", when(*m.first_alarm));
-    return text + fmt::format("; fulfilled {}; at the end {}, robustness {:.6g}",
-                              diag::counted(m.fulfilled, "time"), status(m.last),
-                              m.last.robustness);
-}
-
-std::string RunSummary::of_sliding(const OfMonitor& m, std::uint64_t horizon) const {
-    if (!m.worst) return "unknown throughout";
-    if (!m.first_violated)
-        return fmt::format("never violated, least robustness {:.6g} at {}", m.worst->robustness,
-                           when(m.worst->step - horizon));
-    return fmt::format("violated at {} of {}, first at {}, least robustness {:.6g} at {}",
-                       m.violated, diag::counted(m.decided, "position"),
-                       when(*m.first_violated - horizon), m.worst->robustness,
-                       when(m.worst->step - horizon));
-}
-
-std::string RunSummary::of_input(check::Index input, const plan::SampleCounts& counts) const {
-    std::vector<std::string> parts;
-    if (counts.missing > 0) parts.push_back(fmt::format("{} missing", counts.missing));
-    if (counts.out_of_range > 0)
-        parts.push_back(fmt::format("{} out of range", counts.out_of_range));
-    if (counts.stale > 0) parts.push_back(fmt::format("{} stale", counts.stale));
-    std::string text = fmt::format("{}", fmt::join(parts, ", "));
-    if (counts.held > 0) text += fmt::format(", of which {} held", counts.held);
-    return fmt::format("input {}: {}\n", plan_.model->inputs[input].name, text);
-}
-
-std::string RunSummary::text(std::uint64_t steps, const plan::Evaluator& evaluator) const {
-    std::string text;
-    for (std::size_t i = 0; i < monitors_.size(); ++i) {
-        const OfMonitor& m = monitors_[i];
-        const plan::Monitor& monitor = plan_.monitors[i];
-        const bool repeats = monitor.restarts == check::Restarts::when_final;
-        const std::string said = m.decided == 0    ? "undecided throughout"
-                                 : monitor.sliding ? of_sliding(m, monitor.horizon)
-                                 : repeats         ? of_repeating(m)
-                                                   : of_prefix(m);
-        text += fmt::format("{}: {}", monitor.name, said);
-        if (m.unknown > 0) text += fmt::format("; unknown on {}", diag::counted(m.unknown, "step"));
-        text += "\n";
-    }
-    text += fmt::format("{}\n", diag::counted(steps, "step"));
-    for (const check::Index input : plan_.inputs) {
-        const plan::SampleCounts& counts = evaluator.sample_counts()[input];
-        if (counts.missing + counts.out_of_range + counts.stale > 0)
-            text += of_input(input, counts);
-    }
-    return text;
-}
 
 constexpr std::size_t kBufferBytes = 1U << 16U;
 constexpr std::uint64_t kStepsPerReport = 4096;
@@ -176,6 +43,7 @@ public:
           sink_(sink),
           monitors_(compiled.plan),
           summary_(compiled.plan),
+          changes_(compiled.plan),
           output_(sink) {
         if (request.run.distances) choose_columns();
     }
@@ -273,10 +141,19 @@ private:
             if (monitors_.reports(plan_.monitors[m].index)) summary_.add(m, step_, verdicts[m]);
             if (writes_rows()) print_row(m, verdicts[m], telemetry);
         }
+        if (request_.run.changes && !print_changes()) return false;
         ++step_;
         // A program that pipes a trace waits for each verdict.
         const bool waits = request_.trace == data::kStandardInput;
         return (text_.size() < kBufferBytes && !waits) || flush();
+    }
+
+    bool print_changes() {
+        const auto& verdicts = monitors_.verdicts();
+        const std::string lines =
+            step_ < steps_ ? changes_.after(step_, verdicts, monitors_.evaluator())
+                           : changes_.after_finish(step_, verdicts, monitors_.evaluator());
+        return lines.empty() || print(source::visible_lines(lines), sink_);
     }
 
     void print_row(std::size_t m, const Verdict& v, const std::string& telemetry) {
@@ -284,7 +161,7 @@ private:
         const auto out = std::back_inserter(text_);
         if (v.decided())
             fmt::format_to(out, "{},{},{:.9g},{:.9g},{:.9g},{},{},{}", step_, name, v.lower,
-                           v.robustness, v.upper, status(v), v.final() ? 1 : 0,
+                           v.robustness, v.upper, watch::status(v), v.final() ? 1 : 0,
                            monitors_.evaluator().position(m));
         else
             fmt::format_to(out, "{},{},,,,undecided,0,", step_, name);
@@ -333,7 +210,8 @@ private:
     const Request& request_;
     diag::Sink& sink_;
     episodes::Follower monitors_;
-    RunSummary summary_;
+    watch::Summary summary_;
+    watch::Changes changes_;
     OutputFiles output_;
     /// The name of each column of distances, and a predicate that has this distance.
     std::vector<std::pair<std::string, check::Index>> distances_;

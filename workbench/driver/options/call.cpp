@@ -47,7 +47,10 @@ constexpr Row kCommands[] = {
     {Command::label, "label", "SPEC.etl --data FILE...",
      "Serves a page, on this machine alone, on which you label the predicates of a spec in "
      "recorded "
-     "episodes."}};
+     "episodes."},
+    {Command::watch, "watch", "SPEC.etl --video SOURCE",
+     "Steps a spec's monitors with a camera, a stream, a video or a trace as it comes, and prints "
+     "a line where\nsomething changes, until the source ends or you press Ctrl-C."}};
 static_assert(std::size(kCommands) == kCommandCount);
 
 }  // namespace

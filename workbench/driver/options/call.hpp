@@ -29,8 +29,9 @@ enum class Command : std::uint8_t {
     incident,
     report,
     label,
+    watch,
 };
-inline constexpr std::size_t kCommandCount = 13;
+inline constexpr std::size_t kCommandCount = 14;
 
 /// The default of etlc crossvalidate.
 inline constexpr std::uint32_t kUsualFolds = 5;

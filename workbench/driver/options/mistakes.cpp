@@ -227,6 +227,19 @@ std::string mistake_in_running(const Call& call) {
     return mistake_in_retargetable(call);
 }
 
+std::string mistake_in_watching(const Call& call) {
+    if (call.watch.video.empty() && call.trace.empty())
+        return "expected --video SOURCE, or --trace - for a trace on standard input";
+    if (!call.watch.video.empty() && !call.names.empty())
+        return "--map names columns of a trace, and --video has none";
+    for (const char* option : {"--encoder-cmd", "--onnxruntime", "--encoder-timeout"})
+        if (call.watch.video.empty() && call.has(option))
+            return fmt::format("{} goes with --video: a trace has embeddings", option);
+    if (call.recorder && call.watch.record.empty())
+        return "--recorder needs --record FOLDER, where the incidents go";
+    return "";
+}
+
 std::string mistake_in_embedding(const Request& request) {
     if (request.data.empty() != request.output.empty())
         return request.data.empty() ? "-o takes the episodes of --data, which is missing"
@@ -288,6 +301,7 @@ std::string mistake_in(const Call& call) {
     switch (call.command) {
         case Command::compile: return mistake_in_compiling(call);
         case Command::run: return mistake_in_running(call);
+        case Command::watch: return mistake_in_watching(call);
         case Command::embed: return mistake_in_embedding(call);
         case Command::calibrate: return mistake_in_shard(call.shard);
         case Command::evaluate:

@@ -29,7 +29,7 @@ CLI::Option* add_value(CLI::App& app, const Option& option) {
     added->type_name(takes.value)->type_size(1);
     if (takes.repeats) added->expected(CLI::detail::expected_max_vector_size);
     if (takes.once_a_name) added->allow_extra_args(false);
-    if (takes.may_be_empty) added->expected(0, -1);
+    if (takes.may_be_empty) added->expected(0, takes.repeats ? -1 : 1);
     return added;
 }
 

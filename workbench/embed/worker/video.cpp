@@ -1,17 +1,10 @@
 // Decodes video with FFmpeg's libraries. Frames have the bytes of
 // `ffmpeg -i FILE -fps_mode passthrough -f rawvideo -pix_fmt rgb24 -`.
-extern "C" {
-#include <libavutil/display.h>
-#include <libavutil/opt.h>
-#include <libavutil/pixdesc.h>
-}
-
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -19,7 +12,8 @@ extern "C" {
 #include <string_view>
 
 #include "data/frames/protocol.hpp"
-#include "embed/worker/decoder.hpp"
+#include "embed/worker/pace.hpp"
+#include "embed/worker/pictures.hpp"
 #include "embed/worker/worker.hpp"
 
 namespace etlc::embed::worker {
@@ -93,12 +87,6 @@ std::string why_cut(const std::string& path) {
     return why_cut_matroska(file, length);
 }
 
-std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
-}
-
 /// The frames that are wanted.
 struct Choice {
     std::vector<std::int64_t> only;
@@ -137,124 +125,6 @@ Choice choice_of(const Words& options) {
     return choice;
 }
 
-/// Converts to red, green and blue as ffmpeg does by default.
-class Converter {
-public:
-    const std::vector<std::uint8_t>& rgb(const AVFrame& picture, std::int64_t frame) {
-        if (!scaler_) begin(picture);
-        if (picture.width != width_ || picture.height != height_ || picture.format != format_)
-            refuse(kRefused, "changes at frame " + std::to_string(frame) + " from " +
-                                 size_text(width_, height_) + " to " +
-                                 size_text(picture.width, picture.height) +
-                                 " or its pixels, expected one size");
-        // Rows are padded to 64 bytes: the loops of the scaler skip the ends of others.
-        std::uint8_t* const planes[] = {rows_.data()};
-        const int strides[] = {stride_};
-        sws_scale(scaler_.get(), picture.data, picture.linesize, 0, height_, planes, strides);
-        const auto length = 3 * std::size_t(width_);
-        for (std::size_t row = 0; row < std::size_t(height_); ++row)
-            std::copy_n(rows_.data() + row * std::size_t(stride_), length,
-                        rgb_.data() + row * length);
-        return rgb_;
-    }
-
-private:
-    static std::string size_text(int width, int height) {
-        return std::to_string(width) + " x " + std::to_string(height);
-    }
-
-    void begin(const AVFrame& picture) {
-        width_ = picture.width;
-        height_ = picture.height;
-        format_ = picture.format;
-        if (width_ <= 0 || height_ <= 0 || std::max(width_, height_) > int{kMaxExtent} ||
-            std::uint64_t(width_) * std::uint64_t(height_) > kMaxPixels)
-            refuse(kRefused,
-                   "has frames of " + size_text(width_, height_) + ", more than are read");
-        rgb_.resize(std::size_t(width_) * std::size_t(height_) * 3);
-        stride_ = FFALIGN(3 * width_, 64) + 64;
-        rows_.resize(std::size_t(stride_) * std::size_t(height_ + 1));
-        scaler_.reset(sws_alloc_context());
-        const AVPixFmtDescriptor* const pixels =
-            av_pix_fmt_desc_get(static_cast<AVPixelFormat>(format_));
-        const bool half_rows = pixels != nullptr && pixels->log2_chroma_h == 1;
-        set("srcw", width_);
-        set("srch", height_);
-        set("src_format", format_);
-        set("dstw", width_);
-        set("dsth", height_);
-        set("dst_format", AV_PIX_FMT_RGB24);
-        set("sws_flags", SWS_BICUBIC);
-        if (half_rows) set("src_v_chr_pos", 128);
-        if (sws_init_context(scaler_.get(), nullptr, nullptr) < 0)
-            refuse(kRefused, "has pixels that cannot be made red, green and blue");
-        set_colours(picture);
-    }
-
-    void set(const char* name, int value) { av_opt_set_int(scaler_.get(), name, value, 0); }
-
-    void set_colours(const AVFrame& picture) {
-        const int* from = nullptr;
-        int* to = nullptr;
-        int full = 0, out_full = 0, brightness = 0, contrast = 0, saturation = 0;
-        int* unused = nullptr;
-        if (sws_getColorspaceDetails(scaler_.get(), &unused, &full, &to, &out_full, &brightness,
-                                     &contrast, &saturation) < 0)
-            return;  // RGB already
-        const int space = picture.colorspace;
-        const bool known = space >= 1 && space <= 10 && space != 8;
-        from = sws_getCoefficients(known ? space : int{AVCOL_SPC_BT470BG});
-        if (picture.color_range != AVCOL_RANGE_UNSPECIFIED)
-            full = picture.color_range == AVCOL_RANGE_JPEG ? 1 : 0;
-        sws_setColorspaceDetails(scaler_.get(), from, full, from, out_full, brightness, contrast,
-                                 saturation);
-    }
-
-    Scaler scaler_;
-    int width_ = 0;
-    int height_ = 0;
-    int format_ = -1;
-    int stride_ = 0;
-    std::vector<std::uint8_t> rows_;
-    std::vector<std::uint8_t> rgb_;
-};
-
-/// Returns the quarter turns clockwise that the file requests, as phones write it.
-int quarter_turns(const AVStream* stream) {
-    const auto* const matrix = reinterpret_cast<const std::int32_t*>(
-        av_stream_get_side_data(stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr));
-    if (matrix == nullptr) return 0;
-    const double angle = -av_display_rotation_get(matrix);
-    return std::isnan(angle) ? 0 : (static_cast<int>(std::lround(angle / 90)) % 4 + 4) % 4;
-}
-
-/// Turns a frame clockwise by a quarter; swaps height and width.
-void turn(std::vector<std::uint8_t>& rgb, int& height, int& width) {
-    std::vector<std::uint8_t> turned(rgb.size());
-    for (int row = 0; row < height; ++row)
-        for (int column = 0; column < width; ++column) {
-            const auto from = 3 * (std::size_t(row) * std::size_t(width) + std::size_t(column));
-            const auto to =
-                3 * (std::size_t(column) * std::size_t(height) + std::size_t(height - 1 - row));
-            std::copy_n(rgb.begin() + std::ptrdiff_t(from), 3, turned.begin() + std::ptrdiff_t(to));
-        }
-    rgb.swap(turned);
-    std::swap(height, width);
-}
-
-void send(const AVFrame& picture, Converter& converter, int turns, std::int64_t frame) {
-    const std::vector<std::uint8_t>& rgb = converter.rgb(picture, frame);
-    int height = picture.height;
-    int width = picture.width;
-    if (turns == 0) {
-        write_frame(std::uint32_t(height), std::uint32_t(width), rgb.data());
-        return;
-    }
-    std::vector<std::uint8_t> turned = rgb;
-    for (int i = 0; i < turns; ++i) turn(turned, height, width);
-    write_frame(std::uint32_t(height), std::uint32_t(width), turned.data());
-}
-
 /// Checks that frames come at the rate of the steps.
 class Clock {
 public:
@@ -269,9 +139,9 @@ public:
         stride_ = std::llround(frames_a_step);
         constexpr double kTolerance = 0.005;  // 29.97 frames a second are 30
         if (stride_ < 1 || std::abs(frames_a_step / double(stride_) - 1) > kTolerance)
-            refuse(kOutOfStep, "has " + number(frames_a_second_) +
-                                   " frames a second, expected a multiple of the " + number(rate) +
-                                   " steps of the spec");
+            refuse(kOutOfStep, "has " + number_text(frames_a_second_) +
+                                   " frames a second, expected a multiple of the " +
+                                   number_text(rate) + " steps of the spec");
     }
 
     std::int64_t stride() const { return stride_; }
@@ -287,8 +157,8 @@ public:
         const double place = double(frame) / frames_a_second_;
         if (std::abs(time - begin_ - place) * frames_a_second_ > 0.5)
             refuse(kOutOfStep, "has frame " + std::to_string(frame) + " at " +
-                                   number(time - begin_) + " s, expected it at " + number(place) +
-                                   " s: its frames are not evenly spaced");
+                                   number_text(time - begin_) + " s, expected it at " +
+                                   number_text(place) + " s: its frames are not evenly spaced");
     }
 
 private:
@@ -328,6 +198,7 @@ void send_video(const std::string& path, const Words& options) {
     choice.first += choice.skip * clock.stride();
     Converter converter;
     const int turns = quarter_turns(decoder.stream());
+    Pace pace(decoder.stream(), options.text("--pace", "") == "real");
     const Picture picture(av_frame_alloc());
     const bool is_as_long = !choice.total || decoder.counted() == choice.total;
     for (;;) {
@@ -340,7 +211,9 @@ void send_video(const std::string& path, const Words& options) {
             return;
         }
         clock.check(*picture, frame);
-        if (choice.takes(frame, clock.stride())) send(*picture, converter, turns, frame);
+        if (!choice.takes(frame, clock.stride())) continue;
+        pace.stamp(*picture, frame);
+        send(*picture, converter, turns, frame);
     }
 }
 

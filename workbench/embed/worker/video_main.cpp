@@ -11,7 +11,11 @@ void run(const std::vector<std::string>& words) {
     if (words.empty())
         refuse(data::frames::kWrongCall, "etlc-embed-video belongs to etlc-embed: FILE ...");
     limit_resources(data::frames::kMaxMemoryBytes);
-    send_video(words[0], Words({words.begin() + 1, words.end()}));
+    const Words options({words.begin() + 1, words.end()});
+    if (options.text("--pace", "") == "live")
+        send_live(words[0]);
+    else
+        send_video(words[0], options);
 }
 
 }  // namespace

@@ -51,6 +51,8 @@ void send_given_images();
 /// Writes the frame on standard input as PNG.
 void write_png();
 void send_video(const std::string& path, const Words& options);
+/// Decodes a camera, a stream or a pipe, each frame behind its time.
+void send_live(const std::string& source);
 void encode(const std::string& model, const Words& options);
 /// Prints the version and the path of ONNX Runtime, a line each.
 void say_onnxruntime(const Words& options);

@@ -1,17 +1,21 @@
-// etlc-serve: passes requests of one page to `etlc label`, which answers them. It is a separate
-// program, so that etlc links no library that listens to a network, and a fault there loses no
-// label. It listens to the loopback alone, and refuses with 403 what lacks the token, comes from
-// another origin, or was addressed to another name (DNS rebinding).
+// etlc-serve: passes requests of one page to `etlc label` or `etlc watch`, which answers them. It
+// is a separate program, so that etlc links no library that listens to a network, and a fault there
+// loses no label. It listens to the loopback alone, and refuses with 403 what lacks the token,
+// comes from another origin, or was addressed to another name (DNS rebinding).
 #include <httplib.h>
-#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <deque>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -28,7 +32,9 @@ using namespace etlc::label::protocol;
 using etlc::data::frames::number_at;
 
 constexpr const char* kHost = "127.0.0.1";
+constexpr int kGood = 200;
 constexpr int kForbidden = 403;
+constexpr const char* kEnd = "/events/end";       ///< a page has gone, which no page says itself
 constexpr std::size_t kConnections = 32;          ///< a browser opens six for a page
 constexpr std::size_t kMostRequests = 1'000'000;  ///< of a connection
 
@@ -65,16 +71,6 @@ bool write_all(std::string_view bytes) {
         bytes.remove_prefix(static_cast<std::size_t>(written));
     }
     return true;
-}
-
-/// Ends with the process that answers, also while no request waits for it.
-void end_with_etlc() {
-    std::thread([] {
-        pollfd input{STDIN_FILENO, 0, 0};
-        while (::poll(&input, 1, -1) <= 0 || (input.revents & (POLLHUP | POLLERR)) == 0) {
-        }
-        ::_exit(0);
-    }).detach();
 }
 
 /// Compares in a time that does not tell where the two differ.
@@ -115,20 +111,104 @@ private:
     std::vector<std::string> hosts_;
 };
 
-/// Passes a request on, one at a time, and ends where nobody answers.
-void answer(const std::string& path, const httplib::Request& request, httplib::Response& response) {
-    static std::mutex turn;
-    const std::lock_guard lock(turn);
-    std::string asked;
-    append(asked, path);
-    append(asked, request.body);
-    if (!write_all(asked)) ::_exit(0);
-    const auto status = read_number();
-    const auto type = read_text();
-    const auto content = read_text();
-    if (!status || !type || !content) ::_exit(0);
-    response.status = static_cast<int>(*status);
-    response.set_content(*content, type->c_str());
+/// Listens to etlc: to answers, and to events, of which the last ones are kept. Ends with etlc.
+class Etlc {
+public:
+    struct Answer {
+        int status = 0;
+        std::string type;
+        std::string content;
+        std::uint64_t next_event = 0;  ///< the first event behind it
+    };
+
+    void listen() {
+        std::thread([this] {
+            while (take()) {
+            }
+            ::_exit(0);
+        }).detach();
+    }
+
+    /// Passes a request on, one at a time.
+    Answer ask(const std::string& path, const std::string& content) {
+        const std::lock_guard turn(turn_);
+        std::string asked;
+        append(asked, path);
+        append(asked, content);
+        if (!write_all(asked)) ::_exit(0);
+        std::unique_lock lock(mutex_);
+        said_.wait(lock, [this] { return answer_.has_value(); });
+        return *std::exchange(answer_, std::nullopt);
+    }
+
+    /// Waits for an event from this number on, and moves the number behind it; a page that is too
+    /// slow misses some. Nothing where there is none for a moment.
+    std::shared_ptr<const std::string> event(std::uint64_t& number) {
+        std::unique_lock lock(mutex_);
+        const auto is_there = [&] { return number < first_ + events_.size(); };
+        if (!said_.wait_for(lock, kMoment, is_there)) return nullptr;
+        number = std::max(number, first_);
+        return events_[number++ - first_];
+    }
+
+private:
+    static constexpr std::chrono::seconds kMoment{1};
+    static constexpr std::size_t kEvents = 32;
+
+    bool take() {
+        const auto status = read_number();
+        if (!status) return false;
+        auto type = *status == kEvent ? std::string() : read_text();
+        auto content = type ? read_text() : std::nullopt;
+        if (!content) return false;
+        const std::lock_guard lock(mutex_);
+        if (*status == kEvent) {
+            events_.push_back(std::make_shared<const std::string>(std::move(*content)));
+            if (events_.size() > kEvents) {
+                events_.pop_front();
+                ++first_;
+            }
+        } else {
+            answer_ = {static_cast<int>(*status), std::move(*type), std::move(*content),
+                       first_ + events_.size()};
+        }
+        said_.notify_all();
+        return true;
+    }
+
+    std::mutex turn_;
+    std::mutex mutex_;
+    std::condition_variable said_;
+    std::optional<Answer> answer_;
+    std::deque<std::shared_ptr<const std::string>> events_;
+    std::uint64_t first_ = 0;  ///< number of the first of these
+};
+
+/// Answers with events until the page goes: https://html.spec.whatwg.org, "Server-sent events".
+void send_events(Etlc& etlc, const Etlc::Answer& begin, httplib::Response& response) {
+    const auto number = std::make_shared<std::uint64_t>(begin.next_event);
+    const auto first = std::make_shared<std::string>(begin.content);
+    response.set_chunked_content_provider(
+        "text/event-stream",
+        [&etlc, number, first](std::size_t, httplib::DataSink& sink) {
+            std::string text = ":\n\n";  // a comment shows whether the page is still there
+            if (!first->empty())
+                text = "data: " + std::exchange(*first, "") + "\n\n";
+            else if (const auto event = etlc.event(*number))
+                text = "data: " + *event + "\n\n";
+            return sink.write(text.data(), text.size());
+        },
+        [&etlc](bool) { etlc.ask(kEnd, ""); });
+}
+
+void answer(Etlc& etlc, const std::string& path, const httplib::Request& request,
+            httplib::Response& response) {
+    const Etlc::Answer answer = etlc.ask(path, request.body);
+    response.status = answer.status;
+    if (path == "/events" && answer.status == kGood)
+        send_events(etlc, answer, response);
+    else
+        response.set_content(answer.content, answer.type.c_str());
 }
 
 int serve() {
@@ -162,19 +242,21 @@ int serve() {
     server.set_pre_routing_handler([&](const auto& request, auto& response) {
         if (door.path(request)) return httplib::Server::HandlerResponse::Unhandled;
         response.status = kForbidden;
-        response.set_content("403: this address lacks the token that etlc label printed\n",
+        response.set_content("403: this address lacks the token that etlc printed\n",
                              "text/plain; charset=utf-8");
         return httplib::Server::HandlerResponse::Handled;
     });
+    Etlc etlc;
     const auto pass = [&](const httplib::Request& request, httplib::Response& response) {
-        if (const auto path = door.path(request)) answer(*path, request, response);
+        const auto path = door.path(request);
+        if (path && *path != kEnd) answer(etlc, *path, request, response);
     };
     server.Get(".*", pass);
     server.Post(".*", pass);
     std::string head;
     etlc::data::frames::append(head, static_cast<std::uint32_t>(port));
     if (!write_all(head)) return 1;
-    end_with_etlc();
+    etlc.listen();
     return server.listen_after_bind() ? 0 : 1;
 }
 

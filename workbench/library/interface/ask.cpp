@@ -1,7 +1,5 @@
 // Queries: measurements, lets, counts, explanations and incidents of a step; encoders.
-#include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "data/frames/reference.hpp"
 #include "library/interface/call.hpp"
@@ -34,17 +32,6 @@ const check::Encoder* find_encoder(const Session& session, const char* name, etl
             ? refuse(ETLC_NO_SUCH, "encoder is null, and the spec has {} encoders", encoders.size())
             : refuse(ETLC_NO_SUCH, "the spec has no encoder '{}'", name);
     return nullptr;
-}
-
-/// Returns |z - r| / |r|, or |z| where r is 0.
-double relative_difference(const float* z, const float* r, std::size_t elements) {
-    double difference = 0, length = 0;
-    for (std::size_t i = 0; i < elements; ++i) {
-        difference += (double{z[i]} - r[i]) * (double{z[i]} - r[i]);
-        length += double{r[i]} * r[i];
-    }
-    const double relative = std::sqrt(difference / (length > 0 ? length : 1));
-    return std::isfinite(relative) ? relative : std::numeric_limits<double>::infinity();
 }
 
 /// Calls `work(recorder)` where the spec was opened with a recorder.
@@ -158,7 +145,7 @@ etlc_status etlc_encoder_difference(etlc_session session, const char* encoder, u
             return refuse(ETLC_WRONG_NUMBER, "embedding has {} elements, encoder '{}' makes {}",
                           elements, found->name, dimension);
         *difference =
-            relative_difference(embedding, &found->references[frame * dimension], dimension);
+            data::relative_difference(embedding, &found->references[frame * dimension], dimension);
         return ETLC_OK;
     });
 }

@@ -31,6 +31,7 @@ class Timelines {
     this.parent = parent;
     this.episode = episode;
     this.listeners = listeners;
+    this.first = episode.first ?? 0;  // the number of the first step
     this.domain = this.whole();
     this.lanes = this.makeLanes();
   }
@@ -76,8 +77,8 @@ class Timelines {
       .attr("height", height);
     for (const lane of this.lanes) this.drawLane(lane, inner);
     const seconds = data.spec.step_seconds;
-    const shown = seconds > 0 ? this.x.copy().domain(this.domain.map((step) => step * seconds))
-      : this.x;
+    const shown = this.x.copy().domain(this.domain.map((step) =>
+      (step + this.first) * (seconds > 0 ? seconds : 1)));
     xAxis(this.g, shown, height, seconds > 0 ? "time, s" : "step", 8);
     this.marks = this.g.append("g").attr("class", "marks").attr("clip-path", "url(#lane-clip)");
     this.cursor = this.g.append("g").attr("class", "cursor");
@@ -149,7 +150,7 @@ class Timelines {
     const final = lane.said.findIndex(isFinal);
     if (final < 0 || data.monitors[lane.index].sliding) return;
     g.append("line").attr("class", "final").attr("x1", this.x(final)).attr("x2", this.x(final))
-      .attr("y2", lane.chart).append("title").text(`for good from ${when(final)} on`);
+      .attr("y2", lane.chart).append("title").text(`for good from ${when(final + this.first)} on`);
   }
 
   addInteraction(inner) {

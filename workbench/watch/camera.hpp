@@ -1,0 +1,102 @@
+// The steps of a live source: a frame or none for each, and its embeddings.
+// Takes: the frames of a camera, and the encoders. Gives: a trace, whose next step comes when the
+// embedding of its frame has, or when the step has passed without a frame. Keeps true: a frame that
+// is left out, because the encoders are busy, is a step without a sample, at its place in time. Of
+// a file no frame is left out.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data/frames/live.hpp"
+#include "data/traces/trace.hpp"
+#include "watch/encoders.hpp"
+#include "watch/step_clock.hpp"
+#include "watch/stop.hpp"
+
+namespace etlc::watch {
+
+struct CameraCounts {
+    std::uint64_t frames = 0;   ///< that came
+    std::uint64_t dropped = 0;  ///< of these, left out while the encoders were busy
+    std::uint64_t late = 0;     ///< of these, more than the steps need, or too late for theirs
+    std::uint64_t absent = 0;   ///< steps for which no frame came
+};
+
+class Camera {
+public:
+    Camera(std::unique_ptr<data::LiveFrames> frames, std::unique_ptr<Encoders> encoders,
+           bool is_live, double step_seconds, const Stop& stop)
+        : frames_(std::move(frames)),
+          encoders_(std::move(encoders)),
+          stop_(stop),
+          is_live_(is_live),
+          clock_(is_live ? step_seconds : 0) {}
+
+    /// Waits for the next step; false at the end of the source, or where somebody asked for it.
+    diag::Result<bool> next();
+
+    /// Returns the frame of this step; null where it has none.
+    const data::Frame* frame() const { return has_frame_ ? &frame_ : nullptr; }
+    const std::vector<float>& embedding(check::Index input) const {
+        return encoders_->embedding(input);
+    }
+    const CameraCounts& counts() const { return counts_; }
+    /// Returns whether an encoder has failed, which it has reported.
+    bool has_failed() const { return has_failed_; }
+
+private:
+    /// A step that has come, and was not yet given out.
+    struct Due {
+        bool has_frame = false;
+        bool is_given = false;  ///< to the encoders
+        data::Frame frame;
+    };
+
+    bool fail() { return !(has_failed_ = true); }
+    /// Returns whether the first step can be given out, after passing its frame on.
+    bool is_ready();
+    void give_out();
+    diag::Result<bool> wait();
+    diag::Result<bool> take_frames();
+    void add(data::LiveFrame& frame);
+    void add_absent(std::uint64_t steps);
+    int patience() const;
+    bool wants_frames() const { return is_live_ || due_.size() < 2; }
+
+    std::unique_ptr<data::LiveFrames> frames_;
+    std::unique_ptr<Encoders> encoders_;
+    const Stop& stop_;
+    bool is_live_;
+    StepClock clock_;
+    std::deque<Due> due_;
+    data::LiveFrame arrived_;
+    data::Frame frame_;  ///< of the last step that has one
+    data::Frame spare_;  ///< whose memory the next frame takes
+    bool has_frame_ = false;
+    bool has_failed_ = false;
+    CameraCounts counts_;
+};
+
+/// A camera as a trace, whose channels are the encoded inputs.
+class CameraTrace final : public data::Trace {
+public:
+    /// `inputs`: by channel, those that the camera gives; kNone for others, which it lacks.
+    CameraTrace(Camera& camera, std::vector<check::Index> inputs,
+                std::vector<data::Channel> channels)
+        : camera_(camera), inputs_(std::move(inputs)), channels_(std::move(channels)) {}
+
+    diag::Result<bool> next(data::Sample& sample) override;
+    bool has(std::size_t channel) const override { return inputs_[channel] != check::kNone; }
+
+private:
+    Camera& camera_;
+    std::vector<check::Index> inputs_;
+    std::vector<data::Channel> channels_;
+};
+
+}  // namespace etlc::watch

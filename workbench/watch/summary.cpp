@@ -1,0 +1,106 @@
+#include "watch/summary.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "diag/diag.hpp"
+
+namespace etlc::watch {
+
+const char* status(const etlmon::Verdict& verdict) {
+    if (!verdict.decided()) return "undecided";
+    return verdict.satisfied() ? "satisfied" : verdict.violated() ? "violated" : "unknown";
+}
+
+std::string when(const check::Model& model, std::uint64_t step) {
+    const double length = model.step_seconds;
+    if (length == 0) return fmt::format("step {}", step);
+    return fmt::format("step {} ({:.6g} s)", step, static_cast<double>(step) * length);
+}
+
+void Summary::add(std::size_t monitor, std::uint64_t step, const etlmon::Verdict& verdict) {
+    if (!verdict.decided()) return;
+    OfMonitor& m = monitors_[monitor];
+    const At here{step, verdict.robustness};
+    ++m.decided;
+    if (verdict.unknown()) ++m.unknown;
+    if (verdict.violated()) {
+        ++m.violated;
+        if (!m.first_violated) m.first_violated = step;
+    }
+    const bool known = !verdict.unknown();  // the robustness of an unknown verdict is only a bound
+    if (known && (!m.worst || here.robustness < m.worst->robustness)) m.worst = here;
+    if (!verdict.final())
+        m.final_since.reset();
+    else if (!m.final_since)
+        m.final_since = step;
+    if (verdict.fulfilled()) ++m.fulfilled;
+    if (verdict.alarm()) {
+        ++m.alarms;
+        if (!m.first_alarm) m.first_alarm = step;
+    }
+    m.last = verdict;
+}
+
+std::string Summary::of_prefix(const OfMonitor& m) const {
+    std::string text = fmt::format("{} so far", status(m.last));
+    if (m.final_since)
+        text = fmt::format("{} for good from {} on", status(m.last),
+                           when(*plan_.model, *m.final_since));
+    return text + fmt::format(", robustness {:.6g}", m.last.robustness);
+}
+
+std::string Summary::of_repeating(const OfMonitor& m) const {
+    std::string text = diag::counted(m.alarms, "alarm");
+    if (m.first_alarm) text += fmt::format(", the first at {}", when(*plan_.model, *m.first_alarm));
+    return text + fmt::format("; fulfilled {}; at the end {}, robustness {:.6g}",
+                              diag::counted(m.fulfilled, "time"), status(m.last),
+                              m.last.robustness);
+}
+
+std::string Summary::of_sliding(const OfMonitor& m, std::uint64_t horizon) const {
+    if (!m.worst) return "unknown throughout";
+    if (!m.first_violated)
+        return fmt::format("never violated, least robustness {:.6g} at {}", m.worst->robustness,
+                           when(*plan_.model, m.worst->step - horizon));
+    return fmt::format("violated at {} of {}, first at {}, least robustness {:.6g} at {}",
+                       m.violated, diag::counted(m.decided, "position"),
+                       when(*plan_.model, *m.first_violated - horizon), m.worst->robustness,
+                       when(*plan_.model, m.worst->step - horizon));
+}
+
+std::string Summary::of_input(check::Index input, const plan::SampleCounts& counts) const {
+    std::vector<std::string> parts;
+    if (counts.missing > 0) parts.push_back(fmt::format("{} missing", counts.missing));
+    if (counts.out_of_range > 0)
+        parts.push_back(fmt::format("{} out of range", counts.out_of_range));
+    if (counts.stale > 0) parts.push_back(fmt::format("{} stale", counts.stale));
+    std::string text = fmt::format("{}", fmt::join(parts, ", "));
+    if (counts.held > 0) text += fmt::format(", of which {} held", counts.held);
+    return fmt::format("input {}: {}\n", plan_.model->inputs[input].name, text);
+}
+
+std::string Summary::text(std::uint64_t steps, const plan::Evaluator& evaluator) const {
+    std::string text;
+    for (std::size_t i = 0; i < monitors_.size(); ++i) {
+        const OfMonitor& m = monitors_[i];
+        const plan::Monitor& monitor = plan_.monitors[i];
+        const bool repeats = monitor.restarts == check::Restarts::when_final;
+        const std::string said = m.decided == 0    ? "undecided throughout"
+                                 : monitor.sliding ? of_sliding(m, monitor.horizon)
+                                 : repeats         ? of_repeating(m)
+                                                   : of_prefix(m);
+        text += fmt::format("{}: {}", monitor.name, said);
+        if (m.unknown > 0) text += fmt::format("; unknown on {}", diag::counted(m.unknown, "step"));
+        text += "\n";
+    }
+    text += fmt::format("{}\n", diag::counted(steps, "step"));
+    for (const check::Index input : plan_.inputs) {
+        const plan::SampleCounts& counts = evaluator.sample_counts()[input];
+        if (counts.missing + counts.out_of_range + counts.stale > 0)
+            text += of_input(input, counts);
+    }
+    return text;
+}
+
+}  // namespace etlc::watch

@@ -1,0 +1,60 @@
+// What the monitors said in a whole trace: a line for each monitor, and for inputs that lacked
+// samples.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "etlmon/temporal/verdict.hpp"
+#include "plan/evaluate/evaluator.hpp"
+#include "plan/program/program.hpp"
+
+namespace etlc::watch {
+
+/// Returns "satisfied", "violated", "unknown" or "undecided".
+const char* status(const etlmon::Verdict& verdict);
+
+/// Returns "step 5 (1.25 s)".
+std::string when(const check::Model& model, std::uint64_t step);
+
+/// The figures of `etlc run --summary`, and the last lines of `etlc watch`, in constant memory.
+class Summary {
+public:
+    explicit Summary(const plan::Plan& plan) : plan_(plan), monitors_(plan.monitors.size()) {}
+
+    /// Adds a verdict about a new position of the monitor.
+    void add(std::size_t monitor, std::uint64_t step, const etlmon::Verdict& verdict);
+
+    std::string text(std::uint64_t steps, const plan::Evaluator& evaluator) const;
+
+private:
+    /// A robustness and its step.
+    struct At {
+        std::uint64_t step = 0;
+        float robustness = 0;
+    };
+    struct OfMonitor {
+        std::uint64_t decided = 0;
+        std::uint64_t violated = 0;
+        std::uint64_t unknown = 0;
+        std::optional<std::uint64_t> first_violated;
+        std::optional<At> worst;  ///< least known robustness
+        std::optional<std::uint64_t> final_since;
+        std::uint64_t alarms = 0;
+        std::uint64_t fulfilled = 0;
+        std::optional<std::uint64_t> first_alarm;
+        etlmon::Verdict last;
+    };
+    std::string of_prefix(const OfMonitor& monitor) const;
+    std::string of_repeating(const OfMonitor& monitor) const;
+    std::string of_sliding(const OfMonitor& monitor, std::uint64_t horizon) const;
+    std::string of_input(check::Index input, const plan::SampleCounts& counts) const;
+
+    const plan::Plan& plan_;
+    std::vector<OfMonitor> monitors_;
+};
+
+}  // namespace etlc::watch
