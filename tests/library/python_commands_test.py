@@ -25,6 +25,8 @@ from etlc._options import OPTIONS
 
 #: Commands that serve a program, and have no function.
 WITHOUT = {"lsp", "watch"}
+#: A loop in Python takes several traces.
+SEVERAL = ("--data", "--episodes")
 #: The functions of each command, with the options that each of them does not take, or sets itself.
 FUNCTIONS = {
     "compile": {
@@ -35,7 +37,7 @@ FUNCTIONS = {
     "fit": {"fit": {"--suggest", "--json"}, "suggest": {"--output", "--json"}},
     "label": {"label": {"--proposals"}, "propose": {"--proposals", "--frames", "--port"}},
     "embed": {"embed": {"--pipe"}},  # etlc.Encoder has it
-    "run": {"run": {"--summary", "--changes"}},
+    "run": {"run": {"--summary", "--changes", *SEVERAL}},
     "explain": {"explain": {"--format"}},
 }  # fmt: skip
 #: Arguments that the command line cannot have.
@@ -83,7 +85,7 @@ class Table(unittest.TestCase):
             for option in options:
                 if command not in WITHOUT and option.name != "--diagnostics":
                     own = {"--pipe", "--summary", "--changes", "--check", "--format", "--json",
-                           "--proposals"}
+                           "--proposals", *(SEVERAL if command == "run" else ())}
                     self.assertIn(option.name, taken | own, command)
 
     def test_every_keyword_is_described(self):

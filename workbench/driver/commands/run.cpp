@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "data/files/file.hpp"
+#include "data/recordings/episodes.hpp"
 #include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
 #include "driver/commands/commands.hpp"
@@ -42,30 +43,44 @@ public:
           request_(request),
           sink_(sink),
           monitors_(compiled.plan),
-          summary_(compiled.plan),
-          changes_(compiled.plan),
           output_(sink) {
         if (request.run.distances) choose_columns();
     }
 
     bool execute() {
         if (!check_names({plan_.model}, request_.names, sink_)) return false;
+        std::vector<std::string> traces{request_.trace};
+        if (is_of_several()) traces = data::find_episodes(request_.data, request_.groups, sink_);
+        if (sink_.has_errors()) return false;
         if (!check_outputs({request_.output, request_.run.html, request_.run.svg},
-                           files_read(*plan_.model, spec_, {request_.trace}), sink_))
+                           files_read(*plan_.model, spec_, traces), sink_))
             return false;
         if (writes_rows() && !output_.begin(request_.output)) return false;
         print_head();
-        if (!step_through_trace() || !flush()) return false;
-        episodes::warn_of_unmarked(*plan_.model, plan_.inputs, {request_.trace}, request_.names,
-                                   sink_);
-        if (request_.run.summary && !print(summary_.text(steps_, monitors_.evaluator()), sink_))
-            return false;
-        return write_pictures() && output_.commit();
+        for (const std::string& trace : traces)
+            if (!run(trace)) return false;
+        episodes::warn_of_unmarked(*plan_.model, plan_.inputs, traces, request_.names, sink_);
+        return flush() && write_pictures() && output_.commit();
     }
 
 private:
+    /// Whether the call is about episodes, whose rows and lines name them.
+    bool is_of_several() const { return !request_.data.empty(); }
+
+    bool run(const std::string& trace) {
+        trace_ = trace;
+        step_ = steps_ = 0;
+        summary_.emplace(plan_);
+        changes_.emplace(plan_);
+        first_cells_ = is_of_several() ? source::csv_cell(trace) + "," : "";
+        if (!step_through_trace()) return false;
+        if (!request_.run.summary) return true;
+        const std::string name = is_of_several() ? source::visible(trace) + "\n" : "";
+        return print(name + summary_->text(steps_, monitors_.evaluator()), sink_);
+    }
+
     bool fail(const diag::Failure& failure) {
-        sink_.report(data::in_trace(failure, request_.trace));
+        sink_.report(data::in_trace(failure, trace_));
         return false;
     }
 
@@ -92,7 +107,8 @@ private:
     }
 
     void print_head() {
-        text_ = "step,monitor,lower,robustness,upper,status,final,position";
+        text_ = is_of_several() ? "trace," : "";
+        text_ += "step,monitor,lower,robustness,upper,status,final,position";
         if (plan_.model->step_seconds > 0) text_ += ",time";
         for (const auto& [name, predicate] : distances_)
             text_ += "," + source::csv_cell("distance_" + name);
@@ -102,7 +118,7 @@ private:
     }
 
     bool step_through_trace() {
-        auto recording = episodes::Recording::open({plan_.model, plan_.inputs}, request_.trace,
+        auto recording = episodes::Recording::open({plan_.model, plan_.inputs}, trace_,
                                                    {request_.names, nullptr});
         if (!recording) return fail(recording.failure());
         episodes::AfterStep rest;
@@ -129,7 +145,7 @@ private:
                 .report(data::in_file(
                     {diag::Code::no_sample, fmt::format("every sample of '{}' is {}",
                                                         plan_.model->inputs[input].name, why)},
-                    request_.trace))
+                    trace_))
                 .note("predicates that measure it are unknown at every step");
         }
     }
@@ -138,7 +154,7 @@ private:
         const std::vector<Verdict>& verdicts = monitors_.verdicts();
         const std::string telemetry = distance_cells() + let_cells();
         for (std::size_t m = 0; m < verdicts.size(); ++m) {
-            if (monitors_.reports(plan_.monitors[m].index)) summary_.add(m, step_, verdicts[m]);
+            if (monitors_.reports(plan_.monitors[m].index)) summary_->add(m, step_, verdicts[m]);
             if (writes_rows()) print_row(m, verdicts[m], telemetry);
         }
         if (request_.run.changes && !print_changes()) return false;
@@ -151,14 +167,17 @@ private:
     bool print_changes() {
         const auto& verdicts = monitors_.verdicts();
         const std::string lines =
-            step_ < steps_ ? changes_.after(step_, verdicts, monitors_.evaluator())
-                           : changes_.after_finish(step_, verdicts, monitors_.evaluator());
-        return lines.empty() || print(source::visible_lines(lines), sink_);
+            step_ < steps_ ? changes_->after(step_, verdicts, monitors_.evaluator())
+                           : changes_->after_finish(step_, verdicts, monitors_.evaluator());
+        if (lines.empty()) return true;
+        const std::string name = is_of_several() ? source::visible(trace_) + "\n" : "";
+        return print(name + source::visible_lines(lines), sink_);
     }
 
     void print_row(std::size_t m, const Verdict& v, const std::string& telemetry) {
         const std::string& name = plan_.monitors[m].name;
         const auto out = std::back_inserter(text_);
+        text_ += first_cells_;
         if (v.decided())
             fmt::format_to(out, "{},{},{:.9g},{:.9g},{:.9g},{},{},{}", step_, name, v.lower,
                            v.robustness, v.upper, watch::status(v), v.final() ? 1 : 0,
@@ -210,8 +229,10 @@ private:
     const Request& request_;
     diag::Sink& sink_;
     episodes::Follower monitors_;
-    watch::Summary summary_;
-    watch::Changes changes_;
+    std::string trace_;  ///< this one
+    std::optional<watch::Summary> summary_;
+    std::optional<watch::Changes> changes_;
+    std::string first_cells_;  ///< of each row
     OutputFiles output_;
     /// The name of each column of distances, and a predicate that has this distance.
     std::vector<std::pair<std::string, check::Index>> distances_;

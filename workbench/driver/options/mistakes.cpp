@@ -222,6 +222,10 @@ std::string mistake_in_compiling(const Call& call) {
 }
 
 std::string mistake_in_running(const Call& call) {
+    if (call.trace.empty() && call.data.empty())
+        return "expected --trace FILE, or --data FILE... for several episodes";
+    if (call.trace.empty() && !(call.run.html.empty() && call.run.svg.empty()))
+        return "--html and --svg show one trace: they need --trace FILE";
     if (call.trace == data::kStandardInput && !(call.run.html.empty() && call.run.svg.empty()))
         return "--html and --svg read the trace once more, so it cannot be standard input";
     return mistake_in_retargetable(call);

@@ -161,8 +161,11 @@ std::vector<Option> make_options() {
          "of images, folders and 'patterns' of these"},
         {run, "--trace", file(in(&Call::trace)),
          "the trace: .csv, .npz or .h5; FILE.h5:GROUP is an episode in a group, FOLDER:3 an "
-         "episode of a data set; - is CSV on standard input, stepped row by row",
-         kRequired},
+         "episode of a data set; - is CSV on standard input, stepped row by row"},
+        {run, "--data", texts("FILE...", in(&Call::data)),
+         "episodes in place of a trace, one after another: files, folders, data sets, 'patterns'; "
+         "the rows begin with the column 'trace'",
+         Option::Need::none, "--trace"},
         {explain, "--trace", file(in(&Call::trace)),
          "the trace: .csv, .npz or .h5; FILE.h5:GROUP is an episode in a group, FOLDER:3 an "
          "episode of a data set",
@@ -170,7 +173,7 @@ std::vector<Option> make_options() {
         {embed, "--camera", several(form("[INPUT=]NAME", read_cameras)),
          "the camera of a data set, or the array of images: observation.images.top; for one input "
          "only, z=observation.images.top"},
-        {kFindEpisodes, "--episodes", text("PATTERN", in(&Call::groups)),
+        {Commands(kFindEpisodes) | run, "--episodes", text("PATTERN", in(&Call::groups)),
          "groups of .h5 files that are episodes: 'data/*'"},
         {embed, "--episodes", text("PATTERN", in(&Call::groups)),
          "groups of .h5 files that are recordings: 'data/*'"},
