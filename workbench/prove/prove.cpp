@@ -1,0 +1,194 @@
+#include "prove/prove.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "prove/program.hpp"
+
+namespace etlc::prove {
+namespace {
+
+/// Compares the verdicts of one class with their definition, in the order in which its program
+/// gives them.
+class Comparison {
+public:
+    Comparison(const plan::Plan& plan, Proof& proof, data::Child& child)
+        : plan_(plan),
+          proof_(proof),
+          scope_(space_),
+          answers_(child, space_),
+          known_(plan, proof.atoms, proof.steps, false),
+          all_(plan, proof.atoms, proof.steps, true) {}
+
+    /// Throws Ended and Exhausted.
+    void run() {
+        for (; done_ < proof_.steps && !proof_.fault; ++done_) {
+            compare_step(done_, Kind::known);
+            compare_step(done_, Kind::missing);
+            compare_finishes(done_);
+            known_.forget(done_);
+        }
+        for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m)
+            if (restarts(m) != check::Restarts::never) compare_restarted(m);
+        for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m)
+            if (restarts(m) == check::Restarts::when_final) compare_restarted(m);
+        if (!proof_.fault) proof_.repetition = answers_.repetition();
+    }
+
+    std::uint32_t done() const { return done_; }
+    bool forgets() const { return forgets_; }
+
+private:
+    enum class Kind : std::uint8_t { known, missing };
+
+    /// A verdict that comes next, and what it is about.
+    struct Place {
+        std::uint32_t monitor;
+        std::uint32_t step;
+        std::uint32_t position;
+        bool decided;
+        std::uint32_t finishes = 0;
+        std::optional<std::uint32_t> restarted{};
+    };
+
+    check::Restarts restarts(std::uint32_t m) const { return plan_.monitors[m].restarts; }
+
+    void compare_step(std::uint32_t step, Kind kind) {
+        for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m) compare(place(m, step), kind);
+    }
+
+    Place place(std::uint32_t m, std::uint32_t step) const {
+        const plan::Monitor& monitor = plan_.monitors[m];
+        const bool decided = !monitor.sliding || step >= monitor.horizon;
+        return {m, step, monitor.sliding && decided ? step - monitor.horizon : 0, decided};
+    }
+
+    /// "`finish()` reports the last h positions, cut at the end of the trace, one per call"
+    void compare_finishes(std::uint32_t step) {
+        std::uint32_t calls = 0;
+        for (const plan::Monitor& monitor : plan_.monitors)
+            calls = std::max(calls, monitor.horizon);
+        for (std::uint32_t call = 0; plan_.has_sliding && call < calls; ++call)
+            for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m) {
+                Place at = place(m, step);
+                at.finishes = call + 1;
+                if (const std::uint32_t h = plan_.monitors[m].horizon; plan_.monitors[m].sliding) {
+                    at.decided = call < h && step + 1 + call >= h;
+                    at.position = at.decided ? step + 1 + call - h : 0;
+                }
+                compare(at, Kind::missing);
+            }
+    }
+
+    void compare_restarted(std::uint32_t restarted) {
+        for (std::uint32_t at = 1; at < proof_.steps && !proof_.fault; ++at) {
+            for (std::uint32_t step = at; step < proof_.steps && !proof_.fault; ++step)
+                for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m) {
+                    Place here = place(m, step);
+                    if (m == restarted) here.position = at;
+                    if (m == restarted) here.restarted = at;
+                    compare(here, Kind::missing);
+                }
+            if (!proof_.fault) forgets_ = answers_.forgotten() && forgets_;
+        }
+    }
+
+    void compare(const Place& at, Kind kind) {
+        if (proof_.fault) return;
+        const Numbers found = answers_.verdict();
+        ++proof_.verdicts;
+        Numbers expected;
+        if (at.decided)
+            expected =
+                (kind == Kind::known ? known_ : all_).verdict(at.monitor, at.step, at.position);
+        if (found == expected) return;
+        if (found.decided != expected.decided) return blame(at, "whether it is decided", Witness());
+        const std::pair<const char*, Diagram Numbers::*> numbers[] = {
+            {"robustness", &Numbers::low},
+            {"the greatest possible robustness", &Numbers::high},
+            {"lower", &Numbers::lower},
+            {"upper", &Numbers::upper}};
+        for (const auto& [name, number] : numbers)
+            if (const auto witness = difference(space_, found.*number, expected.*number,
+                                                proof_.atoms, at.step + 1, kind == Kind::missing))
+                return blame(at, name, *witness);
+    }
+
+    void blame(const Place& at, const std::string& number, Witness witness) {
+        proof_.fault = Fault{at.monitor,   at.step, at.position,       at.finishes,
+                             at.restarted, number,  std::move(witness)};
+    }
+
+    const plan::Plan& plan_;
+    Proof& proof_;
+    Space space_;
+    Symbol::Scope scope_;
+    Answers answers_;
+    Definition known_;
+    Definition all_;
+    std::uint32_t done_ = 0;
+    bool forgets_ = true;
+};
+
+diag::Failure no_proof(std::string why) {
+    return {diag::Code::no_proof, std::move(why)};
+}
+
+std::string how_far(std::uint32_t steps) {
+    return steps == 0 ? ""
+                      : fmt::format("; it is right for all inputs of up to {}",
+                                    diag::counted(steps, "step"));
+}
+
+}  // namespace
+
+std::uint32_t usual_steps(const plan::Plan& plan) {
+    std::uint32_t horizon = 0;
+    std::uint32_t buffer = 0;
+    for (const plan::Monitor& monitor : plan.monitors) horizon = std::max(horizon, monitor.horizon);
+    for (const plan::Stream& stream : plan.streams) buffer = std::max(buffer, stream.length);
+    return std::max(64U, 2 * horizon + buffer);
+}
+
+diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
+    if (plan.values == check::Values::boolean)
+        return no_proof(
+            "a class with --values boolean branches on truth values, so its way "
+            "depends on the samples");
+    Proof proof;
+    proof.atoms = atoms_of(plan);
+    proof.steps = request.steps > 0 ? request.steps : usual_steps(plan);
+    auto program =
+        Program::make(plan, {request.header, request.name_space, proof.steps, 0}, proof.atoms);
+    if (!program) return program.failure();
+    proof.compiler = program->compiler();
+    const auto child = program->start();
+    if (!child) return no_proof("cannot run the program that was compiled for the proof");
+    std::uint32_t done = 0;
+    try {
+        Comparison comparison(plan, proof, *child);
+        try {
+            comparison.run();
+        } catch (const Exhausted&) {
+            return no_proof("the diagrams of the definition are too large" +
+                            how_far(comparison.done()));
+        } catch (const Ended& ended) {
+            done = comparison.done();
+            if (ended.why == Ended::Why::branches)
+                return no_proof("the class compares two values and branches on the result" +
+                                how_far(done));
+            if (ended.why == Ended::Why::exhausted)
+                return no_proof("the diagrams of the class are too large" + how_far(done));
+            return no_proof(
+                fmt::format("the class, compiled for the proof, {}{}", ended.how, how_far(done)));
+        }
+        proof.restarts = comparison.forgets();
+    } catch (const Exhausted&) {
+        return no_proof("the diagrams of the samples are too large");
+    }
+    return proof;
+}
+
+}  // namespace etlc::prove

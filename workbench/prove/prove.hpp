@@ -1,0 +1,54 @@
+// Proves a generated class: compares it on symbols with the definition of its verdicts.
+// Takes: a plan and the text of a header. Gives: a proof for all inputs of a number of steps, an
+// input on which the class is wrong, or the reason why neither was found. Keeps true: "proved" is
+// said only where every diagram of every verdict was compared.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diag/diag.hpp"
+#include "plan/plan.hpp"
+#include "prove/definition.hpp"
+#include "prove/witness.hpp"
+
+namespace etlc::prove {
+
+struct Request {
+    std::string header;       ///< its text
+    std::string name_space;   ///< of its class
+    std::uint32_t steps = 0;  ///< 0: usual_steps()
+};
+
+/// Twice the longest horizon and the longest buffer, at least 64.
+std::uint32_t usual_steps(const plan::Plan& plan);
+
+/// A wrong verdict, on the shortest input that has one.
+struct Fault {
+    std::uint32_t monitor = 0;  ///< of the plan
+    std::uint32_t step = 0;
+    std::uint32_t position = 0;              ///< that the verdict is about
+    std::uint32_t finishes = 0;              ///< calls of finish() after the step
+    std::optional<std::uint32_t> restarted;  ///< the monitor was restarted before that step
+    std::string number;  ///< "robustness", "lower", "upper" or "whether it is decided"
+    Witness witness;
+};
+
+struct Proof {
+    std::vector<Atom> atoms;
+    std::uint32_t steps = 0;
+    std::string compiler;        ///< its first line about its version
+    std::uint64_t verdicts = 0;  ///< that were compared
+    bool restarts = false;       ///< also after a restart of each monitor at each step
+    /// The states before these steps are alike, and so are those of all later steps.
+    std::optional<std::pair<std::uint32_t, std::uint32_t>> repetition;
+    std::optional<Fault> fault;
+};
+
+/// Failures say why there is no proof.
+diag::Result<Proof> prove(const plan::Plan& plan, const Request& request);
+
+}  // namespace etlc::prove

@@ -1,0 +1,247 @@
+// Steps a class on symbols, for `etlc prove`, whose program includes the header and this file.
+// Takes: the number of steps, and what the program knows of the class. Gives: on standard output,
+// for each verdict the diagrams of its numbers, and every diagram once, before its first use.
+// Keeps true: the class is used through its public functions only; it begins in reset(), in memory
+// of zeros.
+#pragma once
+
+#include <stdio.h>
+#include <string.h>
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "etlmon/temporal/sourced.hpp"
+
+namespace etlprove {
+
+// ---- output -------------------------------------------------------------------------------------
+
+/// The words that begin an entry; compiler/reads.cpp of etlc reads them.
+enum class Entry : uint32_t { number = 1, node, verdict, reset, repeats, end };
+
+inline void put(uint32_t word) {
+    if (fwrite(&word, sizeof word, 1, stdout) != 1) _Exit(1);
+}
+
+[[noreturn]] inline void stop(int status) {
+    fflush(stdout);
+    _Exit(status);
+}
+
+/// Writes diagrams before those that contain them.
+class Sent {
+public:
+    void send(Diagram of) {
+        for (; numbers_sent_ < numbers().count(); ++numbers_sent_) {
+            const float number = numbers().number(kFirstNumber + 2 * numbers_sent_);
+            put(static_cast<uint32_t>(Entry::number));
+            uint32_t bits = 0;
+            memcpy(&bits, &number, sizeof bits);
+            put(bits);
+        }
+        send_nodes(of);
+    }
+
+private:
+    std::vector<bool> sent_{true, true};
+    uint32_t numbers_sent_ = 0;
+
+    void send_nodes(Diagram of) {
+        if (sent_.size() < diagrams().size()) sent_.resize(diagrams().size(), false);
+        if (sent_[of]) return;
+        const Diagrams::Node node = diagrams()[of];
+        send_nodes(node.without);
+        send_nodes(node.with);
+        sent_[of] = true;
+        put(static_cast<uint32_t>(Entry::node));
+        put(of);
+        put(node.place);
+        put(node.without);
+        put(node.with);
+    }
+};
+
+// ---- the class ----------------------------------------------------------------------------------
+
+/// What the program knows of its class.
+template <class Monitor>
+struct Class {
+    uint32_t atoms;      ///< that the class reads
+    uint32_t all_atoms;  ///< with those that only the definition reads
+    uint32_t monitors;
+    std::vector<uint32_t> restartable;  ///< monitors that restart
+    std::vector<uint32_t> repeating;    ///< those that also restart after a final verdict
+    void (*restart)(Monitor&, uint32_t monitor);
+    uint32_t finishes;  ///< calls of finish() that report something
+};
+
+template <class Monitor>
+auto finish(Monitor& monitor, int) -> decltype(monitor.finish()) {
+    return monitor.finish();
+}
+template <class Monitor, class Verdicts>
+Verdicts finish(Monitor&, long) {
+    return {};
+}
+
+template <class Monitor, class Verdicts>
+class Driver {
+public:
+    Driver(Class<Monitor> about, uint32_t steps, uint32_t settled)
+        : about_(std::move(about)), steps_(steps), settled_(settled) {}
+
+    void run() {
+        State known = fresh();
+        State state = fresh();
+        for (uint32_t step = 0; step < steps_; ++step) {
+            states_.push_back(copy(state));
+            report(advance(*known, step, false));
+            report(advance(*state, step, true));
+            State ended = copy(state);
+            for (uint32_t call = 0; call < about_.finishes; ++call)
+                report(finish<Monitor, Verdicts>(**ended, 0));
+        }
+        states_.push_back(copy(state));
+        for (const uint32_t monitor : about_.restartable)
+            for (uint32_t step = 1; step < steps_; ++step) run_restarted(monitor, step);
+        for (uint32_t n = 0; n < about_.repeating.size(); ++n)
+            for (uint32_t step = 1; step < steps_; ++step) run_repeated(n, step);
+        find_repetition();
+        put(static_cast<uint32_t>(Entry::end));
+        stop(0);
+    }
+
+private:
+    struct Memory {
+        alignas(Monitor) unsigned char bytes[sizeof(Monitor)];
+        Monitor& operator*() { return *reinterpret_cast<Monitor*>(bytes); }
+    };
+    using State = std::unique_ptr<Memory>;
+    using Atoms = typename Monitor::Atoms;
+    using Value = typename Monitor::Value;
+
+    Class<Monitor> about_;
+    uint32_t steps_;
+    uint32_t settled_;  ///< the verdicts of later steps do not depend on samples before; or 0
+    std::vector<State> states_;  ///< before each step, with every sample possibly missing
+    Sent sent_;
+
+    static State copy(const State& state) { return std::make_unique<Memory>(*state); }
+    State fresh() const {
+        State state = std::make_unique<Memory>();
+        memset(state->bytes, 0, sizeof state->bytes);
+        (**state).reset();
+        return state;
+    }
+
+    etlmon::Value sample(uint32_t step, uint32_t atom, bool may_be_missing) const {
+        const Place first = kFirstSample + (step * about_.all_atoms + atom) * kPlacesPerSample;
+        const auto end = [&](Place place) {
+            return etlmon::Key::of(diagrams().variable(first + place));
+        };
+        return {end(kLow), end(may_be_missing ? kHigh : kLow)};
+    }
+
+    Verdicts advance(Memory& state, uint32_t step, bool may_be_missing) {
+        std::vector<Value> values;
+        for (uint32_t atom = 0; atom < about_.atoms; ++atom)
+            values.push_back(Value(sample(step, atom, may_be_missing)));
+        Atoms now{};
+        static_assert(sizeof(Value) % sizeof(uint32_t) == 0, "no padding");
+        memcpy(static_cast<void*>(&now), values.data(), values.size() * sizeof(Value));
+        finals().asked = 0;
+        return (*state).judge(now);
+    }
+
+    void report(const Verdicts& verdicts) {
+        for (uint32_t m = 0; m < about_.monitors; ++m) {
+            etlmon::Verdict verdict;
+            memcpy(static_cast<void*>(&verdict),
+                   reinterpret_cast<const unsigned char*>(&verdicts) + m * sizeof verdict,
+                   sizeof verdict);
+            const bool decided = is_marked(verdict.status.high);
+            const Diagram numbers[] = {verdict.robustness.diagram(),
+                                       diagram_of(verdict.status.high), verdict.lower.diagram(),
+                                       verdict.upper.diagram()};
+            for (const Diagram number : numbers)
+                if (decided) sent_.send(number);
+            put(static_cast<uint32_t>(Entry::verdict));
+            put(decided ? 1 : 0);
+            for (const Diagram number : numbers) put(number);
+        }
+        fflush(stdout);
+    }
+
+    void restart(Memory& state, uint32_t monitor) { about_.restart(*state, monitor); }
+
+    /// The monitor is restarted before the step. Where every later restart gives the state that it
+    /// would give without this one, all sequences of restarts are covered.
+    void run_restarted(uint32_t monitor, uint32_t at) {
+        State state = copy(states_[at]);
+        restart(*state, monitor);
+        run_from(std::move(state), monitor, at);
+    }
+
+    /// The monitor restarts by itself after the step before.
+    void run_repeated(uint32_t n, uint32_t at) {
+        State state = copy(states_[at - 1]);
+        finals().chosen = uint64_t{1} << n;
+        advance(*state, at - 1, true);
+        finals().chosen = 0;
+        run_from(std::move(state), about_.repeating[n], at);
+    }
+
+    void run_from(State state, uint32_t monitor, uint32_t at) {
+        bool forgotten = true;
+        for (uint32_t step = at; step < steps_; ++step) {
+            if (step > at && forgotten) {
+                State again = copy(state), first = copy(states_[step]);
+                restart(*again, monitor);
+                restart(*first, monitor);
+                forgotten = memcmp(again->bytes, first->bytes, sizeof again->bytes) == 0;
+            }
+            report(advance(*state, step, true));
+        }
+        put(static_cast<uint32_t>(Entry::reset));
+        put(forgotten ? 1 : 0);
+    }
+
+    // ---- repetition
+
+    /// Finds two steps with the same state, but for the time of later samples and the counters of
+    /// steps. Samples before `settled_` keep their time.
+    void find_repetition() {
+        if (settled_ == 0) return;
+        for (uint32_t later = 2 * settled_ + 2; later <= steps_; ++later)
+            for (uint32_t before = 2 * settled_ + 1; before < later; ++before)
+                if (repeats(*states_[before], *states_[later], later - before)) {
+                    put(static_cast<uint32_t>(Entry::repeats));
+                    put(before);
+                    put(later);
+                    return;
+                }
+    }
+
+    bool repeats(const Memory& before, const Memory& later, uint32_t steps) const {
+        for (size_t at = 0; at + sizeof(uint32_t) <= sizeof(Monitor); at += sizeof(uint32_t)) {
+            uint32_t from = 0, to = 0;
+            memcpy(&from, before.bytes + at, sizeof from);
+            memcpy(&to, later.bytes + at, sizeof to);
+            if (from == to && !is_marked(from)) continue;
+            const Place first = kFirstSample + (settled_ + 1) * about_.all_atoms * kPlacesPerSample;
+            if (is_marked(from) && is_marked(to)) {
+                const Diagram moved = diagrams().later(diagram_of(from), first,
+                                                       steps * about_.all_atoms * kPlacesPerSample);
+                if (moved == diagram_of(to)) continue;
+                return false;
+            }
+            if (from > settled_ && to == from + steps) continue;  // a counter of steps
+            return false;
+        }
+        return true;
+    }
+};
+
+}  // namespace etlprove

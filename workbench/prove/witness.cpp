@@ -1,0 +1,194 @@
+#include "prove/witness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace etlc::prove {
+namespace {
+
+using etlprove::Diagrams;
+using etlprove::kAlways;
+using etlprove::kFirstSample;
+using etlprove::kNever;
+using etlprove::kPlacesPerSample;
+
+/// Returns the variables that a function depends on.
+std::set<Place> support(const Diagrams& diagrams, Diagram of) {
+    std::set<Place> places;
+    std::set<Diagram> seen;
+    std::vector<Diagram> open{of};
+    while (!open.empty()) {
+        const Diagram at = open.back();
+        open.pop_back();
+        if (at <= kAlways || !seen.insert(at).second) continue;
+        places.insert(diagrams[at].place);
+        open.push_back(diagrams[at].without);
+        open.push_back(diagrams[at].with);
+    }
+    return places;
+}
+
+/// The conditions that inputs meet, as functions.
+class Inputs {
+public:
+    Inputs(Space& space, const std::vector<Atom>& atoms, bool may_be_missing)
+        : space_(space), atoms_(atoms), may_be_missing_(may_be_missing) {}
+
+    /// The threshold is above or not above each number.
+    Diagram numbers_in_order() {
+        std::vector<float> numbers{0.0F};
+        for (std::uint32_t n = 0; n < space_.numbers.count(); ++n) {
+            const float number = space_.numbers.number(etlprove::kFirstNumber + 2 * n);
+            numbers.push_back(number);
+            numbers.push_back(-number);
+        }
+        std::sort(numbers.begin(), numbers.end());
+        Diagram result = kAlways;
+        for (std::size_t n = 1; n < numbers.size(); ++n)
+            result = both(result, implies(number(numbers[n - 1]), number(numbers[n])));
+        return result;
+    }
+
+    Diagram sample(Place first, std::size_t atom) {
+        const Diagram low = variable(first + etlprove::kLow);
+        const Diagram negated_low = variable(first + etlprove::kNegatedLow);
+        const Diagram known = known_sample(low, negated_low, atoms_[atom]);
+        if (!may_be_missing_) return known;
+        const Diagram high = variable(first + etlprove::kHigh);
+        const Diagram negated_high = variable(first + etlprove::kNegatedHigh);
+        const reference::Unseen& range = atoms_[atom].missing;
+        const Diagram same = both(equal(low, high), equal(negated_low, negated_high));
+        const Diagram missing = both(
+            both(equal(low, number(range.lowest)), equal(negated_low, number(-range.lowest))),
+            both(equal(high, number(range.highest)), equal(negated_high, number(-range.highest))));
+        return either(both(same, known), missing);
+    }
+
+private:
+    Diagram variable(Place place) { return space_.diagrams.variable(place); }
+    Diagram number(double x) {
+        return space_.numbers.at_least(space_.diagrams, static_cast<float>(x));
+    }
+    Diagram both(Diagram a, Diagram b) { return space_.diagrams.both(a, b); }
+    Diagram either(Diagram a, Diagram b) { return space_.diagrams.either(a, b); }
+    Diagram no(Diagram a) { return space_.diagrams.complement(a); }
+    Diagram implies(Diagram a, Diagram b) { return either(no(a), b); }
+    Diagram equal(Diagram a, Diagram b) { return no(space_.diagrams.differ(a, b)); }
+
+    /// Whether a number x is at least the threshold t, and -x. If t > 0 only one can be, else at
+    /// least one is.
+    Diagram known_sample(Diagram value, Diagram negated, const Atom& atom) {
+        if (atom.is_truth) return equal(value, no(negated));
+        const Diagram sign =
+            space_.diagrams.choose(0, no(both(value, negated)), either(value, negated));
+        return both(both(sign, both(implies(value, number(atom.range.highest)),
+                                    implies(number(atom.range.lowest), value))),
+                    both(implies(negated, number(-atom.range.lowest)),
+                         implies(number(-atom.range.highest), negated)));
+    }
+
+    Space& space_;
+    const std::vector<Atom>& atoms_;
+    bool may_be_missing_;
+};
+
+/// Returns the variables of a way through the diagram that ends in kAlways.
+std::map<Place, bool> way(const Diagrams& diagrams, Diagram of) {
+    std::map<Place, bool> result;
+    while (of != kAlways) {
+        const Diagrams::Node node = diagrams[of];
+        const bool with = node.without == kNever;
+        result[node.place] = with;
+        of = with ? node.with : node.without;
+    }
+    return result;
+}
+
+/// Returns whether a function is true where these variables are, and no others.
+bool holds(const Diagrams& diagrams, Diagram of, const std::map<Place, bool>& variables) {
+    while (of > kAlways) {
+        const auto found = variables.find(diagrams[of].place);
+        of = found != variables.end() && found->second ? diagrams[of].with : diagrams[of].without;
+    }
+    return of == kAlways;
+}
+
+/// Chooses a threshold between the greatest number below it and the least that is not.
+float threshold_of(const etlprove::Numbers& numbers, const std::map<Place, bool>& variables) {
+    float above = INFINITY, below = -INFINITY;
+    for (const auto& [place, reached] : variables) {
+        if (place >= kFirstSample || place == 1) continue;
+        const float number = numbers.number(place);
+        (reached ? above : below) = reached ? std::min(above, number) : std::max(below, number);
+    }
+    if (std::isfinite(above)) return above;
+    return std::isfinite(below) ? below + 1 : 0;
+}
+
+/// Returns a number x in the range with x >= threshold and -x >= threshold as said.
+float number_of(float threshold, bool reached, bool negated_reached, const Atom& atom) {
+    const float least = static_cast<float>(atom.range.lowest);
+    const float greatest = static_cast<float>(atom.range.highest);
+    if (atom.is_truth) return reached ? INFINITY : -INFINITY;
+    float x = 0;
+    if (reached && !negated_reached) x = threshold > 0 ? threshold : 1 - threshold;
+    if (!reached && negated_reached) x = threshold > 0 ? -threshold : threshold - 1;
+    return std::clamp(x, least, greatest);
+}
+
+}  // namespace
+
+std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
+                                  const std::vector<Atom>& atoms, std::uint32_t steps,
+                                  bool may_be_missing) {
+    Diagrams& diagrams = space.diagrams;
+    Diagram differ = diagrams.differ(first, second);
+    if (differ == kNever) return std::nullopt;
+    Inputs inputs(space, atoms, may_be_missing);
+    for (const Atom& atom : atoms)  // so that numbers_in_order() has them
+        for (const double end :
+             {atom.range.lowest, atom.range.highest, atom.missing.lowest, atom.missing.highest})
+            static_cast<void>(space.numbers.at_least(diagrams, static_cast<float>(end)));
+    std::set<Place> samples;
+    for (const Place place : support(diagrams, differ))
+        if (place >= kFirstSample)
+            samples.insert(place - (place - kFirstSample) % kPlacesPerSample);
+    Diagram conditions = kAlways;
+    for (auto sample = samples.rbegin(); sample != samples.rend(); ++sample) {
+        const std::size_t atom = (*sample - kFirstSample) / kPlacesPerSample % atoms.size();
+        conditions = diagrams.both(inputs.sample(*sample, atom), conditions);
+    }
+    conditions = diagrams.both(inputs.numbers_in_order(), conditions);
+    differ = diagrams.both(differ, conditions);
+    if (differ == kNever) return std::nullopt;
+
+    const std::map<Place, bool> variables = way(diagrams, differ);
+    Witness witness;
+    witness.threshold = threshold_of(space.numbers, variables);
+    witness.first_reaches = holds(diagrams, first, variables);
+    const auto is = [&](Place place) {
+        const auto found = variables.find(place);
+        return found != variables.end() && found->second;
+    };
+    for (std::uint32_t step = 0; step < steps; ++step) {
+        witness.values.emplace_back();
+        for (std::size_t a = 0; a < atoms.size(); ++a) {
+            const Place at = place_of(step, a, atoms.size(), 0);
+            const bool low = is(at + etlprove::kLow), high = is(at + etlprove::kHigh);
+            const bool negated_low = is(at + etlprove::kNegatedLow);
+            const bool same = !may_be_missing || !samples.contains(at) ||
+                              (low == high && negated_low == is(at + etlprove::kNegatedHigh));
+            std::optional<float> value;
+            if (!samples.contains(at))
+                value = number_of(0, true, !atoms[a].is_truth, atoms[a]);
+            else if (same)
+                value = number_of(witness.threshold, low, negated_low, atoms[a]);
+            witness.values.back().push_back(value);
+        }
+    }
+    return witness;
+}
+
+}  // namespace etlc::prove
