@@ -13,14 +13,12 @@
 #include "emit/standalone.hpp"
 #include "plan/plan.hpp"
 #include "prove/definition.hpp"
+#include "prove/prove.hpp"
 #include "prove/symbol.hpp"
 
 namespace etlc::prove {
 
 using emit::RuntimeFile;
-
-/// Returns the headers that stand in for some of the runtime's, and the program around a class.
-const std::vector<RuntimeFile>& stand_in_files();
 
 /// What the program steps.
 struct Subject {

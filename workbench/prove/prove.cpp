@@ -152,6 +152,16 @@ std::uint32_t usual_steps(const plan::Plan& plan) {
     return std::max(64U, 2 * horizon + buffer);
 }
 
+float measured(const check::Predicate& predicate, float robustness) {
+    const float epsilon = predicate.threshold.value;
+    if (predicate.equality()) {
+        const bool is_equal =
+            (robustness > 0) == (predicate.comparison == check::Comparison::equal);
+        return is_equal ? epsilon : epsilon + 1;
+    }
+    return predicate.upper_bound() ? epsilon - robustness : epsilon + robustness;
+}
+
 diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
     if (plan.values == check::Values::boolean)
         return no_proof(

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "diag/diag.hpp"
+#include "emit/standalone.hpp"
 #include "plan/plan.hpp"
 #include "prove/definition.hpp"
 #include "prove/witness.hpp"
@@ -47,6 +48,12 @@ struct Proof {
     std::optional<std::pair<std::uint32_t, std::uint32_t>> repetition;
     std::optional<Fault> fault;
 };
+
+/// Returns a measurement at which a predicate has this robustness, up to rounding.
+float measured(const check::Predicate& predicate, float robustness);
+
+/// Returns the headers that stand in for some of the runtime's, and the program around a class.
+const std::vector<emit::RuntimeFile>& stand_in_files();
 
 /// Failures say why there is no proof.
 diag::Result<Proof> prove(const plan::Plan& plan, const Request& request);

@@ -47,7 +47,11 @@ constexpr Row kCommands[] = {
     {Command::label, "label", "SPEC.etl --data FILE...",
      "Serves a page, on this machine alone, on which you label the predicates of a spec in "
      "recorded "
-     "episodes."}};
+     "episodes."},
+    {Command::prove, "prove", "SPEC.etl",
+     "Proves that the temporal part of a generated class gives the verdicts of the definition, for "
+     "all\ninputs of a number of steps, or shows an input on which it does not. It needs a C++ "
+     "compiler, $CXX or c++."}};
 static_assert(std::size(kCommands) == kCommandCount);
 
 }  // namespace

@@ -29,8 +29,9 @@ enum class Command : std::uint8_t {
     incident,
     report,
     label,
+    prove,
 };
-inline constexpr std::size_t kCommandCount = 13;
+inline constexpr std::size_t kCommandCount = 14;
 
 /// The default of etlc crossvalidate.
 inline constexpr std::uint32_t kUsualFolds = 5;
@@ -38,7 +39,9 @@ inline constexpr std::uint32_t kUsualFolds = 5;
 struct Call : Request {
     explicit Call(Command of) : command(of) {
         if (of == Command::crossvalidate) folds = kUsualFolds;
-        if (of == Command::run || of == Command::explain || of == Command::incident) output = "-";
+        if (of == Command::run || of == Command::explain || of == Command::incident ||
+            of == Command::prove)
+            output = "-";
     }
 
     Command command;

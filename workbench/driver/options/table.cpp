@@ -1,4 +1,4 @@
-// The table of all options.
+// The table of most options, and the list of all.
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include "driver/commands/commands.hpp"
 #include "driver/options/mistakes.hpp"
 #include "driver/options/option.hpp"
+#include "driver/options/tables.hpp"
 
 namespace etlc::driver {
 
@@ -21,7 +22,8 @@ using enum Command;
 constexpr Commands kExecute = Commands(run) | explain;
 constexpr Commands kEvaluate = Commands(evaluate) | crossvalidate;
 /// The commands that plan monitors.
-constexpr Commands kPlan = kExecute | kEvaluate | compile | incident | report;
+constexpr Commands kPlan = kExecute | kEvaluate | compile | incident | report | prove;
+constexpr Commands kClass = Commands(compile) | prove;
 constexpr Commands kLearn = Commands(fit) | calibrate;
 constexpr Commands kReadEpisodes = kLearn | kEvaluate | report;
 constexpr Commands kFindEpisodes = kReadEpisodes | label;
@@ -106,28 +108,12 @@ Takes label_by() {
     return takes;
 }
 
-Takes label_table() {
-    return form("FILE", [](Call& call, const Takes::Words& words) {
-        return call.labels.tables = words, std::string();
-    });
-}
-
 Takes folds() {
     return number<std::uint32_t>(in(&Call::folds), 2, 1000);
 }
 
 Takes part() {
     return file(in(&Call::shard, &ShardRequest::part));
-}
-
-Takes frames() {
-    return text("ARRAY|PATTERN",
-                in(&Call::report, &Call::Report::frames, &report::FramesOption::text));
-}
-
-Takes page_size() {
-    return number<std::uint64_t>(in(&Call::report, &Call::Report::megabytes), 1, 1000,
-                                 std::to_string(report::kUsualMegabytes), "MB");
 }
 
 Takes spec() {
@@ -146,7 +132,7 @@ std::vector<Option> make_options() {
         {incident, "file", file(in(&Call::incident, &Call::Incident::file)),
          "file written by write_incident()", kRequired},
         {merge, "parts", texts("PART...", in(&Call::parts)), "the parts, in any order", kRequired},
-        {kExecute | kLearn | compile | embed | report | label, "spec", spec(),
+        {kExecute | kLearn | kClass | embed | report | label, "spec", spec(),
          "the spec, a .etl file", kRequired},
         {incident, "--spec", spec(), "the spec, a .etl file", kRequired},
         {kEvaluate, "spec", texts("SPEC.etl", in(&Call::specs)),
@@ -194,18 +180,18 @@ std::vector<Option> make_options() {
         {compile, "--standalone{portable}", standalone(),
          "include the runtime: one file in standard C++ to copy into firmware; --standalone=host: "
          "with vector instructions, selected by the CPU where possible"},
-        {compile, "--namespace", checked(text("NAME", in(&Call::name_space)), mistake_in_namespace),
+        {kClass, "--namespace", checked(text("NAME", in(&Call::name_space)), mistake_in_namespace),
          "namespace of the generated code (default: the spec's name)"},
-        {compile, "--explain", flag(in(&Call::explains)),
+        {kClass, "--explain", flag(in(&Call::explains)),
          "generate why_NAME(), which names the sample that decides a verdict, with its step, "
          "distance, threshold and nearest target"},
-        {compile, "--retargetable", retargetable(),
+        {kClass, "--retargetable", retargetable(),
          "store targets, thresholds, projections and numbers in STEM.params.bin beside STEM.hpp; "
          "the class can load another such file between steps, made by --emit params"},
-        {compile, "--recorder", checked(form("B,A,N", read_recorder), mistake_in_recorder),
+        {kClass, "--recorder", checked(form("B,A,N", read_recorder), mistake_in_recorder),
          "record the steps around each alarm: BEFORE,AFTER,INCIDENTS, such as 2s,1s,4 or 40,20,4; "
          "etlc incident prints the records"},
-        {compile, "--lets", lets(),
+        {kClass, "--lets", lets(),
          "also generate let_NAME() and robustness_NAME(), for lets that do not look ahead"},
         {compile, "--inline-targets", limit(&plan::Limits::inline_target_bytes),
          "largest target set in bytes that is written into the header; larger ones go to a file "
@@ -362,28 +348,6 @@ std::vector<Option> make_options() {
         {merge, "-o,--output", file(in(&Call::output)),
          "where to write the result, thresholds or JSON (default: the output of the call)"},
 
-        // etlc report
-        {Commands(report) | label, "--frames", frames(),
-         "camera frames: an array of the episodes (T x H x W x 3 uint8), or a pattern of PNG or "
-         "JPEG files, one a step, or of videos, in which {episode} stands for the episode's name: "
-         "'camera/{episode}/*.png'"},
-        {report, "--size", page_size(),
-         "size of the page; what does not fit is left out, starting with the best episodes, and "
-         "the page says so"},
-        {report, "--no-truths", flag(in(&Call::report, &Call::Report::without_truths)),
-         "show the verdicts without comparing them with truths"},
-        {report, "-o,--output", file(in(&Call::output)), "the page, an .html file", kRequired},
-
-        // etlc label
-        {label, "--labels", label_table(),
-         "table of labels to write, a .csv file (default: labels.csv beside the episodes)"},
-        {label, "--camera", text("NAME", in(&Call::label, &Call::Label::camera)),
-         "the camera of a data set whose folder --frames names, or that holds the episodes"},
-        {label, "--port", number<std::uint32_t>(in(&Call::label, &Call::Label::port), 1, 65535),
-         "port of the page (default: any free one)"},
-        {label, "--proposals", flag(in(&Call::label, &Call::Label::proposals)),
-         "print as JSON what the labelled episodes propose for the others, and serve no page"},
-
         {lsp, "--stdio", flag(in(&Call::on_standard_streams)),
          "accepted for clients that pass it; standard input and output are always used"},
     };
@@ -392,7 +356,12 @@ std::vector<Option> make_options() {
 }  // namespace
 
 const std::vector<Option>& options() {
-    static const std::vector<Option> all = make_options();
+    static const std::vector<Option> all = [] {
+        std::vector<Option> made = make_options();
+        for (Option& option : options_of_pages()) made.push_back(std::move(option));
+        for (Option& option : options_of_proofs()) made.push_back(std::move(option));
+        return made;
+    }();
     return all;
 }
 
