@@ -137,15 +137,17 @@ ValueOf<Number> PrefixOf<Number>::future(const Node& node, std::uint64_t k) {
     const std::size_t g = node.operands.size() - 1;
     const clauses::Future window(node, k, end_);
     Value result = clauses::all_of<Number>(-kInfinity);
-    Value held = clauses::all_of<Number>(kInfinity);  // min of f over [k, j)
-    for (std::uint64_t j = g > 0 ? k : window.first; j <= window.last; ++j) {
-        if (j >= window.first)
-            result = clauses::max(result, clauses::min(operand(node, g, j), held));
-        if (g > 0) held = clauses::min(held, operand(node, 0, j));
+    std::vector<Value> held{clauses::all_of<Number>(kInfinity)};  // [j - k]: min of f over [k, j)
+    for (std::uint64_t m = k; g > 0 && m <= window.last; ++m)
+        held.push_back(clauses::min(held.back(), operand(node, 0, m)));
+    // From the last position down, the order in which functions of all samples grow least.
+    for (std::uint64_t j = window.last + 1; j-- > window.first;) {
+        const Value witness = operand(node, g, j);
+        result = clauses::max(result, g > 0 ? clauses::min(witness, held[j - k]) : witness);
     }
     if (!window.reaches_past_end) return result;
     using clauses::max, clauses::min;
-    result.upper = max(result.upper, min(unseen_operand(node, g).highest, held.upper));
+    result.upper = max(result.upper, min(unseen_operand(node, g).highest, held.back().upper));
     return result;
 }
 

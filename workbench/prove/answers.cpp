@@ -38,26 +38,15 @@ Diagram Answers::known(std::uint32_t theirs) const {
 }
 
 std::uint32_t Answers::next() {
-    etlprove::Diagrams& diagrams = space_.diagrams;
     for (;;) {
         const std::uint32_t kind = word();
-        if (kind == kNumber) {
-            const float number = std::bit_cast<float>(word());
-            for (const float signed_number : {number, -number})
-                numbers_.push_back(space_.numbers.at_least(diagrams, signed_number));
-            continue;
-        }
+        if (kind == kNumber) throw NewNumber{std::bit_cast<float>(word())};
         if (kind != kNode) return kind;
         const std::uint32_t theirs = word();
         const Place place = word();
         const Diagram without = known(word());
         const Diagram with = known(word());
-        const bool is_number = place >= etlprove::kFirstNumber && place < etlprove::kFirstSample;
-        if (is_number && place - etlprove::kFirstNumber >= numbers_.size())
-            throw Ended{Ended::Why::failed, "contradicts itself"};
-        const Place ours =
-            is_number ? diagrams[numbers_[place - etlprove::kFirstNumber]].place : place;
-        known_[theirs] = diagrams.choose(ours, without, with);
+        known_[theirs] = space_.diagrams.choose(place, without, with);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <bit>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -53,7 +54,8 @@ std::string main_text(const plan::Plan& plan, const Subject& subject,
         "#include \"class.hpp\"\n#include \"etlprove/driver.hpp\"\n\n"
         "static void restart({0}::Monitor& monitor, uint32_t m) {{\n"
         "    (void)monitor, (void)m;\n{1}}}\n\n"
-        "int main() {{\n"
+        "int main(int count, char** words) {{\n"
+        "    etlprove::take_numbers(count - 1, words + 1);\n"
         "    etlprove::Class<{0}::Monitor> about{{{2}, {3}, {4}, {{{5}}}, {{{6}}}, restart, "
         "{7}}};\n"
         "    etlprove::Driver<{0}::Monitor, {0}::Verdicts>(about, {8}, {9}).run();\n}}\n",
@@ -120,8 +122,11 @@ diag::Result<Program> Program::make(const plan::Plan& plan, const Subject& subje
                     said.substr(at, std::min(said.find('\n', at), said.size()) - at)));
 }
 
-std::unique_ptr<data::Child> Program::start() const {
-    return data::Child::start(folder_ + "/program", {},
+std::unique_ptr<data::Child> Program::start(const std::set<float>& numbers) const {
+    std::vector<std::string> words;
+    for (const float number : numbers)
+        words.push_back(fmt::format("{:08x}", std::bit_cast<std::uint32_t>(number)));
+    return data::Child::start(folder_ + "/program", words,
                               {.max_silence_seconds = kMostSeconds, .heard = true});
 }
 

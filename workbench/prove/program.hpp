@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -39,7 +40,7 @@ public:
     Program& operator=(const Program&) = delete;
     ~Program();
 
-    std::unique_ptr<data::Child> start() const;
+    std::unique_ptr<data::Child> start(const std::set<float>& numbers) const;
     /// Returns the first line of what the compiler says of its version.
     const std::string& compiler() const { return compiler_; }
 
@@ -61,7 +62,7 @@ class Answers {
 public:
     Answers(data::Child& child, Space& space) : child_(child), space_(space) {}
 
-    /// Return the next entry, which must be of this kind. Throw Ended.
+    /// Return the next entry, which must be of this kind. Throw Ended and NewNumber.
     Numbers verdict();
     /// Whether all later restarts were alike.
     bool forgotten();
@@ -76,7 +77,6 @@ private:
 
     data::Child& child_;
     Space& space_;
-    std::vector<Diagram> numbers_;  ///< of constants, positive and negative
     std::unordered_map<std::uint32_t, Diagram> known_{{0, 0}, {1, 1}};
 };
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <set>
 
 #include "prove/program.hpp"
 
@@ -14,13 +16,17 @@ namespace {
 /// gives them.
 class Comparison {
 public:
-    Comparison(const plan::Plan& plan, Proof& proof, data::Child& child)
+    /// `done`: counts the steps whose verdicts were compared.
+    Comparison(const plan::Plan& plan, const std::set<float>& numbers, Proof& proof,
+               data::Child& child, std::uint32_t& done)
         : plan_(plan),
           proof_(proof),
+          space_(numbers),
           scope_(space_),
           answers_(child, space_),
           known_(plan, proof.atoms, proof.steps, false),
-          all_(plan, proof.atoms, proof.steps, true) {}
+          all_(plan, proof.atoms, proof.steps, true),
+          done_(done) {}
 
     /// Throws Ended and Exhausted.
     void run() {
@@ -37,7 +43,6 @@ public:
         if (!proof_.fault) proof_.repetition = answers_.repetition();
     }
 
-    std::uint32_t done() const { return done_; }
     bool forgets() const { return forgets_; }
 
 private:
@@ -128,7 +133,7 @@ private:
     Answers answers_;
     Definition known_;
     Definition all_;
-    std::uint32_t done_ = 0;
+    std::uint32_t& done_;
     bool forgets_ = true;
 };
 
@@ -162,6 +167,55 @@ float measured(const check::Predicate& predicate, float robustness) {
     return predicate.upper_bound() ? epsilon - robustness : epsilon + robustness;
 }
 
+namespace {
+
+/// Adds a number and its negation.
+void add(std::set<float>& numbers, double number) {
+    const auto rounded = static_cast<float>(number);
+    if (!std::isfinite(rounded)) return;
+    numbers.insert(rounded == 0 ? 0.0F : rounded);
+    numbers.insert(rounded == 0 ? 0.0F : -rounded);
+}
+
+std::set<float> numbers_of(const std::vector<Atom>& atoms) {
+    std::set<float> numbers{0.0F};
+    for (const Atom& atom : atoms)
+        for (const double number :
+             {atom.range.lowest, atom.range.highest, atom.missing.lowest, atom.missing.highest})
+            add(numbers, number);
+    return numbers;
+}
+
+std::string why(const Ended& ended) {
+    switch (ended.why) {
+        case Ended::Why::branches:
+            return "the class compares two values and branches on the result";
+        case Ended::Why::exhausted: return "the diagrams of the class are too large";
+        case Ended::Why::failed: break;
+    }
+    return fmt::format("the class, compiled for the proof, {}", ended.how);
+}
+
+/// Makes the proof with these numbers. Throws NewNumber.
+diag::Result<Proof> prove_with(const std::set<float>& numbers, const plan::Plan& plan,
+                               const Program& program, Proof proof) {
+    const auto child = program.start(numbers);
+    if (!child) return no_proof("cannot run the program that was compiled for the proof");
+    std::uint32_t done = 0;
+    try {
+        Comparison comparison(plan, numbers, proof, *child, done);
+        comparison.run();
+        proof.restarts = comparison.forgets();
+        return proof;
+    } catch (const Exhausted&) {
+        return no_proof("the diagrams of the definition are too large" + how_far(done));
+    } catch (const Ended& ended) {
+        return no_proof(why(ended) + how_far(done));
+    }
+}
+
+}  // namespace
+
 diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
     if (plan.values == check::Values::boolean)
         return no_proof(
@@ -170,35 +224,20 @@ diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
     Proof proof;
     proof.atoms = atoms_of(plan);
     proof.steps = request.steps > 0 ? request.steps : usual_steps(plan);
-    auto program =
+    const auto program =
         Program::make(plan, {request.header, request.name_space, proof.steps, 0}, proof.atoms);
     if (!program) return program.failure();
     proof.compiler = program->compiler();
-    const auto child = program->start();
-    if (!child) return no_proof("cannot run the program that was compiled for the proof");
-    std::uint32_t done = 0;
-    try {
-        Comparison comparison(plan, proof, *child);
+    std::set<float> numbers = numbers_of(proof.atoms);
+    constexpr std::size_t kMostNumbers = 10000;
+    while (numbers.size() < kMostNumbers) {
         try {
-            comparison.run();
-        } catch (const Exhausted&) {
-            return no_proof("the diagrams of the definition are too large" +
-                            how_far(comparison.done()));
-        } catch (const Ended& ended) {
-            done = comparison.done();
-            if (ended.why == Ended::Why::branches)
-                return no_proof("the class compares two values and branches on the result" +
-                                how_far(done));
-            if (ended.why == Ended::Why::exhausted)
-                return no_proof("the diagrams of the class are too large" + how_far(done));
-            return no_proof(
-                fmt::format("the class, compiled for the proof, {}{}", ended.how, how_far(done)));
+            return prove_with(numbers, plan, *program, proof);
+        } catch (const NewNumber& unknown) {
+            add(numbers, unknown.number);
         }
-        proof.restarts = comparison.forgets();
-    } catch (const Exhausted&) {
-        return no_proof("the diagrams of the samples are too large");
     }
-    return proof;
+    return no_proof("the class has too many numbers");
 }
 
 }  // namespace etlc::prove

@@ -1,6 +1,10 @@
 // The numbers of a proof: robustness as a function of all samples.
 #pragma once
 
+#include <cstdint>
+#include <set>
+#include <vector>
+
 #include "prove/stand_in/etlprove/diagrams.hpp"
 
 namespace etlc::prove {
@@ -11,8 +15,22 @@ using etlprove::Place;
 /// Thrown where the diagrams do not fit into memory.
 struct Exhausted {};
 
-/// The diagrams of one proof.
+/// Thrown where a number is not among those of the proof.
+struct NewNumber {
+    float number;
+};
+
+/// The diagrams of one proof, and its numbers.
 struct Space {
+    explicit Space(const std::set<float>& known)
+        : numbers(diagrams, std::vector<float>(known.begin(), known.end())) {}
+
+    Diagram at_least(float x) const {
+        const Diagram found = numbers.at_least(x);
+        if (found == etlprove::Numbers::kNoNumber) throw NewNumber{x};
+        return found;
+    }
+
     etlprove::Diagrams diagrams{kMostNodes, [] { throw Exhausted(); }};
     etlprove::Numbers numbers;
 
@@ -24,7 +42,7 @@ class Symbol {
 public:
     Symbol() = default;
     Symbol(double number)  // NOLINT(google-explicit-constructor)
-        : of_(space().numbers.at_least(space().diagrams, static_cast<float>(number))) {}
+        : of_(space().at_least(static_cast<float>(number))) {}
     static Symbol of(Diagram diagram) {
         Symbol symbol;
         symbol.of_ = diagram;

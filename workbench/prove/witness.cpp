@@ -36,21 +36,6 @@ public:
     Inputs(Space& space, const std::vector<Atom>& atoms, bool may_be_missing)
         : space_(space), atoms_(atoms), may_be_missing_(may_be_missing) {}
 
-    /// The threshold is above or not above each number.
-    Diagram numbers_in_order() {
-        std::vector<float> numbers{0.0F};
-        for (std::uint32_t n = 0; n < space_.numbers.count(); ++n) {
-            const float number = space_.numbers.number(etlprove::kFirstNumber + 2 * n);
-            numbers.push_back(number);
-            numbers.push_back(-number);
-        }
-        std::sort(numbers.begin(), numbers.end());
-        Diagram result = kAlways;
-        for (std::size_t n = 1; n < numbers.size(); ++n)
-            result = both(result, implies(number(numbers[n - 1]), number(numbers[n])));
-        return result;
-    }
-
     Diagram sample(Place first, std::size_t atom) {
         const Diagram low = variable(first + etlprove::kLow);
         const Diagram negated_low = variable(first + etlprove::kNegatedLow);
@@ -68,9 +53,7 @@ public:
 
 private:
     Diagram variable(Place place) { return space_.diagrams.variable(place); }
-    Diagram number(double x) {
-        return space_.numbers.at_least(space_.diagrams, static_cast<float>(x));
-    }
+    Diagram number(double x) { return space_.at_least(static_cast<float>(x)); }
     Diagram both(Diagram a, Diagram b) { return space_.diagrams.both(a, b); }
     Diagram either(Diagram a, Diagram b) { return space_.diagrams.either(a, b); }
     Diagram no(Diagram a) { return space_.diagrams.complement(a); }
@@ -81,8 +64,8 @@ private:
     /// least one is.
     Diagram known_sample(Diagram value, Diagram negated, const Atom& atom) {
         if (atom.is_truth) return equal(value, no(negated));
-        const Diagram sign =
-            space_.diagrams.choose(0, no(both(value, negated)), either(value, negated));
+        const Diagram sign = either(both(no(number(0)), no(both(value, negated))),
+                                    both(number(0), either(value, negated)));
         return both(both(sign, both(implies(value, number(atom.range.highest)),
                                     implies(number(atom.range.lowest), value))),
                     both(implies(negated, number(-atom.range.lowest)),
@@ -115,16 +98,12 @@ bool holds(const Diagrams& diagrams, Diagram of, const std::map<Place, bool>& va
     return of == kAlways;
 }
 
-/// Chooses a threshold between the greatest number below it and the least that is not.
+/// Returns a threshold: the first number that reaches it, or one that is above all.
 float threshold_of(const etlprove::Numbers& numbers, const std::map<Place, bool>& variables) {
-    float above = INFINITY, below = -INFINITY;
-    for (const auto& [place, reached] : variables) {
-        if (place >= kFirstSample || place == 1) continue;
-        const float number = numbers.number(place);
-        (reached ? above : below) = reached ? std::min(above, number) : std::max(below, number);
-    }
-    if (std::isfinite(above)) return above;
-    return std::isfinite(below) ? below + 1 : 0;
+    for (const auto& [place, reached] : variables)
+        if (reached && place >= etlprove::kFirstNumber && place < kFirstSample)
+            return numbers[place];
+    return numbers.all().back() + 1;
 }
 
 /// Returns a number x in the range with x >= threshold and -x >= threshold as said.
@@ -147,10 +126,6 @@ std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
     Diagram differ = diagrams.differ(first, second);
     if (differ == kNever) return std::nullopt;
     Inputs inputs(space, atoms, may_be_missing);
-    for (const Atom& atom : atoms)  // so that numbers_in_order() has them
-        for (const double end :
-             {atom.range.lowest, atom.range.highest, atom.missing.lowest, atom.missing.highest})
-            static_cast<void>(space.numbers.at_least(diagrams, static_cast<float>(end)));
     std::set<Place> samples;
     for (const Place place : support(diagrams, differ))
         if (place >= kFirstSample)
@@ -160,7 +135,6 @@ std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
         const std::size_t atom = (*sample - kFirstSample) / kPlacesPerSample % atoms.size();
         conditions = diagrams.both(inputs.sample(*sample, atom), conditions);
     }
-    conditions = diagrams.both(inputs.numbers_in_order(), conditions);
     differ = diagrams.both(differ, conditions);
     if (differ == kNever) return std::nullopt;
 

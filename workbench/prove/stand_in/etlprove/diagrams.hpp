@@ -16,21 +16,16 @@ using Diagram = std::uint32_t;
 constexpr Diagram kNever = 0;
 constexpr Diagram kAlways = 1;
 
-/// The variables, in their order. Place 0 is "0 is at least the threshold"; the next ones are those
-/// of numbers x > 0, a pair for x and -x; then samples, four a sample: its lower end, the negated
-/// lower end, its upper end and the negated upper end. So a variable and that of its negation are
-/// neighbours.
+/// The variables, in their order. Place 1 is what was read before it was written; then numbers, the
+/// least first; then samples, four a sample: its lower end, the negated lower end, its upper end
+/// and the negated upper end. So the variables of a sample and of its negation are neighbours.
 using Place = std::uint32_t;
+constexpr Place kUnwritten = 1;
 constexpr Place kFirstNumber = 2;
 constexpr Place kFirstSample = 1u << 16;
 constexpr Place kNoPlace = 0xffffffffu;
 constexpr Place kLow = 0, kNegatedLow = 1, kHigh = 2, kNegatedHigh = 3;
 constexpr Place kPlacesPerSample = 4;
-
-/// Returns the variable of the negated number or sample.
-constexpr Place negated(Place place) {
-    return place == 0 ? 0 : place ^ 1u;
-}
 
 class Diagrams {
 public:
@@ -74,12 +69,17 @@ public:
     /// The robustness, negated: max becomes min, and each variable that of the negation.
     Diagram negation(Diagram a) {
         if (a <= kAlways) return 1 - a;
+        const Place place = nodes_[a].place;
+        if (place >= kFirstNumber && place < kFirstSample) return negated_levels(a);
         return remembered(Operation::negation, a, 0, [&] {
             const Node of = nodes_[a];
             const Diagram with = negation(of.without), without = negation(of.with);
-            return choose(negated(of.place), without, with);
+            return choose(place == kUnwritten ? place : place ^ 1u, without, with);
         });
     }
+
+    /// Sets the number of numbers, which contain the negation of each.
+    void set_numbers(std::uint32_t count) { numbers_ = count; }
 
     /// `with` where the variable is true, else `without`.
     Diagram choose(Place place, Diagram without, Diagram with) {
@@ -108,7 +108,7 @@ private:
         Operation operation = Operation::none;
         Diagram a = 0, b = 0, result = 0;
     };
-    static constexpr std::uint32_t kResults = 1u << 18;
+    static constexpr std::uint32_t kResults = 1u << 20;
 
     static std::uint32_t hash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         std::uint64_t mixed = (std::uint64_t{a} << 32 | b) * 0x9e3779b97f4a7c15u;
@@ -117,6 +117,26 @@ private:
     }
 
     Place place_of(Diagram a) const { return nodes_[a].place; }
+
+    /// A number is at least the threshold where the threshold is not above it. The threshold is not
+    /// above the first number (level 0), only above that, and so on; a negation turns the levels
+    /// around.
+    Diagram negated_levels(Diagram a) {
+        return remembered(Operation::negation, a, 0, [&] {
+            std::vector<Diagram> levels;
+            Diagram rest = a;
+            for (std::uint32_t n = 0; n < numbers_; ++n) {
+                const bool asks = nodes_[rest].place == kFirstNumber + n;
+                levels.push_back(asks ? nodes_[rest].with : rest);
+                if (asks) rest = nodes_[rest].without;
+            }
+            levels.push_back(rest);
+            Diagram result = negation(levels[0]);
+            for (std::uint32_t n = 1; n <= numbers_; ++n)
+                result = choose(kFirstNumber + numbers_ - n, result, negation(levels[n]));
+            return result;
+        });
+    }
 
     template <class Find>
     Diagram remembered(Operation operation, Diagram a, Diagram b, const Find& find) {
@@ -176,36 +196,42 @@ private:
     }
 
     std::uint32_t most_;
+    std::uint32_t numbers_ = 0;
     void (*exhausted_)();
     std::vector<Node> nodes_;
     std::vector<Diagram> slots_;  ///< 0: free
     std::vector<Result> results_ = std::vector<Result>(kResults);
 };
 
-/// The variables of numbers, by their size.
+/// The numbers of a proof. A number is at least the threshold if some number that is not greater
+/// is; so equal functions of the threshold are equal diagrams, whatever numbers they name.
 class Numbers {
 public:
-    /// Returns the function "x is at least the threshold" of a number that is not NaN.
-    Diagram at_least(Diagrams& diagrams, float x) {
-        if (x == 0) return diagrams.variable(0);
-        const float size = x < 0 ? -x : x;
-        if (size > 3.402823466e38f) return x > 0 ? kAlways : kNever;
-        std::uint32_t at = 0;
-        while (at < sizes_.size() && sizes_[at] != size) ++at;
-        if (at == sizes_.size()) sizes_.push_back(size);
-        return diagrams.variable(kFirstNumber + 2 * at + (x < 0 ? 1u : 0u));
+    /// `numbers`: in order, finite, with the negation of each.
+    Numbers(Diagrams& diagrams, std::vector<float> numbers) : numbers_(std::move(numbers)) {
+        diagrams.set_numbers(static_cast<std::uint32_t>(numbers_.size()));
+        Diagram so_far = kNever;
+        for (std::uint32_t n = 0; n < numbers_.size(); ++n) {
+            so_far = diagrams.either(so_far, diagrams.variable(kFirstNumber + n));
+            at_least_.push_back(so_far);
+        }
     }
 
-    /// Returns the number of a variable.
-    float number(Place place) const {
-        if (place == 0) return 0;
-        const float size = sizes_[(place - kFirstNumber) / 2];
-        return place % 2 == 0 ? size : -size;
+    /// Returns "x is at least the threshold"; kNoNumber if x is not among the numbers.
+    static constexpr Diagram kNoNumber = 0xffffffffu;
+    Diagram at_least(float x) const {
+        if (x > 3.402823466e38f) return kAlways;
+        if (x < -3.402823466e38f) return kNever;
+        for (std::size_t n = 0; n < numbers_.size(); ++n)
+            if (numbers_[n] == x) return at_least_[n];
+        return kNoNumber;
     }
-    std::uint32_t count() const { return static_cast<std::uint32_t>(sizes_.size()); }
+    float operator[](Place place) const { return numbers_[place - kFirstNumber]; }
+    const std::vector<float>& all() const { return numbers_; }
 
 private:
-    std::vector<float> sizes_;
+    std::vector<float> numbers_;
+    std::vector<Diagram> at_least_;
 };
 
 }  // namespace etlprove

@@ -30,30 +30,37 @@ inline void put(uint32_t word) {
     _Exit(status);
 }
 
+/// Ends the program: it needs another number.
+[[noreturn]] inline void ask_for(float number) {
+    uint32_t bits = 0;
+    memcpy(&bits, &number, sizeof bits);
+    put(static_cast<uint32_t>(Entry::number));
+    put(bits);
+    stop(kNewNumber);
+}
+
+/// Reads the numbers of the proof: their bits, in order.
+inline void take_numbers(int count, char** words) {
+    std::vector<float> taken;
+    for (int n = 0; n < count; ++n) {
+        const uint32_t bits = static_cast<uint32_t>(strtoul(words[n], nullptr, 16));
+        float number = 0;
+        memcpy(&number, &bits, sizeof number);
+        taken.push_back(number);
+    }
+    Numbers& kept = numbers();  // which begins without numbers
+    kept = Numbers(diagrams(), taken);
+}
+
 /// Writes diagrams before those that contain them.
 class Sent {
 public:
     void send(Diagram of) {
-        for (; numbers_sent_ < numbers().count(); ++numbers_sent_) {
-            const float number = numbers().number(kFirstNumber + 2 * numbers_sent_);
-            put(static_cast<uint32_t>(Entry::number));
-            uint32_t bits = 0;
-            memcpy(&bits, &number, sizeof bits);
-            put(bits);
-        }
-        send_nodes(of);
-    }
-
-private:
-    std::vector<bool> sent_{true, true};
-    uint32_t numbers_sent_ = 0;
-
-    void send_nodes(Diagram of) {
         if (sent_.size() < diagrams().size()) sent_.resize(diagrams().size(), false);
         if (sent_[of]) return;
         const Diagrams::Node node = diagrams()[of];
-        send_nodes(node.without);
-        send_nodes(node.with);
+        send(node.without);
+        send(node.with);
         sent_[of] = true;
         put(static_cast<uint32_t>(Entry::node));
         put(of);
@@ -61,6 +68,9 @@ private:
         put(node.without);
         put(node.with);
     }
+
+private:
+    std::vector<bool> sent_{true, true};
 };
 
 // ---- the class ----------------------------------------------------------------------------------
@@ -77,7 +87,7 @@ struct Class {
     uint32_t finishes;  ///< calls of finish() that report something
 };
 
-template <class Monitor>
+template <class Monitor, class Verdicts>
 auto finish(Monitor& monitor, int) -> decltype(monitor.finish()) {
     return monitor.finish();
 }

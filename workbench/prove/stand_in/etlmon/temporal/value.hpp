@@ -14,7 +14,7 @@
 namespace etlprove {
 
 /// Ends of the program besides success, as its exit status.
-constexpr int kBranches = 10, kExhausted = 11;
+constexpr int kBranches = 10, kExhausted = 11, kNewNumber = 12;
 constexpr uint32_t kMostNodes = 40u << 20;
 
 [[noreturn]] void stop(int status);
@@ -24,9 +24,10 @@ inline Diagrams& diagrams() {
     return kept;
 }
 inline Numbers& numbers() {
-    static Numbers kept;
+    static Numbers kept(diagrams(), {});
     return kept;
 }
+[[noreturn]] void ask_for(float number);
 
 /// A diagram in the state of a class is marked, so that counters are told from diagrams.
 constexpr uint32_t kMark = 0xa0000000u;
@@ -34,9 +35,6 @@ constexpr uint32_t kMarkBits = 0xf0000000u;
 constexpr bool is_marked(uint32_t bits) {
     return (bits & kMarkBits) == kMark;
 }
-
-/// What is read before it is written: a variable that no verdict may depend on.
-constexpr Place kUnwritten = 1;
 
 inline Diagram diagram_of(uint32_t bits) {
     return is_marked(bits) ? bits & ~kMarkBits : diagrams().variable(kUnwritten);
@@ -71,7 +69,9 @@ ETLMON_INLINE float float_of_bits(uint32_t bits) noexcept {
     return detail::from_bits(bits);
 }
 ETLMON_INLINE Key key_of(const float& x) noexcept {
-    return Key::of(etlprove::numbers().at_least(etlprove::diagrams(), x));
+    const etlprove::Diagram found = etlprove::numbers().at_least(x);
+    if (found == etlprove::Numbers::kNoNumber) etlprove::ask_for(x);
+    return Key::of(found);
 }
 /// For telemetry, which is not proved.
 ETLMON_INLINE float float_of(Key) noexcept {
