@@ -8,7 +8,7 @@ namespace etlc::prove {
 
 namespace {
 
-enum Entry : std::uint32_t { kNumber = 1, kNode, kVerdict, kReset, kRepeats, kEnd };
+enum Entry : std::uint32_t { kNumber = 1, kNode, kVerdict, kReset, kWindow, kRepeats, kEnd };
 
 /// The exit statuses of the program, as stand_in/etlmon/temporal/value.hpp has them.
 constexpr int kBranches = 10;
@@ -67,10 +67,20 @@ bool Answers::forgotten() {
     return word() == 1;
 }
 
+std::optional<Window> Answers::window() {
+    last_ = next();
+    if (last_ != kWindow) return std::nullopt;
+    Window window;
+    window.length = word();
+    const std::uint32_t answer = word();
+    window.is_two_windows = answer == 1;
+    window.is_too_long = answer == 2;
+    return window;
+}
+
 std::optional<std::pair<std::uint32_t, std::uint32_t>> Answers::repetition() {
-    const std::uint32_t kind = next();
-    if (kind == kEnd) return std::nullopt;
-    if (kind != kRepeats) end();
+    if (last_ == kEnd) return std::nullopt;
+    if (last_ != kRepeats) end();
     const std::uint32_t before = word();
     return std::pair(before, word());
 }

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <regex>
+#include <set>
 #include <utility>
 
 namespace etlc::prove {
@@ -38,6 +40,23 @@ std::string indices(const plan::Plan& plan, bool repeating) {
     return fmt::format("{}", fmt::join(found, ", "));
 }
 
+/// Returns the windows of a class, by their types in the header, each once: "etlprove::
+/// window_of_class<etlmon::Greatest, M::Value, 41>()".
+std::string windows(const std::string& header, const std::string& name_space) {
+    static const std::regex kWindow(R"(etlmon::Window<\s*etlmon::(\w+)<Value>,\s*(\d+)>|)"
+                                    R"((?:AtLeast|AllBut)<Value,\s*(\d+),\s*(\d+)>)");
+    std::set<std::string> found;
+    for (std::sregex_iterator at(header.begin(), header.end(), kWindow), end; at != end; ++at) {
+        const std::smatch& match = *at;
+        const std::string of = match[1].matched
+                                   ? "etlmon::" + match[1].str()
+                                   : fmt::format("etlprove::Nth<{}>::Of", match[3].str());
+        found.insert(fmt::format("etlprove::window_of_class<{}, {}::Monitor::Value, {}>()", of,
+                                 name_space, match[match[1].matched ? 2 : 4].str()));
+    }
+    return fmt::format("{}", fmt::join(found, ",\n        "));
+}
+
 std::string main_text(const plan::Plan& plan, const Subject& subject,
                       const std::vector<Atom>& atoms) {
     std::string restarts;
@@ -51,7 +70,7 @@ std::string main_text(const plan::Plan& plan, const Subject& subject,
     std::size_t read = 0;
     for (const Atom& atom : atoms) read += atom.is_read ? 1 : 0;
     return fmt::format(
-        "#include \"class.hpp\"\n#include \"etlprove/driver.hpp\"\n\n"
+        "#include \"etlprove/driver.hpp\"\n#include \"class.hpp\"\n\n"
         "static void restart({0}::Monitor& monitor, uint32_t m) {{\n"
         "    (void)monitor, (void)m;\n{1}}}\n\n"
         "int main(int count, char** words) {{\n"
@@ -61,7 +80,7 @@ std::string main_text(const plan::Plan& plan, const Subject& subject,
         "    etlprove::Driver<{0}::Monitor, {0}::Verdicts>(about, {8}, {9}).run();\n}}\n",
         subject.name_space, restarts, read, atoms.size(), plan.monitors.size(),
         indices(plan, false), indices(plan, true), plan.has_sliding ? horizon : 0, subject.steps,
-        subject.settled);
+        subject.settled, windows(subject.header, subject.name_space));
 }
 
 /// Runs a command of the shell in the folder; $CXX may have several words.

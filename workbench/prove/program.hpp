@@ -57,6 +57,13 @@ struct Ended {
     std::string how;  ///< "was stopped by signal 11 (Segmentation fault)"
 };
 
+/// A window over pairs: whether it is one window of the lows and one of the highs.
+struct Window {
+    std::uint32_t length = 0;
+    bool is_two_windows = false;
+    bool is_too_long = false;  ///< for a proof of that
+};
+
 /// Reads what the program says, into the diagrams of this proof.
 class Answers {
 public:
@@ -66,7 +73,9 @@ public:
     Numbers verdict();
     /// Whether all later restarts were alike.
     bool forgotten();
-    /// The two steps with the same state, if there are any; it is the last entry.
+    /// The next window of the class, if there is one more.
+    std::optional<Window> window();
+    /// After the windows: the two steps with the same state, if there are any.
     std::optional<std::pair<std::uint32_t, std::uint32_t>> repetition();
 
 private:
@@ -77,6 +86,7 @@ private:
 
     data::Child& child_;
     Space& space_;
+    std::uint32_t last_ = 0;
     std::unordered_map<std::uint32_t, Diagram> known_{{0, 0}, {1, 1}};
 };
 

@@ -40,7 +40,9 @@ public:
             if (restarts(m) != check::Restarts::never) compare_restarted(m);
         for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m)
             if (restarts(m) == check::Restarts::when_final) compare_restarted(m);
-        if (!proof_.fault) proof_.repetition = answers_.repetition();
+        if (proof_.fault) return;
+        while (const auto window = answers_.window()) take(*window);
+        proof_.repetition = answers_.repetition();
     }
 
     bool forgets() const { return forgets_; }
@@ -119,6 +121,14 @@ private:
             if (const auto witness = difference(space_, found.*number, expected.*number,
                                                 proof_.atoms, at.step + 1, kind == Kind::missing))
                 return blame(at, name, *witness);
+    }
+
+    void take(const Window& window) {
+        if (!window.is_two_windows && !window.is_too_long)
+            throw Ended{Ended::Why::failed,
+                        fmt::format("mixes up its windows of {} steps where samples are missing",
+                                    window.length)};
+        (window.is_too_long ? proof_.long_windows : proof_.windows).push_back(window.length);
     }
 
     void blame(const Place& at, const std::string& number, Witness witness) {

@@ -41,9 +41,11 @@ struct Fault {
 struct Proof {
     std::vector<Atom> atoms;
     std::uint32_t steps = 0;
-    std::string compiler;        ///< its first line about its version
-    std::uint64_t verdicts = 0;  ///< that were compared
-    bool restarts = false;       ///< also after a restart of each monitor at each step
+    std::string compiler;                     ///< its first line about its version
+    std::uint64_t verdicts = 0;               ///< that were compared
+    bool restarts = false;                    ///< any sequence of restarts is covered
+    std::vector<std::uint32_t> windows;       ///< lengths of those that were proved to be two
+    std::vector<std::uint32_t> long_windows;  ///< and of those that are assumed to be
     /// The states before these steps are alike, and so are those of all later steps.
     std::optional<std::pair<std::uint32_t, std::uint32_t>> repetition;
     std::optional<Fault> fault;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -87,6 +88,26 @@ std::string certificate(const source::File& spec, const plan::Plan& plan, const 
         options_of(plan, request), library::kVersion, hash_of(emit::runtime_files()),
         hash_of(prove::stand_in_files()), proof.compiler, fmt::join(monitors, ", "), proof.steps,
         diag::counted(proof.steps, "step"), diag::counted(proof.verdicts, "verdict"));
+    const auto lengths = [](const std::vector<std::uint32_t>& windows) {
+        const std::set<std::uint32_t> each(windows.begin(), windows.end());
+        return fmt::format("{}", fmt::join(each, ", "));
+    };
+    if (!proof.windows.empty())
+        text += fmt::format(
+            "proved of its windows, of {} steps: missing samples may come in any "
+            "order, at any length\n",
+            lengths(proof.windows));
+    if (!proof.long_windows.empty())
+        text += fmt::format(
+            "assumed of its windows of {} steps, which are too long for this "
+            "proof: the same\n",
+            lengths(proof.long_windows));
+    const auto restarts = [](const plan::Monitor& monitor) {
+        return monitor.restarts != check::Restarts::never;
+    };
+    if (std::any_of(plan.monitors.begin(), plan.monitors.end(), restarts))
+        text += proof.restarts ? "proved for all sequences of restarts of one monitor\n"
+                               : "proved for one restart of one monitor\n";
     if (proof.repetition)
         text += fmt::format(
             "proved for inputs of any length: the states after {} and {} steps are alike\n",

@@ -13,13 +13,14 @@
 #include <vector>
 
 #include "etlmon/temporal/sourced.hpp"
+#include "etlprove/windows.hpp"
 
 namespace etlprove {
 
 // ---- output -------------------------------------------------------------------------------------
 
 /// The words that begin an entry; compiler/reads.cpp of etlc reads them.
-enum class Entry : uint32_t { number = 1, node, verdict, reset, repeats, end };
+enum class Entry : uint32_t { number = 1, node, verdict, reset, window, repeats, end };
 
 inline void put(uint32_t word) {
     if (fwrite(&word, sizeof word, 1, stdout) != 1) _Exit(1);
@@ -85,6 +86,7 @@ struct Class {
     std::vector<uint32_t> repeating;    ///< those that also restart after a final verdict
     void (*restart)(Monitor&, uint32_t monitor);
     uint32_t finishes;  ///< calls of finish() that report something
+    std::vector<WindowOfClass> windows;
 };
 
 template <class Monitor, class Verdicts>
@@ -114,10 +116,18 @@ public:
                 report(finish<Monitor, Verdicts>(**ended, 0));
         }
         states_.push_back(copy(state));
-        for (const uint32_t monitor : about_.restartable)
+        for (const uint32_t monitor : about_.restartable) {
+            left_over_.assign(steps_, {});
             for (uint32_t step = 1; step < steps_; ++step) run_restarted(monitor, step);
+        }
         for (uint32_t n = 0; n < about_.repeating.size(); ++n)
             for (uint32_t step = 1; step < steps_; ++step) run_repeated(n, step);
+        for (const WindowOfClass& window : about_.windows) {
+            put(static_cast<uint32_t>(Entry::window));
+            put(window.length);
+            put(window.is_two_windows == nullptr ? 2 : window.is_two_windows() ? 1 : 0);
+            fflush(stdout);
+        }
         find_repetition();
         put(static_cast<uint32_t>(Entry::end));
         stop(0);
@@ -136,6 +146,8 @@ private:
     uint32_t steps_;
     uint32_t settled_;  ///< the verdicts of later steps do not depend on samples before; or 0
     std::vector<State> states_;  ///< before each step, with every sample possibly missing
+    std::vector<std::set<uint32_t>> left_over_;  ///< [step]: words that earlier restarts change
+    std::set<uint32_t> counters_;                ///< words that count final verdicts
     Sent sent_;
 
     static State copy(const State& state) { return std::make_unique<Memory>(*state); }
@@ -186,11 +198,20 @@ private:
 
     void restart(Memory& state, uint32_t monitor) { about_.restart(*state, monitor); }
 
-    /// The monitor is restarted before the step. Where every later restart gives the state that it
-    /// would give without this one, all sequences of restarts are covered.
+    static constexpr size_t kWords = sizeof(Monitor) / sizeof(uint32_t);
+    static uint32_t word(const Memory& of, size_t at) {
+        uint32_t word = 0;
+        memcpy(&word, of.bytes + at * sizeof word, sizeof word);
+        return word;
+    }
+
+    /// The monitor is restarted before the step. Words of the state that depend on earlier restarts
+    /// are unwritten here, so that the verdicts prove that they do not count.
     void run_restarted(uint32_t monitor, uint32_t at) {
         State state = copy(states_[at]);
-        restart(*state, monitor);
+        about_.restart(**state, monitor);
+        for (const uint32_t word : left_over_[at])
+            memset(state->bytes + word * sizeof(uint32_t), 0, sizeof(uint32_t));
         run_from(std::move(state), monitor, at);
     }
 
@@ -200,22 +221,40 @@ private:
         finals().chosen = uint64_t{1} << n;
         advance(*state, at - 1, true);
         finals().chosen = 0;
+        State asked = copy(states_[at]);
+        about_.restart(**asked, about_.repeating[n]);
+        for (size_t at_word = 0; at_word < kWords; ++at_word)
+            if (!is_marked(word(*state, at_word)) && word(*state, at_word) != word(*asked, at_word))
+                counters_.insert(static_cast<uint32_t>(at_word));
         run_from(std::move(state), about_.repeating[n], at);
     }
 
     void run_from(State state, uint32_t monitor, uint32_t at) {
         bool forgotten = true;
         for (uint32_t step = at; step < steps_; ++step) {
-            if (step > at && forgotten) {
-                State again = copy(state), first = copy(states_[step]);
-                restart(*again, monitor);
-                restart(*first, monitor);
-                forgotten = memcmp(again->bytes, first->bytes, sizeof again->bytes) == 0;
-            }
+            if (step > at) forgotten = forgets(*state, monitor, step) && forgotten;
             report(advance(*state, step, true));
         }
         put(static_cast<uint32_t>(Entry::reset));
         put(forgotten ? 1 : 0);
+    }
+
+    /// Whether a restart before the step gives the state that it gives without the earlier one, but
+    /// for diagrams that are left over.
+    bool forgets(const Memory& restarted, uint32_t monitor, uint32_t step) {
+        Memory again = restarted;
+        State first = copy(states_[step]);
+        about_.restart(*again, monitor);
+        about_.restart(**first, monitor);
+        for (size_t at = 0; at < kWords; ++at) {
+            const uint32_t one = word(again, at), other = word(*first, at);
+            if (one == other || counters_.count(static_cast<uint32_t>(at)) != 0) continue;
+            const bool are_diagrams =
+                (one == 0 || is_marked(one)) && (other == 0 || is_marked(other));
+            if (!are_diagrams) return false;
+            left_over_[step].insert(static_cast<uint32_t>(at));
+        }
+        return true;
     }
 
     // ---- repetition
@@ -235,10 +274,8 @@ private:
     }
 
     bool repeats(const Memory& before, const Memory& later, uint32_t steps) const {
-        for (size_t at = 0; at + sizeof(uint32_t) <= sizeof(Monitor); at += sizeof(uint32_t)) {
-            uint32_t from = 0, to = 0;
-            memcpy(&from, before.bytes + at, sizeof from);
-            memcpy(&to, later.bytes + at, sizeof to);
+        for (size_t at = 0; at < kWords; ++at) {
+            const uint32_t from = word(before, at), to = word(later, at);
             if (from == to && !is_marked(from)) continue;
             const Place first = kFirstSample + (settled_ + 1) * about_.all_atoms * kPlacesPerSample;
             if (is_marked(from) && is_marked(to)) {
