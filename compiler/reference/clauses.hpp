@@ -137,17 +137,15 @@ ValueOf<Number> PrefixOf<Number>::future(const Node& node, std::uint64_t k) {
     const std::size_t g = node.operands.size() - 1;
     const clauses::Future window(node, k, end_);
     Value result = clauses::all_of<Number>(-kInfinity);
-    std::vector<Value> held{clauses::all_of<Number>(kInfinity)};  // [j - k]: min of f over [k, j)
-    for (std::uint64_t m = k; g > 0 && m <= window.last; ++m)
-        held.push_back(clauses::min(held.back(), operand(node, 0, m)));
-    // From the last position down, the order in which functions of all samples grow least.
-    for (std::uint64_t j = window.last + 1; j-- > window.first;) {
-        const Value witness = operand(node, g, j);
-        result = clauses::max(result, g > 0 ? clauses::min(witness, held[j - k]) : witness);
+    Value held = clauses::all_of<Number>(kInfinity);  // min of f over [k, j)
+    for (std::uint64_t j = g > 0 ? k : window.first; j <= window.last; ++j) {
+        if (j >= window.first)
+            result = clauses::max(result, clauses::min(operand(node, g, j), held));
+        if (g > 0) held = clauses::min(held, operand(node, 0, j));
     }
     if (!window.reaches_past_end) return result;
     using clauses::max, clauses::min;
-    result.upper = max(result.upper, min(unseen_operand(node, g).highest, held.back().upper));
+    result.upper = max(result.upper, min(unseen_operand(node, g).highest, held.upper));
     return result;
 }
 
@@ -159,13 +157,11 @@ ValueOf<Number> PrefixOf<Number>::past(const Node& node, std::uint64_t k) {
     const std::size_t g = node.operands.size() - 1;
     const clauses::Past window(node, k);
     Value result = clauses::all_of<Number>(-kInfinity);
-    if (window.empty) return result;
-    Value held = clauses::all_of<Number>(kInfinity);  // min of f over (j, k]
-    for (std::uint64_t back = g > 0 ? 0 : k - window.last; back <= k - window.first; ++back) {
-        const std::uint64_t j = k - back;
-        if (j <= window.last)
-            result = clauses::max(result, clauses::min(operand(node, g, j), held));
-        if (g > 0) held = clauses::min(held, operand(node, 0, j));
+    for (std::uint64_t j = window.first; !window.empty && j <= window.last; ++j) {
+        Value held = clauses::all_of<Number>(kInfinity);  // min of f over (j, k]
+        for (std::uint64_t m = j + 1; g > 0 && m <= k; ++m)
+            held = clauses::min(held, operand(node, 0, m));
+        result = clauses::max(result, clauses::min(operand(node, g, j), held));
     }
     return result;
 }

@@ -10,11 +10,6 @@
 
 namespace etlc::prove {
 
-Place place_of(std::uint32_t step, std::size_t atom, std::size_t atoms, Place end) {
-    return etlprove::kFirstSample +
-           static_cast<Place>(step * atoms + atom) * etlprove::kPlacesPerSample + end;
-}
-
 namespace {
 
 Atom atom_of(const check::Model& model, bool is_predicate, Index index) {
@@ -75,7 +70,7 @@ Definition::Definition(const plan::Plan& plan, const std::vector<Atom>& atoms, s
         const auto at = static_cast<std::size_t>(atom - atoms.begin());
         for (std::uint32_t step = 0; step < steps; ++step) {
             const auto end = [&](Place place) {
-                return Symbol::variable(place_of(step, at, atoms.size(), place));
+                return Symbol::variable(etlprove::place_of({step, steps}, at, atoms.size(), place));
             };
             const Place high = missing ? etlprove::kHigh : etlprove::kLow;
             const Place negated_high = missing ? etlprove::kNegatedHigh : etlprove::kNegatedLow;

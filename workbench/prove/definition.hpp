@@ -63,7 +63,4 @@ private:
     std::vector<std::unique_ptr<reference::PrefixOf<Symbol>>> prefixes_;  ///< by their end
 };
 
-/// Returns the variable of a sample.
-Place place_of(std::uint32_t step, std::size_t atom, std::size_t atoms, Place end);
-
 }  // namespace etlc::prove

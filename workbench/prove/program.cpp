@@ -76,7 +76,7 @@ std::string main_text(const plan::Plan& plan, const Subject& subject,
         "int main(int count, char** words) {{\n"
         "    etlprove::take_numbers(count - 1, words + 1);\n"
         "    etlprove::Class<{0}::Monitor> about{{{2}, {3}, {4}, {{{5}}}, {{{6}}}, restart, "
-        "{7}}};\n"
+        "{7},\n        {{{10}}}}};\n"
         "    etlprove::Driver<{0}::Monitor, {0}::Verdicts>(about, {8}, {9}).run();\n}}\n",
         subject.name_space, restarts, read, atoms.size(), plan.monitors.size(),
         indices(plan, false), indices(plan, true), plan.has_sliding ? horizon : 0, subject.steps,

@@ -118,8 +118,9 @@ private:
             {"lower", &Numbers::lower},
             {"upper", &Numbers::upper}};
         for (const auto& [name, number] : numbers)
-            if (const auto witness = difference(space_, found.*number, expected.*number,
-                                                proof_.atoms, at.step + 1, kind == Kind::missing))
+            if (const auto witness =
+                    difference(space_, found.*number, expected.*number, proof_.atoms, at.step + 1,
+                               proof_.steps, kind == Kind::missing))
                 return blame(at, name, *witness);
     }
 

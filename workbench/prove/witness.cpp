@@ -121,7 +121,7 @@ float number_of(float threshold, bool reached, bool negated_reached, const Atom&
 
 std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
                                   const std::vector<Atom>& atoms, std::uint32_t steps,
-                                  bool may_be_missing) {
+                                  std::uint32_t most_steps, bool may_be_missing) {
     Diagrams& diagrams = space.diagrams;
     Diagram differ = diagrams.differ(first, second);
     if (differ == kNever) return std::nullopt;
@@ -149,7 +149,7 @@ std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
     for (std::uint32_t step = 0; step < steps; ++step) {
         witness.values.emplace_back();
         for (std::size_t a = 0; a < atoms.size(); ++a) {
-            const Place at = place_of(step, a, atoms.size(), 0);
+            const Place at = etlprove::place_of({step, most_steps}, a, atoms.size(), 0);
             const bool low = is(at + etlprove::kLow), high = is(at + etlprove::kHigh);
             const bool negated_low = is(at + etlprove::kNegatedLow);
             const bool same = !may_be_missing || !samples.contains(at) ||

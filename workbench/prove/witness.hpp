@@ -18,11 +18,11 @@ struct Witness {
     bool first_reaches = false;
 };
 
-/// Finds an input of `steps` steps; nothing where the functions are equal on all inputs: where each
-/// sample is a number in its range or missing, and the negation of a number is minus that number.
-/// `may_be_missing`: some samples may be missing.
+/// Finds an input of `steps` steps, in a proof of `most_steps`; nothing where the functions are
+/// equal on all inputs: where each sample is a number in its range or missing, and the negation of
+/// a number is minus that number. `may_be_missing`: some samples may be missing.
 std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
                                   const std::vector<Atom>& atoms, std::uint32_t steps,
-                                  bool may_be_missing);
+                                  std::uint32_t most_steps, bool may_be_missing);
 
 }  // namespace etlc::prove

@@ -5,6 +5,7 @@
 // limited.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -17,8 +18,9 @@ constexpr Diagram kNever = 0;
 constexpr Diagram kAlways = 1;
 
 /// The variables, in their order. Place 1 is what was read before it was written; then numbers, the
-/// least first; then samples, four a sample: its lower end, the negated lower end, its upper end
-/// and the negated upper end. So the variables of a sample and of its negation are neighbours.
+/// least first; then samples, the last first, four a sample: its lower end, the negated lower end,
+/// its upper end and the negated upper end. So the variables of a sample and of its negation are
+/// neighbours.
 using Place = std::uint32_t;
 constexpr Place kUnwritten = 1;
 constexpr Place kFirstNumber = 2;
@@ -26,6 +28,17 @@ constexpr Place kFirstSample = 1u << 16;
 constexpr Place kNoPlace = 0xffffffffu;
 constexpr Place kLow = 0, kNegatedLow = 1, kHigh = 2, kNegatedHigh = 3;
 constexpr Place kPlacesPerSample = 4;
+
+/// A step of so many. The later samples come first, so that a step changes only the top of what it
+/// adds to.
+struct Step {
+    std::uint32_t step, of;
+};
+/// Returns the variable of an end of a sample.
+constexpr Place place_of(Step at, std::size_t atom, std::size_t atoms, Place end) {
+    return kFirstSample +
+           static_cast<Place>((at.of - 1 - at.step) * atoms + atom) * kPlacesPerSample + end;
+}
 
 class Diagrams {
 public:
@@ -89,13 +102,16 @@ public:
         return either(both(here, with), both(complement(here), without));
     }
 
-    /// The function whose variables from `from` on are `by` places later.
-    Diagram later(Diagram a, Place from, Place by) {
+    /// The function whose variables between the numbers and `before` are by so many places earlier,
+    /// those of later samples.
+    Diagram later(Diagram a, Place before, Place by) {
         if (a <= kAlways) return a;
         const Node of = nodes_[a];
+        if (of.place >= before) return a;
         return remembered(Operation::later, a, by, [&] {
-            const Diagram without = later(of.without, from, by), with = later(of.with, from, by);
-            return node(of.place < from ? of.place : of.place + by, without, with);
+            const Diagram without = later(of.without, before, by),
+                          with = later(of.with, before, by);
+            return node(of.place < kFirstSample ? of.place : of.place - by, without, with);
         });
     }
 

@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "etlmon/temporal/sourced.hpp"
 #include "etlprove/windows.hpp"
 
 namespace etlprove {
@@ -159,9 +158,9 @@ private:
     }
 
     etlmon::Value sample(uint32_t step, uint32_t atom, bool may_be_missing) const {
-        const Place first = kFirstSample + (step * about_.all_atoms + atom) * kPlacesPerSample;
         const auto end = [&](Place place) {
-            return etlmon::Key::of(diagrams().variable(first + place));
+            return etlmon::Key::of(
+                diagrams().variable(place_of({step, steps_}, atom, about_.all_atoms, place)));
         };
         return {end(kLow), end(may_be_missing ? kHigh : kLow)};
     }
@@ -277,9 +276,9 @@ private:
         for (size_t at = 0; at < kWords; ++at) {
             const uint32_t from = word(before, at), to = word(later, at);
             if (from == to && !is_marked(from)) continue;
-            const Place first = kFirstSample + (settled_ + 1) * about_.all_atoms * kPlacesPerSample;
+            const Place fixed = place_of({settled_, steps_}, 0, about_.all_atoms, 0);
             if (is_marked(from) && is_marked(to)) {
-                const Diagram moved = diagrams().later(diagram_of(from), first,
+                const Diagram moved = diagrams().later(diagram_of(from), fixed,
                                                        steps * about_.all_atoms * kPlacesPerSample);
                 if (moved == diagram_of(to)) continue;
                 return false;
