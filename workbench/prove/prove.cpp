@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <set>
 
@@ -91,6 +92,7 @@ private:
 
     void compare_restarted(std::uint32_t restarted) {
         for (std::uint32_t at = 1; at < proof_.steps && !proof_.fault; ++at) {
+            promised_.clear();
             for (std::uint32_t step = at; step < proof_.steps && !proof_.fault; ++step)
                 for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m) {
                     Place here = place(m, step);
@@ -110,18 +112,43 @@ private:
         if (at.decided)
             expected =
                 (kind == Kind::known ? known_ : all_).verdict(at.monitor, at.step, at.position);
-        if (found == expected) return;
         if (found.decided != expected.decided) return blame(at, "whether it is decided", Witness());
-        const std::pair<const char*, Diagram Numbers::*> numbers[] = {
-            {"robustness", &Numbers::low},
-            {"the greatest possible robustness", &Numbers::high},
-            {"lower", &Numbers::lower},
-            {"upper", &Numbers::upper}};
-        for (const auto& [name, number] : numbers)
-            if (const auto witness =
-                    difference(space_, found.*number, expected.*number, proof_.atoms, at.step + 1,
-                               proof_.steps, kind == Kind::missing))
-                return blame(at, name, *witness);
+        if (!found.decided) return;
+        check(at, kind, "robustness", found.low, expected.low);
+        check(at, kind, "the greatest possible robustness", found.high, expected.high);
+        if (plan_.monitors[at.monitor].sliding) {
+            check(at, kind, "lower", found.lower, expected.lower);
+            check(at, kind, "upper", found.upper, expected.upper);
+        } else if (at.finishes == 0) {
+            check_bounds(at, kind, found, expected);
+            last_[at.monitor] = found;
+        } else {  // "a prefix monitor repeats its last verdict"
+            check(at, kind, "lower", found.lower, last_[at.monitor].lower);
+            check(at, kind, "upper", found.upper, last_[at.monitor].upper);
+        }
+    }
+
+    /// Bounds may be tighter than the definition's, if no later verdict leaves them.
+    void check_bounds(const Place& at, Kind kind, const Numbers& found, const Numbers& expected) {
+        const auto least = [&](Diagram a, Diagram b) { return space_.diagrams.both(a, b); };
+        check(at, kind, "lower", least(found.lower, expected.lower), expected.lower);
+        check(at, kind, "upper", least(found.upper, expected.upper), found.upper);
+        Bounds& promised = promised_[{at.monitor, kind}];
+        check(at, kind, "the robustness, which an earlier lower bound exceeds,",
+              least(promised.lower, found.low), promised.lower);
+        check(at, kind, "the robustness, which exceeds an earlier upper bound,",
+              least(promised.upper, found.high), found.high);
+        if (found.lower != expected.lower)
+            promised.lower = space_.diagrams.either(promised.lower, found.lower);
+        if (found.upper != expected.upper) promised.upper = least(promised.upper, found.upper);
+    }
+
+    void check(const Place& at, Kind kind, const std::string& name, Diagram found,
+               Diagram expected) {
+        if (proof_.fault || found == expected) return;
+        const auto witness = difference(space_, found, expected, proof_.atoms, at.step + 1,
+                                        proof_.steps, kind == Kind::missing);
+        if (witness) blame(at, name, *witness);
     }
 
     void take(const Window& window) {
@@ -144,6 +171,13 @@ private:
     Answers answers_;
     Definition known_;
     Definition all_;
+    /// The tightest bounds that a monitor has given so far, of those that the definition lacks.
+    struct Bounds {
+        Diagram lower = etlprove::kNever;
+        Diagram upper = etlprove::kAlways;
+    };
+    std::map<std::pair<std::uint32_t, Kind>, Bounds> promised_;
+    std::map<std::uint32_t, Numbers> last_;  ///< verdict of each prefix monitor
     std::uint32_t& done_;
     bool forgets_ = true;
 };

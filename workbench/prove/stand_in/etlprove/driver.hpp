@@ -183,9 +183,9 @@ private:
                    reinterpret_cast<const unsigned char*>(&verdicts) + m * sizeof verdict,
                    sizeof verdict);
             const bool decided = is_marked(verdict.status.high);
-            const Diagram numbers[] = {verdict.robustness.diagram(),
-                                       diagram_of(verdict.status.high), verdict.lower.diagram(),
-                                       verdict.upper.diagram()};
+            const Diagram numbers[] = {verdict.robustness.key.diagram(),
+                                       diagram_of(verdict.status.high), verdict.lower.key.diagram(),
+                                       verdict.upper.key.diagram()};
             for (const Diagram number : numbers)
                 if (decided) sent_.send(number);
             put(static_cast<uint32_t>(Entry::verdict));

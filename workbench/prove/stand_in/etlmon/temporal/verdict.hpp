@@ -53,10 +53,17 @@ struct Status {
     constexpr operator uint32_t() const noexcept { return 0; }
 };
 
+/// A number of a verdict. As a float, for telemetry, it is not proved.
+struct Shown {
+    Key key;
+    constexpr Shown(Key of) noexcept : key(of) {}
+    operator float() const noexcept { return 0; }
+};
+
 struct Verdict : Answers<Verdict> {
-    Key robustness = Key::marked(0);
-    Key lower = Key::marked(0);
-    Key upper = Key::marked(0);
+    Shown robustness = Key::marked(0);
+    Shown lower = Key::marked(0);
+    Shown upper = Key::marked(0);
     Status status = {0};
 
     bool final() const noexcept {
