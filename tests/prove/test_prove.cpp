@@ -1,47 +1,18 @@
 // Tests `etlc prove` on random specs: their classes are proved, and those of a faulty plan are not.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstdlib>
-#include <optional>
+#include <cstdint>
+#include <iterator>
 #include <string>
-#include <vector>
 
-#include "emit/emit.hpp"
-#include "library/version.hpp"
-#include "loading.hpp"
-#include "pipeline/compile.hpp"
-#include "plan/evaluate/evaluator.hpp"
 #include "prove/prove.hpp"
-#include "random.hpp"
+#include "proving.hpp"
 #include "random_spec.hpp"
-#include "random_trace.hpp"
 
 namespace {
 
 using namespace etlc;
 using namespace etlc::tests;
-
-constexpr plan::Limits kAnySize{16U << 20U, 16U << 20U, 64U << 20U};
-
-/// Factor on the number of random specs; ETLC_EFFORT=10 for 200 formulas and more.
-int effort() {
-    const char* text = std::getenv("ETLC_EFFORT");
-    return text == nullptr ? 1 : std::max(1, std::atoi(text));
-}
-
-std::optional<pipeline::Compiled> compiled(const std::string& text, check::Values values) {
-    auto model = load(text);
-    if (!model) return std::nullopt;
-    diag::Sink sink;
-    return pipeline::compile(std::move(*model), {.limits = kAnySize, .values = values}, sink);
-}
-
-diag::Result<prove::Proof> proof_of(const plan::Plan& plan, std::uint32_t steps) {
-    return prove::prove(
-        plan, {emit::header(plan, {"proved", library::kVersion, "", "proved.targets.bin"}), "proved", steps});
-}
 
 const SpecShape kShapes[] = {
     {.formulas = SpecShape::Formulas::mixed, .depth = 3, .window = 4, .missing = 0.3},

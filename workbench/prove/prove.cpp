@@ -115,7 +115,8 @@ private:
         if (found.decided != expected.decided) return blame(at, "whether it is decided", Witness());
         if (!found.decided) return;
         check(at, kind, "robustness", found.low, expected.low);
-        check(at, kind, "the greatest possible robustness", found.high, expected.high);
+        // Only its sign is seen, in the status.
+        check(at, kind, "the greatest possible robustness", found.high, expected.high, true);
         if (plan_.monitors[at.monitor].sliding) {
             check(at, kind, "lower", found.lower, expected.lower);
             check(at, kind, "upper", found.upper, expected.upper);
@@ -143,11 +144,11 @@ private:
         if (found.upper != expected.upper) promised.upper = least(promised.upper, found.upper);
     }
 
-    void check(const Place& at, Kind kind, const std::string& name, Diagram found,
-               Diagram expected) {
+    void check(const Place& at, Kind kind, const std::string& name, Diagram found, Diagram expected,
+               bool at_zero = false) {
         if (proof_.fault || found == expected) return;
         const auto witness = difference(space_, found, expected, proof_.atoms, at.step + 1,
-                                        proof_.steps, kind == Kind::missing);
+                                        proof_.steps, kind == Kind::missing, at_zero);
         if (witness) blame(at, name, *witness);
     }
 

@@ -36,6 +36,13 @@ public:
     Inputs(Space& space, const std::vector<Atom>& atoms, bool may_be_missing)
         : space_(space), atoms_(atoms), may_be_missing_(may_be_missing) {}
 
+    /// 0 reaches the threshold, and the number before it does not.
+    Diagram threshold_is_zero() {
+        const std::vector<float>& all = space_.numbers.all();
+        const auto zero = std::find(all.begin(), all.end(), 0.0F);
+        return zero == all.begin() ? number(0) : both(number(0), no(number(*(zero - 1))));
+    }
+
     Diagram sample(Place first, std::size_t atom) {
         const Diagram low = variable(first + etlprove::kLow);
         const Diagram negated_low = variable(first + etlprove::kNegatedLow);
@@ -121,7 +128,7 @@ float number_of(float threshold, bool reached, bool negated_reached, const Atom&
 
 std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
                                   const std::vector<Atom>& atoms, std::uint32_t steps,
-                                  std::uint32_t most_steps, bool may_be_missing) {
+                                  std::uint32_t most_steps, bool may_be_missing, bool at_zero) {
     Diagrams& diagrams = space.diagrams;
     Diagram differ = diagrams.differ(first, second);
     if (differ == kNever) return std::nullopt;
@@ -135,6 +142,7 @@ std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
         const std::size_t atom = (*sample - kFirstSample) / kPlacesPerSample % atoms.size();
         conditions = diagrams.both(inputs.sample(*sample, atom), conditions);
     }
+    if (at_zero) conditions = diagrams.both(conditions, inputs.threshold_is_zero());
     differ = diagrams.both(differ, conditions);
     if (differ == kNever) return std::nullopt;
 

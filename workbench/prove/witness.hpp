@@ -23,6 +23,7 @@ struct Witness {
 /// a number is minus that number. `may_be_missing`: some samples may be missing.
 std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
                                   const std::vector<Atom>& atoms, std::uint32_t steps,
-                                  std::uint32_t most_steps, bool may_be_missing);
+                                  std::uint32_t most_steps, bool may_be_missing,
+                                  bool at_zero = false);
 
 }  // namespace etlc::prove
