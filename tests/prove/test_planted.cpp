@@ -52,10 +52,13 @@ std::vector<Fault> faults_of(const plan::Plan& plan) {
             faults.emplace_back([r](plan::Plan& of) { of.readings[r].max = !of.readings[r].max; });
         for (std::size_t a = 0; a < reading.straight.assignments.size(); ++a)
             for (const bool low : {true, false})
-                for (const bool up : {true, false})
+                for (const bool up : {true, false}) {
+                    // A local is assigned at every position.
+                    if (reading.straight.assignments[a].target != plan::Term::Kind::reg) continue;
                     faults.emplace_back([=](plan::Plan& of) {
                         change_interval(of.readings[r].straight.assignments[a].positions, low, up);
                     });
+                }
         for (std::size_t t = 0; t + 1 < reading.table.transitions.size(); ++t)
             faults.emplace_back([r, t](plan::Plan& of) {
                 auto& transitions = of.readings[r].table.transitions;
@@ -71,12 +74,17 @@ std::vector<Fault> faults_of(const plan::Plan& plan) {
 
 using Verdicts = std::vector<etlmon::Verdict>;
 
-bool differ(const Verdicts& a, const Verdicts& b) {
-    for (std::size_t m = 0; m < a.size(); ++m)
-        if (a[m].status != b[m].status ||
-            (a[m].decided() && (a[m].robustness != b[m].robustness || a[m].lower != b[m].lower ||
-                                a[m].upper != b[m].upper)))
-            return true;
+/// Whether verdicts differ. Bounds may be tighter than the definition's, unless they count.
+bool differ(const Verdicts& a, const Verdicts& b, bool with_bounds) {
+    for (std::size_t m = 0; m < a.size(); ++m) {
+        const auto status = [&](const etlmon::Verdict& of) {
+            return with_bounds ? of.status : of.status & ~std::uint32_t{etlmon::Verdict::kFinal};
+        };
+        if (status(a[m]) != status(b[m])) return true;
+        if (!a[m].decided()) continue;
+        if (a[m].robustness != b[m].robustness) return true;
+        if (with_bounds && (a[m].lower != b[m].lower || a[m].upper != b[m].upper)) return true;
+    }
     return false;
 }
 
@@ -88,7 +96,7 @@ bool differ(const plan::Plan& one, const plan::Plan& other, int traces) {
         first.reset();
         second.reset();
         for (const reference::Step& step : trace)
-            if (differ(first.step(samples(step)), second.step(samples(step)))) return true;
+            if (differ(first.step(samples(step)), second.step(samples(step)), false)) return true;
     }
     return false;
 }
@@ -111,10 +119,10 @@ bool is_shown(const plan::Plan& right, const plan::Plan& wrong, const prove::Pro
             sample.values = {predicate ? prove::measured(*predicate, *known)
                                        : (*known > 0 ? 1.0F : 0.0F)};
         }
-        shown = differ(first.step(inputs), second.step(inputs));
+        shown = differ(first.step(inputs), second.step(inputs), true);
     }
     for (std::uint32_t call = 0; call < fault.finishes; ++call)
-        shown = differ(first.finish(), second.finish());
+        shown = differ(first.finish(), second.finish(), true);
     return shown;
 }
 

@@ -2,7 +2,7 @@
 // Takes: the number of steps, and what the program knows of the class. Gives: on standard output,
 // for each verdict the diagrams of its numbers, and every diagram once, before its first use.
 // Keeps true: the class is used through its public functions only; it begins in reset(), in memory
-// of zeros.
+// that is not zero, so that a member that reset() leaves out is noticed.
 #pragma once
 
 #include <stdio.h>
@@ -104,8 +104,8 @@ public:
         : about_(std::move(about)), steps_(steps), settled_(settled) {}
 
     void run() {
-        State known = fresh();
-        State state = fresh();
+        State known = fresh(0x01);
+        State state = fresh(kNeverSet);
         for (uint32_t step = 0; step < steps_; ++step) {
             states_.push_back(copy(state));
             report(advance(*known, step, false));
@@ -150,9 +150,12 @@ private:
     Sent sent_;
 
     static State copy(const State& state) { return std::make_unique<Memory>(*state); }
-    State fresh() const {
+    /// Returns a state after reset(), in memory that held something else before.
+    static constexpr unsigned char kNeverSet = 0x5b;
+    static constexpr uint32_t kNeverSetWord = 0x5b5b5b5b;
+    static State fresh(unsigned char before) {
         State state = std::make_unique<Memory>();
-        memset(state->bytes, 0, sizeof state->bytes);
+        memset(state->bytes, before, sizeof state->bytes);
         (**state).reset();
         return state;
     }
@@ -210,7 +213,7 @@ private:
         State state = copy(states_[at]);
         about_.restart(**state, monitor);
         for (const uint32_t word : left_over_[at])
-            memset(state->bytes + word * sizeof(uint32_t), 0, sizeof(uint32_t));
+            memset(state->bytes + word * sizeof(uint32_t), kNeverSet, sizeof(uint32_t));
         run_from(std::move(state), monitor, at);
     }
 
@@ -248,8 +251,8 @@ private:
         for (size_t at = 0; at < kWords; ++at) {
             const uint32_t one = word(again, at), other = word(*first, at);
             if (one == other || counters_.count(static_cast<uint32_t>(at)) != 0) continue;
-            const bool are_diagrams =
-                (one == 0 || is_marked(one)) && (other == 0 || is_marked(other));
+            const bool are_diagrams = (one == kNeverSetWord || is_marked(one)) &&
+                                      (other == kNeverSetWord || is_marked(other));
             if (!are_diagrams) return false;
             left_over_[step].insert(static_cast<uint32_t>(at));
         }
