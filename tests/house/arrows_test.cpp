@@ -45,11 +45,12 @@ const std::map<std::string, Names> kArrows = {
     {"evaluate", {"episodes", "pipeline"}},
     {"report", {"explain", "fit", "evaluate"}},
     {"label", {"calibrate", "report"}},
+    {"prove", {"emit", "reference", "pipeline"}},
     {"library", {"parse", "explain", "pipeline"}},
     {"lsp", {"library"}},
     {"driver",
      {"library", "parse", "emit", "explain", "embed", "fit", "calibrate", "evaluate", "report",
-      "label", "lsp"}},
+      "label", "lsp", "prove"}},
 };
 
 /// Stages after check, which must not include ast although the relation would allow it.

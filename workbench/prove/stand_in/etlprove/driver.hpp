@@ -1,8 +1,8 @@
 // Steps a class on symbols, for `etlc prove`, whose program includes the header and this file.
 // Takes: the number of steps, and what the program knows of the class. Gives: on standard output,
 // for each verdict the diagrams of its numbers, and every diagram once, before its first use.
-// Keeps true: the class is used through its public functions only; it begins in reset(), in memory
-// that is not zero, so that a member that reset() leaves out is noticed.
+// Keeps true: the class is used through its public functions only; it begins in reset(), in the
+// first episode and in a later one, so that a member that reset() leaves out is noticed.
 #pragma once
 
 #include <stdio.h>
@@ -104,8 +104,8 @@ public:
         : about_(std::move(about)), steps_(steps), settled_(settled) {}
 
     void run() {
-        State known = fresh(0x01);
-        State state = fresh(kNeverSet);
+        State known = first_episode();
+        State state = later_episode();
         for (uint32_t step = 0; step < steps_; ++step) {
             states_.push_back(copy(state));
             report(advance(*known, step, false));
@@ -150,12 +150,32 @@ private:
     Sent sent_;
 
     static State copy(const State& state) { return std::make_unique<Memory>(*state); }
-    /// Returns a state after reset(), in memory that held something else before.
-    static constexpr unsigned char kNeverSet = 0x5b;
-    static constexpr uint32_t kNeverSetWord = 0x5b5b5b5b;
-    static State fresh(unsigned char before) {
+    static constexpr size_t kWords = sizeof(Monitor) / sizeof(uint32_t);
+    static uint32_t word(const Memory& of, size_t at) {
+        uint32_t word = 0;
+        memcpy(&word, of.bytes + at * sizeof word, sizeof word);
+        return word;
+    }
+    static void set(Memory& of, size_t at, uint32_t word) {
+        memcpy(of.bytes + at * sizeof word, &word, sizeof word);
+    }
+
+    /// A word that held a diagram and was not written since.
+    static constexpr uint32_t kNeverSet = 0x5b5b5b5b;
+
+    static State first_episode() {
         State state = std::make_unique<Memory>();
-        memset(state->bytes, before, sizeof state->bytes);
+        memset(state->bytes, 0, sizeof state->bytes);
+        (**state).reset();
+        return state;
+    }
+
+    /// Returns a state that reset() has made of a used one, whose values no verdict may depend on.
+    State later_episode() {
+        State state = first_episode();
+        for (uint32_t step = 0; step < steps_ / 2 + 1; ++step) advance(*state, step, true);
+        for (size_t at = 0; at < kWords; ++at)
+            if (is_marked(word(*state, at))) set(*state, at, kNeverSet);
         (**state).reset();
         return state;
     }
@@ -200,20 +220,12 @@ private:
 
     void restart(Memory& state, uint32_t monitor) { about_.restart(*state, monitor); }
 
-    static constexpr size_t kWords = sizeof(Monitor) / sizeof(uint32_t);
-    static uint32_t word(const Memory& of, size_t at) {
-        uint32_t word = 0;
-        memcpy(&word, of.bytes + at * sizeof word, sizeof word);
-        return word;
-    }
-
     /// The monitor is restarted before the step. Words of the state that depend on earlier restarts
     /// are unwritten here, so that the verdicts prove that they do not count.
     void run_restarted(uint32_t monitor, uint32_t at) {
         State state = copy(states_[at]);
         about_.restart(**state, monitor);
-        for (const uint32_t word : left_over_[at])
-            memset(state->bytes + word * sizeof(uint32_t), kNeverSet, sizeof(uint32_t));
+        for (const uint32_t word : left_over_[at]) set(*state, word, kNeverSet);
         run_from(std::move(state), monitor, at);
     }
 
@@ -251,8 +263,8 @@ private:
         for (size_t at = 0; at < kWords; ++at) {
             const uint32_t one = word(again, at), other = word(*first, at);
             if (one == other || counters_.count(static_cast<uint32_t>(at)) != 0) continue;
-            const bool are_diagrams = (one == kNeverSetWord || is_marked(one)) &&
-                                      (other == kNeverSetWord || is_marked(other));
+            const bool are_diagrams =
+                (one == kNeverSet || is_marked(one)) && (other == kNeverSet || is_marked(other));
             if (!are_diagrams) return false;
             left_over_[step].insert(static_cast<uint32_t>(at));
         }
