@@ -50,7 +50,7 @@ std::optional<std::string> header_text(const source::File& spec, const plan::Pla
         sink.report(data::in_file(text.failure(), request.prove.header));
         return std::nullopt;
     }
-    if (text->find("ETLMON_STANDALONE") == std::string::npos) return std::move(*text);
+    if (text->find("ETLMON_PASTED_") == std::string::npos) return std::move(*text);
     sink.report(data::in_file({diag::Code::no_proof,
                                "contains the runtime; expected a header without --standalone, "
                                "whose class has the same text"},
