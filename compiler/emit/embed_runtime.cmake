@@ -1,5 +1,6 @@
 # Writes OUTPUT, a C++ source that holds the files of RUNTIME (an include folder) as text, for the
-# function SPACE::FUNCTION, which INCLUDE declares: what --standalone pastes, or etlc prove compiles.
+# function SPACE::FUNCTION, which INCLUDE declares: --standalone pastes them, or etlc prove compiles
+# them.
 file(GLOB_RECURSE headers RELATIVE "${RUNTIME}" "${RUNTIME}/*.hpp" "${RUNTIME}/*.inc")
 set(source "#include \"${INCLUDE}\"\n\nnamespace ${SPACE} {\n\n")
 string(APPEND source

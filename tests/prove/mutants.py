@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """mutants.py ETLC RUNTIME FOLDER COUNT: changes generated headers and has `etlc prove` judge them.
 
-Each of COUNT mutants (times ETLC_EFFORT) differs from a header of specs/ in one place of its temporal part: an index, a
-bound, min for max, one end for the other, a reset left out. One that is refuted has to give, on the
-input that is shown, other verdicts than the header and than `etlc run`; one that is proved has to
-give the same verdicts as the header on random inputs.
+Each of COUNT mutants (times ETLC_EFFORT) differs from a header of specs/ in one place of its
+temporal part: an index, a bound, min for max, one end for the other, a reset left out. One that is
+refuted has to give, on the input that is shown, other verdicts than the header, whose verdicts are
+those of `etlc run`; one that is proved has to give the same verdicts as the header on random
+inputs.
 """
 import csv
 import os
@@ -127,8 +128,8 @@ class Header:
             text = text.replace("show(step - 1, copy.finish())", "continue")
         source.write_text(text)
         program = header.with_suffix(".out")
-        subprocess.run(["c++", "-std=c++17", "-O0", "-w", "-I", self.runtime, source, "-o", program],
-                       check=True)
+        subprocess.run(["c++", "-std=c++17", "-O0", "-w", "-I", self.runtime, source, "-o",
+                        program], check=True)
         return program
 
     def prove(self, header, stem):

@@ -21,7 +21,7 @@ namespace etlc::prove {
 
 using emit::RuntimeFile;
 
-/// What the program steps.
+/// A class, and how far it is stepped.
 struct Subject {
     std::string header;      ///< text of the generated header
     std::string name_space;  ///< of its class

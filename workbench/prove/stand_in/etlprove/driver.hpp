@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include <memory>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -75,7 +76,7 @@ private:
 
 // ---- the class ----------------------------------------------------------------------------------
 
-/// What the program knows of its class.
+/// A class, as the program knows it.
 template <class Monitor>
 struct Class {
     uint32_t atoms;      ///< that the class reads
