@@ -19,7 +19,7 @@ namespace etlprove {
 
 // ---- output -------------------------------------------------------------------------------------
 
-/// The words that begin an entry; compiler/reads.cpp of etlc reads them.
+/// The words that begin an entry; prove/answers.cpp reads them.
 enum class Entry : uint32_t { number = 1, node, verdict, reset, window, repeats, end };
 
 inline void put(uint32_t word) {
