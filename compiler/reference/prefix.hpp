@@ -13,33 +13,45 @@ namespace etlc::reference {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The value of a formula at a position of a prefix.
-struct Value {
-    double lower = 0;     ///< lower bound of rho over all longer prefixes
-    double rho = 0;       ///< pessimistic: unknown literals at the low end of their range
-    double rho_high = 0;  ///< optimistic: unknown literals at the high end
-    double upper = 0;     ///< upper bound of rho_high over all longer prefixes
+/// The value of a formula at a position of a prefix. Number: double, or a type with constants, min,
+/// max and negation, by which `etlc prove` expands a formula over all samples.
+template <class Number>
+struct ValueOf {
+    Number lower{};     ///< lower bound of rho over all longer prefixes
+    Number rho{};       ///< pessimistic: unknown literals at the low end of their range
+    Number rho_high{};  ///< optimistic: unknown literals at the high end
+    Number upper{};     ///< upper bound of rho_high over all longer prefixes
 };
+using Value = ValueOf<double>;
 
 /// The lowest and highest value of a formula at a position after i, over all longer prefixes.
-struct Unseen {
-    double lowest = 0;
-    double highest = 0;
+template <class Number>
+struct UnseenOf {
+    Number lowest{};
+    Number highest{};
 };
-inline Unseen negate(const Unseen& range) {
+using Unseen = UnseenOf<double>;
+template <class Number>
+UnseenOf<Number> negate(const UnseenOf<Number>& range) {
     return {-range.highest, -range.lowest};
 }
 
 /// The literals: per atom of the normal form, its value at each step and its range.
-struct Literals {
-    std::vector<std::vector<Value>> values;  ///< [node][step]; empty for other nodes
-    std::vector<Unseen> ranges;              ///< [node]
+template <class Number>
+struct LiteralsOf {
+    std::vector<std::vector<ValueOf<Number>>> values;  ///< [node][step]; empty for other nodes
+    std::vector<UnseenOf<Number>> ranges;              ///< [node]
 };
+using Literals = LiteralsOf<double>;
 
-class Prefix {
+template <class Number>
+class PrefixOf {
 public:
+    using Value = ValueOf<Number>;
+    using Unseen = UnseenOf<Number>;
+
     /// Makes the prefix 0..end.
-    Prefix(const NormalForm& form, const Literals& literals, std::uint64_t end);
+    PrefixOf(const NormalForm& form, const LiteralsOf<Number>& literals, std::uint64_t end);
 
     /// Returns the node's value at `position` <= end.
     Value at(Index node, std::uint64_t position);
@@ -47,7 +59,7 @@ public:
 
 private:
     const NormalForm& form_;
-    const Literals& literals_;
+    const LiteralsOf<Number>& literals_;
     std::uint64_t end_;
     std::vector<std::vector<std::optional<Value>>> values_;  // [node][position]
     std::vector<std::optional<Unseen>> unseen_;              // [node]
@@ -63,5 +75,6 @@ private:
     Value operand(const Node& node, std::size_t n, std::uint64_t position);
     Unseen unseen_operand(const Node& node, std::size_t n);
 };
+using Prefix = PrefixOf<double>;
 
 }  // namespace etlc::reference

@@ -46,11 +46,12 @@ const std::map<std::string, Names> kArrows = {
     {"report", {"explain", "fit", "evaluate"}},
     {"label", {"calibrate", "report"}},
     {"watch", {"embed", "label"}},
+    {"prove", {"emit", "reference", "pipeline"}},
     {"library", {"parse", "explain", "pipeline"}},
     {"lsp", {"library"}},
     {"driver",
      {"library", "parse", "emit", "explain", "embed", "fit", "calibrate", "evaluate", "report",
-      "label", "watch", "lsp"}},
+      "label", "watch", "lsp", "prove"}},
 };
 
 /// Stages after check, which must not include ast although the relation would allow it.

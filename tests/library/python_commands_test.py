@@ -24,7 +24,7 @@ from etlc._keywords import keyword_of
 from etlc._options import OPTIONS
 
 #: Commands that serve a program, and have no function.
-WITHOUT = {"lsp", "watch"}
+WITHOUT = {"lsp", "watch", "prove"}
 #: A loop in Python takes several traces.
 SEVERAL = ("--data", "--episodes")
 #: The functions of each command, with the options that each of them does not take, or sets itself.

@@ -62,6 +62,11 @@ std::optional<std::string> page_of_trace(const source::File& spec, const Compile
 
 // ---- commands that fill in what a spec lacks ----------------------------------------------------
 
+/// `etlc prove`: compares the class with the definition of its verdicts, for all inputs of a number
+/// of steps. Writes a certificate, or an input on which the class is wrong.
+bool prove(const source::File& spec, const Compiled& compiled, const Request& request,
+           diag::Sink& sink);
+
 /// `etlc embed`: writes the file of embeddings, and an episode for each recording (of its shard).
 bool embed(const source::File& file, const Request& request, diag::Sink& sink);
 /// `etlc embed --pipe`: becomes the encoder, unless the embeddings of the spec are another's.

@@ -11,6 +11,7 @@
 #include "data/files/file.hpp"
 #include "data/incident.hpp"
 #include "driver/commands/commands.hpp"
+#include "driver/commands/measurements.hpp"
 #include "driver/process/output_file.hpp"
 #include "etlmon/temporal/recorder.hpp"
 #include "plan/plan.hpp"
@@ -144,11 +145,6 @@ private:
     RecorderColumns columns_ = plan::recorder_columns(plan_);
 };
 
-std::string csv_line(Cells cells) {
-    for (std::string& cell : cells) cell = source::csv_cell(cell);
-    return fmt::format("{}\n", fmt::join(cells, ","));
-}
-
 /// Aligns columns to the right, each as wide as its widest cell; a mark precedes one line.
 std::string aligned(const std::vector<Cells>& lines, std::size_t marked) {
     std::vector<std::size_t> widths(lines.front().size(), 0);
@@ -163,48 +159,6 @@ std::string aligned(const std::vector<Cells>& lines, std::size_t marked) {
         text += "\n";
     }
     return text;
-}
-
-/// Names the column of a predicate in the trace.
-std::string input_of(const check::Model& model, Index p, std::size_t number) {
-    const std::string& name = model.predicates[p].name;
-    return name.empty() ? fmt::format("comparison_{}", number) : "distance_" + name;
-}
-
-/// Returns " in [0, inf]", the range that bounds over continuations depend on.
-std::string range_of(const check::Predicate& predicate) {
-    const auto [low, high] = predicate.delta;
-    if (std::isinf(low) && std::isinf(high)) return "";
-    return fmt::format(" in [{}, {}]", low, high);
-}
-
-/// Returns "distance_near <= 0.35", and what follows the threshold in the spec.
-std::string comparison(const check::Model& model, const check::Predicate& predicate,
-                       const std::string& input) {
-    const std::string_view text = predicate.text;  // "min l2(z, goal) <= "
-    const std::size_t end = text.find_last_not_of(' ') + 1;
-    const std::string_view sign = text.substr(0, end).substr(text.rfind(' ', end - 1) + 1);
-    const std::uint32_t behind = predicate.threshold.span.end;
-    const bool is_written = behind > predicate.span.begin;
-    return fmt::format("{} {} {}{}", input, sign, predicate.threshold.value,
-                       is_written ? model.file.text(source::Span{behind, predicate.span.end}) : "");
-}
-
-/// Replacements by their place in the spec.
-using Changes = std::map<std::uint32_t, std::pair<source::Span, std::string>>;
-
-/// Replaces a predicate; a comparison without a name may occur in several formulas.
-void change_everywhere(Changes& changes, const check::Model& model, Index p,
-                       const std::string& text) {
-    const check::Predicate& predicate = model.predicates[p];
-    if (!predicate.name.empty()) {
-        changes[predicate.span.begin] = {predicate.span,
-                                         "predicate " + predicate.name + " = " + text};
-        return;
-    }
-    for (const check::Formula& formula : model.formulas)
-        if (formula.kind == check::Formula::Kind::predicate && formula.index == p)
-            changes[formula.span.begin] = {formula.span, text};
 }
 
 /// Prints an incident for people: its origin, the comparisons, and a line a step.
@@ -245,41 +199,11 @@ std::string incident_trace(const plan::Plan& plan, const Incident& incident) {
     const Rows rows(plan, incident);
     Cells names;
     for (const RecorderColumns::OfPredicate& column : rows.columns().predicates)
-        names.push_back(input_of(*plan.model, column.predicate, names.size() + 1));
+        names.push_back(measured_name(*plan.model, column.predicate, names.size() + 1));
     for (const Index i : rows.columns().bools) names.push_back(plan.model->inputs[i].name);
     std::string text = csv_line(std::move(names));
     for (const Incident::Row& row : rows.all()) text += csv_line(rows.measured(row));
     return text;
-}
-
-/// Prints the spec that reads such a trace: `predicate p = distance_p <= 0.4`.
-std::string incident_spec(const plan::Plan& plan) {
-    const check::Model& model = *plan.model;
-    Changes changes;
-    std::string inputs;
-    std::size_t number = 0;
-    for (const Index p : plan.predicates) {
-        const check::Predicate& predicate = model.predicates[p];
-        const std::string input = input_of(model, p, ++number);
-        inputs += fmt::format("input {} : f32{};\n", input, range_of(predicate));
-        change_everywhere(changes, model, p, comparison(model, predicate, input));
-    }
-    for (const plan::Monitor& monitor : plan.monitors)
-        if (monitor.shifted) {
-            const source::Span clause = model.monitors[monitor.index].calibration->threshold.span;
-            changes[clause.begin] = {
-                clause, fmt::format("/* calibrated as a whole: less by {} */", monitor.shift)};
-        }
-    std::string text;
-    std::uint32_t copied = 0;
-    const auto end = static_cast<std::uint32_t>(model.file.text().size());
-    for (const auto& [begin, change] : changes) {
-        text += model.file.text({copied, begin});
-        text += change.second;
-        copied = change.first.end;
-    }
-    text += model.file.text({copied, end});
-    return text + (text.ends_with("\n") ? "" : "\n") + inputs;
 }
 
 /// Reports an incident whose monitor was made from another spec, data or thresholds.
@@ -341,7 +265,7 @@ std::string text_of(const plan::Plan& plan, const Incident& incident, IncidentFo
         case IncidentFormat::table: return incident_table(plan, incident);
         case IncidentFormat::csv: return incident_csv(plan, incident);
         case IncidentFormat::trace: return incident_trace(plan, incident);
-        case IncidentFormat::spec: return incident_spec(plan);
+        case IncidentFormat::spec: return measured_spec(plan);
     }
     return "";
 }

@@ -109,6 +109,12 @@ struct Request : pipeline::Options {
         IncidentFormat format = IncidentFormat::table;
     } incident;
 
+    struct Prove {
+        std::uint32_t steps = 0;     ///< 0: as many as usual
+        std::string header;          ///< file; empty: the class is generated
+        std::string counterexample;  ///< stem of two files; empty: the usual one
+    } prove;
+
     struct Report {
         report::FramesOption frames;
         std::uint64_t megabytes = report::kUsualMegabytes;  ///< size of the page

@@ -50,7 +50,11 @@ constexpr Row kCommands[] = {
      "episodes."},
     {Command::watch, "watch", "SPEC.etl --video SOURCE",
      "Steps a spec's monitors with a camera, a stream, a video or a trace as it comes, and prints "
-     "a line where\nsomething changes, until the source ends or you press Ctrl-C."}};
+     "a line where\nsomething changes, until the source ends or you press Ctrl-C."},
+    {Command::prove, "prove", "SPEC.etl",
+     "Proves that the temporal part of a generated class gives the verdicts of the definition, for "
+     "all\ninputs of a number of steps, or shows an input on which it does not. It needs a C++ "
+     "compiler, $CXX or c++."}};
 static_assert(std::size(kCommands) == kCommandCount);
 
 }  // namespace

@@ -30,8 +30,9 @@ enum class Command : std::uint8_t {
     report,
     label,
     watch,
+    prove,
 };
-inline constexpr std::size_t kCommandCount = 14;
+inline constexpr std::size_t kCommandCount = 15;
 
 /// The default of etlc crossvalidate.
 inline constexpr std::uint32_t kUsualFolds = 5;
@@ -39,7 +40,9 @@ inline constexpr std::uint32_t kUsualFolds = 5;
 struct Call : Request {
     explicit Call(Command of) : command(of) {
         if (of == Command::crossvalidate) folds = kUsualFolds;
-        if (of == Command::run || of == Command::explain || of == Command::incident) output = "-";
+        if (of == Command::run || of == Command::explain || of == Command::incident ||
+            of == Command::prove)
+            output = "-";
     }
 
     Command command;

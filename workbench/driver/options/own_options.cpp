@@ -228,6 +228,19 @@ std::vector<Option> make_own_options() {
         {watch, "--record", text("FOLDER", in(&Call::watch, &Call::Watch::record)),
          "write the steps around each alarm into this folder, as etlc incident reads them"},
 
+        // etlc prove
+        {prove, "--steps", number<std::uint32_t>(in(&Call::prove, &Call::Prove::steps), 1, 10000),
+         "length of the longest inputs (default: twice the longest horizon and the longest "
+         "buffer, at least 64)"},
+        {prove, "--header", file(in(&Call::prove, &Call::Prove::header)),
+         "prove the class in this file, which etlc generated from the spec with the same options "
+         "(default: the class that etlc generates now)"},
+        {prove, "--counterexample", text("STEM", in(&Call::prove, &Call::Prove::counterexample)),
+         "where to write an input on which the class is wrong, and the spec that reads it: "
+         "STEM.csv and STEM.etl (default: SPEC.counterexample in this folder)"},
+        {prove, "-o,--output", file(in(&Call::output), "-"),
+         "where to write the certificate; - is standard output"},
+
         {lsp, "--stdio", flag(in(&Call::on_standard_streams)),
          "accepted for clients that pass it; standard input and output are always used"},
     };

@@ -81,7 +81,7 @@ std::vector<Option> make_options() {
         {incident, "file", file(in(&Call::incident, &Call::Incident::file)),
          "file written by write_incident()", kRequired},
         {merge, "parts", texts("PART...", in(&Call::parts)), "the parts, in any order", kRequired},
-        {kExecute | kLearn | compile | embed | report | label | watch, "spec", spec(),
+        {kExecute | kLearn | kClass | embed | report | label | watch, "spec", spec(),
          "the spec, a .etl file", kRequired},
         {incident, "--spec", spec(), "the spec, a .etl file", kRequired},
         {kEvaluate, "spec", texts("SPEC.etl", in(&Call::specs)),
@@ -129,19 +129,18 @@ std::vector<Option> make_options() {
         {compile, "--standalone{portable}", standalone(),
          "include the runtime: one file in standard C++ to copy into firmware; --standalone=host: "
          "with vector instructions, selected by the CPU where possible"},
-        {compile, "--namespace", checked(text("NAME", in(&Call::name_space)), mistake_in_namespace),
+        {kClass, "--namespace", checked(text("NAME", in(&Call::name_space)), mistake_in_namespace),
          "namespace of the generated code (default: the spec's name)"},
-        {compile, "--explain", flag(in(&Call::explains)),
+        {kClass, "--explain", flag(in(&Call::explains)),
          "generate why_NAME(), which names the sample that decides a verdict, with its step, "
          "distance, threshold and nearest target"},
-        {compile, "--retargetable", retargetable(),
+        {kClass, "--retargetable", retargetable(),
          "store targets, thresholds, projections and numbers in STEM.params.bin beside STEM.hpp; "
          "the class can load another such file between steps, made by --emit params"},
-        {Commands(compile) | watch, "--recorder",
-         checked(form("B,A,N", read_recorder), mistake_in_recorder),
+        {kClass | watch, "--recorder", checked(form("B,A,N", read_recorder), mistake_in_recorder),
          "record the steps around each alarm: BEFORE,AFTER,INCIDENTS, such as 2s,1s,4 or 40,20,4; "
          "etlc incident prints the records"},
-        {compile, "--lets", lets(),
+        {kClass, "--lets", lets(),
          "also generate let_NAME() and robustness_NAME(), for lets that do not look ahead"},
         {compile, "--inline-targets", limit(&plan::Limits::inline_target_bytes),
          "largest target set in bytes that is written into the header; larger ones go to a file "

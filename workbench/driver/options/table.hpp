@@ -9,9 +9,11 @@ namespace etlc::driver {
 
 inline constexpr Commands kExecute = Commands(Command::run) | Command::explain;
 inline constexpr Commands kEvaluate = Commands(Command::evaluate) | Command::crossvalidate;
+/// The commands that generate a class.
+inline constexpr Commands kClass = Commands(Command::compile) | Command::prove;
 /// The commands that plan monitors.
 inline constexpr Commands kPlan =
-    kExecute | kEvaluate | Command::compile | Command::incident | Command::report | Command::watch;
+    kExecute | kEvaluate | kClass | Command::incident | Command::report | Command::watch;
 inline constexpr Commands kLearn = Commands(Command::fit) | Command::calibrate;
 inline constexpr Commands kReadEpisodes = kLearn | kEvaluate | Command::report;
 inline constexpr Commands kFindEpisodes = kReadEpisodes | Command::label;

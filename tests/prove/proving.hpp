@@ -1,0 +1,53 @@
+// Random specs whose classes are proved.
+#pragma once
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "emit/emit.hpp"
+#include "library/version.hpp"
+#include "loading.hpp"
+#include "pipeline/compile.hpp"
+#include "plan/evaluate/evaluator.hpp"
+#include "prove/prove.hpp"
+#include "reference/reference.hpp"
+
+namespace etlc::tests {
+
+/// Factor on the number of random specs; ETLC_EFFORT=6 proves 200 formulas.
+inline int effort() {
+    const char* text = std::getenv("ETLC_EFFORT");
+    return text == nullptr ? 1 : std::max(1, std::atoi(text));
+}
+
+inline std::optional<pipeline::Compiled> compiled(const std::string& text, check::Values values) {
+    auto model = load(text);
+    if (!model) return std::nullopt;
+    diag::Sink sink;
+    return pipeline::compile(std::move(*model),
+                             {.limits = {16U << 20U, 16U << 20U, 64U << 20U}, .values = values},
+                             sink);
+}
+
+inline diag::Result<prove::Proof> proof_of(const plan::Plan& plan, std::uint32_t steps) {
+    return prove::prove(
+        plan, {emit::header(plan, {"proved", library::kVersion, "", "proved.targets.bin"}),
+               "proved", steps});
+}
+
+inline std::vector<plan::Sample> samples(const reference::Step& step) {
+    std::vector<plan::Sample> result;
+    for (const std::vector<double>& values : step) {
+        plan::Sample sample;
+        sample.present = !values.empty();
+        for (const double value : values) sample.values.push_back(static_cast<float>(value));
+        result.push_back(std::move(sample));
+    }
+    return result;
+}
+
+}  // namespace etlc::tests

@@ -1,0 +1,207 @@
+// `etlc prove`: proves a generated class, or shows an input on which it is wrong.
+#include "prove/prove.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "data/files/file.hpp"
+#include "data/files/hash.hpp"
+#include "driver/commands/commands.hpp"
+#include "driver/commands/measurements.hpp"
+#include "driver/process/output_file.hpp"
+#include "emit/emit.hpp"
+#include "emit/standalone.hpp"
+#include "library/version.hpp"
+
+namespace etlc::driver {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostHeaderBytes = 64U << 20U;
+
+std::string hash_of(std::string_view text) {
+    return data::hash_text(data::xxh64(text));
+}
+
+/// Returns the hash of files that an etlc contains.
+std::string hash_of(const std::vector<emit::RuntimeFile>& files) {
+    std::uint64_t hash = 0;
+    for (const emit::RuntimeFile& file : files)
+        hash = data::xxh64(file.text, data::xxh64(file.name, hash));
+    return data::hash_text(hash);
+}
+
+std::optional<std::string> header_text(const source::File& spec, const plan::Plan& plan,
+                                       const Request& request, diag::Sink& sink) {
+    if (request.prove.header.empty())
+        return emit::header(plan, {request.name_space, library::kVersion, "",
+                                   fs::path(spec.path()).stem().string() + ".targets.bin"});
+    auto text = data::read_file(request.prove.header, kMostHeaderBytes, diag::Code::no_proof,
+                                data::Streams::refused);
+    if (!text) {
+        sink.report(data::in_file(text.failure(), request.prove.header));
+        return std::nullopt;
+    }
+    if (text->find("ETLMON_PASTED_") == std::string::npos) return std::move(*text);
+    sink.report(data::in_file({diag::Code::no_proof,
+                               "contains the runtime; expected a header without --standalone, "
+                               "whose class has the same text"},
+                              request.prove.header));
+    return std::nullopt;
+}
+
+/// Returns the options that change the class, as they are in the call.
+std::string options_of(const plan::Plan& plan, const Request& request) {
+    std::vector<std::string> words;
+    if (plan.values == check::Values::sourced) words.emplace_back("--explain");
+    if (plan.recorder)
+        words.push_back(fmt::format("--recorder {},{},{}", plan.recorder->before,
+                                    plan.recorder->after, plan.recorder->incidents));
+    if (request.check.retargetable) words.emplace_back("--retargetable");
+    if (request.check.lets) words.emplace_back("--lets");
+    return words.empty() ? "none" : fmt::format("{}", fmt::join(words, " "));
+}
+
+std::string certificate(const source::File& spec, const plan::Plan& plan, const Request& request,
+                        const std::string& header, const prove::Proof& proof) {
+    std::vector<std::string> monitors;
+    for (const plan::Monitor& monitor : plan.monitors) monitors.push_back(monitor.name);
+    std::string text = fmt::format(
+        "etlc prove: the verdicts of a generated class\n\n"
+        "spec      {}, XXH64 {}\n"
+        "header    XXH64 {}\n"
+        "options   {}\n"
+        "etlc      {}, runtime XXH64 {}, stand-ins XXH64 {}\n"
+        "compiler  {}\n"
+        "monitors  {}\n"
+        "steps     {}\n\n"
+        "proved for all inputs of up to {}: {} were compared\n",
+        fs::path(spec.path()).filename().string(), hash_of(spec.text()), hash_of(header),
+        options_of(plan, request), library::kVersion, hash_of(emit::runtime_files()),
+        hash_of(prove::stand_in_files()), proof.compiler, fmt::join(monitors, ", "), proof.steps,
+        diag::counted(proof.steps, "step"), diag::counted(proof.verdicts, "verdict"));
+    const auto lengths = [](const std::vector<std::uint32_t>& windows) {
+        const std::set<std::uint32_t> each(windows.begin(), windows.end());
+        return fmt::format("{}", fmt::join(each, ", "));
+    };
+    if (!proof.windows.empty())
+        text += fmt::format(
+            "proved of its windows, of {} steps: missing samples may come in any "
+            "order, at any length\n",
+            lengths(proof.windows));
+    if (!proof.long_windows.empty())
+        text += fmt::format(
+            "assumed of its windows of {} steps, which are too long for this "
+            "proof: the same\n",
+            lengths(proof.long_windows));
+    const auto restarts = [](const plan::Monitor& monitor) {
+        return monitor.restarts != check::Restarts::never;
+    };
+    if (std::any_of(plan.monitors.begin(), plan.monitors.end(), restarts))
+        text += proof.restarts ? "proved for all sequences of restarts of one monitor\n"
+                               : "proved for one restart of one monitor\n";
+    if (proof.repetition)
+        text += fmt::format(
+            "proved for inputs of any length: the states after {} and {} steps are alike\n",
+            proof.repetition->first, proof.repetition->second);
+    return text;
+}
+
+/// Returns the measurements of a witness, as a trace.
+std::string trace_of(const plan::Plan& plan, const prove::Proof& proof) {
+    const check::Model& model = *plan.model;
+    std::vector<std::string> names;
+    std::vector<std::size_t> columns;
+    for (const check::Index p : plan.predicates) {
+        names.push_back(measured_name(model, p, names.size() + 1));
+        for (std::size_t a = 0; a < proof.atoms.size(); ++a)
+            if (proof.atoms[a].is_predicate && proof.atoms[a].index == p) columns.push_back(a);
+    }
+    for (std::size_t a = 0; a < proof.atoms.size(); ++a)
+        if (!proof.atoms[a].is_predicate && proof.atoms[a].is_read) {
+            names.push_back(model.inputs[proof.atoms[a].index].name);
+            columns.push_back(a);
+        }
+    std::string text = csv_line(std::move(names));
+    for (const auto& values : proof.fault->witness.values) {
+        std::vector<std::string> cells;
+        for (const std::size_t a : columns) {
+            const prove::Atom& atom = proof.atoms[a];
+            if (!values[a]) {
+                cells.emplace_back();
+            } else if (!atom.is_predicate) {
+                cells.emplace_back(*values[a] > 0 ? "1" : "0");
+            } else {
+                cells.push_back(fmt::format(
+                    "{:.9g}", prove::measured(model.predicates[atom.index], *values[a])));
+            }
+        }
+        text += csv_line(std::move(cells));
+    }
+    return text;
+}
+
+std::string said(const plan::Plan& plan, const prove::Fault& fault) {
+    std::string where = fmt::format("after step {}", fault.step);
+    if (fault.finishes > 0)
+        where += fmt::format(" and {} of finish()", diag::counted(fault.finishes, "call"));
+    if (fault.restarted) where += fmt::format(", restarted before step {}", *fault.restarted);
+    const std::string& name = plan.monitors[fault.monitor].name;
+    if (fault.witness.values.empty())
+        return fmt::format("'{}' {}: the class and the definition differ in {}", name, where,
+                           fault.number);
+    return fmt::format("'{}' {}: {} is {} {:.9g} in the class, and {} by the definition", name,
+                       where, fault.number, fault.witness.first_reaches ? "at least" : "less than",
+                       fault.witness.threshold,
+                       fault.witness.first_reaches ? "less" : "at least that");
+}
+
+bool write_counterexample(const source::File& spec, const plan::Plan& plan, const Request& request,
+                          const prove::Proof& proof, diag::Sink& sink) {
+    const std::string stem = request.prove.counterexample.empty()
+                                 ? fs::path(spec.path()).stem().string() + ".counterexample"
+                                 : request.prove.counterexample;
+    auto& found = sink.report(diag::Code::wrong_class,
+                              plan.model->monitors[plan.monitors[proof.fault->monitor].index].span,
+                              said(plan, *proof.fault));
+    if (proof.fault->witness.values.empty()) return false;
+    found.note(fmt::format("the definition's verdicts: etlc run {0}.etl --trace {0}.csv", stem));
+    if (!check_outputs({stem + ".csv", stem + ".etl"}, files_read(*plan.model, spec, {}), sink))
+        return false;
+    OutputFiles files(sink);
+    return files.add(stem + ".csv", trace_of(plan, proof)) &&
+           files.add(stem + ".etl", measured_spec(plan)) && files.commit() && false;
+}
+
+}  // namespace
+
+bool prove(const source::File& spec, const Compiled& compiled, const Request& request,
+           diag::Sink& sink) {
+    const plan::Plan& plan = compiled.plan;
+    std::vector<std::string> inputs = files_read(*plan.model, spec, {});
+    if (!request.prove.header.empty()) inputs.push_back(request.prove.header);
+    if (!check_outputs({request.output}, inputs, sink)) return false;
+    const auto header = header_text(spec, plan, request, sink);
+    if (!header) return false;
+    const std::string name_space =
+        request.name_space.empty() ? plan.model->name : request.name_space;
+    const auto proof = prove::prove(plan, {*header, name_space, request.prove.steps});
+    if (!proof) {
+        sink.report(data::in_file(proof.failure(), spec.path()));
+        return false;
+    }
+    if (proof->fault) return write_counterexample(spec, plan, request, *proof, sink);
+    OutputFiles files(sink);
+    return files.add(request.output, certificate(spec, plan, request, *header, *proof)) &&
+           files.commit();
+}
+
+}  // namespace etlc::driver

@@ -1,0 +1,89 @@
+// The program that steps a class on symbols: its sources, its compilation, and what it says.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "data/files/child.hpp"
+#include "diag/diag.hpp"
+#include "emit/standalone.hpp"
+#include "plan/plan.hpp"
+#include "prove/definition.hpp"
+#include "prove/prove.hpp"
+#include "prove/symbol.hpp"
+
+namespace etlc::prove {
+
+using emit::RuntimeFile;
+
+/// A class, and how far it is stepped.
+struct Subject {
+    std::string header;      ///< text of the generated header
+    std::string name_space;  ///< of its class
+    std::uint32_t steps = 0;
+};
+
+/// The compiled program, in a temporary folder of its own.
+class Program {
+public:
+    /// Writes and compiles it.
+    static diag::Result<Program> make(const plan::Plan& plan, const Subject& subject,
+                                      const std::vector<Atom>& atoms);
+    Program(Program&& other) noexcept;
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+    ~Program();
+
+    std::unique_ptr<data::Child> start(const std::set<float>& numbers) const;
+    /// Returns the first line of what the compiler says of its version.
+    const std::string& compiler() const { return compiler_; }
+
+private:
+    explicit Program(std::string folder) : folder_(std::move(folder)) {}
+
+    std::string folder_;
+    std::string compiler_;
+};
+
+/// How a program ended before its last entry.
+struct Ended {
+    enum class Why : std::uint8_t { branches, exhausted, failed } why = Why::failed;
+    std::string how;  ///< "was stopped by signal 11 (Segmentation fault)"
+};
+
+/// A window over pairs: whether it is one window of the lows and one of the highs.
+struct Window {
+    std::uint32_t length = 0;
+    bool is_two_windows = false;
+    bool is_too_long = false;  ///< for a proof of that
+};
+
+/// Reads what the program says, into the diagrams of this proof.
+class Answers {
+public:
+    Answers(data::Child& child, Space& space) : child_(child), space_(space) {}
+
+    /// Return the next entry, which must be of this kind. Throw Ended and NewNumber.
+    Numbers verdict();
+    /// Whether all later restarts were alike.
+    bool forgotten();
+    /// The next window of the class, if there is one more.
+    std::optional<Window> window();
+
+private:
+    std::uint32_t word();
+    std::uint32_t next();  ///< the kind of the next entry besides diagrams
+    Diagram known(std::uint32_t theirs) const;
+    [[noreturn]] void end();
+
+    data::Child& child_;
+    Space& space_;
+    std::unordered_map<std::uint32_t, Diagram> known_{{0, 0}, {1, 1}};
+};
+
+}  // namespace etlc::prove

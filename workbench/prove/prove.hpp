@@ -1,0 +1,61 @@
+// Proves a generated class: compares it on symbols with the definition of its verdicts.
+// Takes: a plan and the text of a header. Gives: a proof for all inputs of a number of steps, an
+// input on which the class is wrong, or the reason why neither was found. Keeps true: "proved" is
+// said only where every diagram of every verdict was compared.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diag/diag.hpp"
+#include "emit/standalone.hpp"
+#include "plan/plan.hpp"
+#include "prove/definition.hpp"
+#include "prove/witness.hpp"
+
+namespace etlc::prove {
+
+struct Request {
+    std::string header;       ///< its text
+    std::string name_space;   ///< of its class
+    std::uint32_t steps = 0;  ///< 0: usual_steps()
+};
+
+/// Twice the longest horizon and the longest buffer, at least 64.
+std::uint32_t usual_steps(const plan::Plan& plan);
+
+/// A wrong verdict, on the shortest input that has one.
+struct Fault {
+    std::uint32_t monitor = 0;  ///< of the plan
+    std::uint32_t step = 0;
+    std::uint32_t position = 0;              ///< that the verdict is about
+    std::uint32_t finishes = 0;              ///< calls of finish() after the step
+    std::optional<std::uint32_t> restarted;  ///< the monitor was restarted before that step
+    std::string number;  ///< "robustness", "lower", "upper" or "whether it is decided"
+    Witness witness;
+};
+
+struct Proof {
+    std::vector<Atom> atoms;
+    std::uint32_t steps = 0;
+    std::string compiler;                     ///< its first line about its version
+    std::uint64_t verdicts = 0;               ///< that were compared
+    bool restarts = false;                    ///< any sequence of restarts is covered
+    std::vector<std::uint32_t> windows;       ///< lengths of those that were proved to be two
+    std::vector<std::uint32_t> long_windows;  ///< and of those that are assumed to be
+    std::optional<Fault> fault;
+};
+
+/// Returns a measurement at which a predicate has this robustness, up to rounding.
+float measured(const check::Predicate& predicate, float robustness);
+
+/// Returns the headers that stand in for some of the runtime's, and the program around a class.
+const std::vector<emit::RuntimeFile>& stand_in_files();
+
+/// Failures say why there is no proof.
+diag::Result<Proof> prove(const plan::Plan& plan, const Request& request);
+
+}  // namespace etlc::prove

@@ -1,0 +1,29 @@
+// An input on which two functions of the samples differ.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "prove/definition.hpp"
+#include "prove/symbol.hpp"
+
+namespace etlc::prove {
+
+/// The robustness of each atom at each step, nothing where its sample is missing, and a threshold
+/// that one of the functions reaches and the other does not.
+struct Witness {
+    std::vector<std::vector<std::optional<float>>> values;  ///< [step][atom]
+    float threshold = 0;
+    bool first_reaches = false;
+};
+
+/// Finds an input of `steps` steps, in a proof of `most_steps`; nothing where the functions are
+/// equal on all inputs: where each sample is a number in its range or missing, and the negation of
+/// a number is minus that number. `may_be_missing`: some samples may be missing.
+std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
+                                  const std::vector<Atom>& atoms, std::uint32_t steps,
+                                  std::uint32_t most_steps, bool may_be_missing,
+                                  bool at_zero = false);
+
+}  // namespace etlc::prove
