@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -58,8 +59,13 @@ protected:
                         const std::string& samples = kWatchTrace) const {
         std::ofstream(folder_ / "watch.etl") << spec;
         std::ofstream(folder_ / "watch.csv") << samples;
-        const std::string call = std::string("cd '") + folder_.string() + "' && '" + ETLC_COMMAND +
-                                 "' run watch.etl --trace watch.csv " + options;
+        return said("watch.etl --trace watch.csv " + options);
+    }
+
+    /// Returns the output of `etlc run` with these words.
+    std::string said(const std::string& words) const {
+        const std::string call =
+            std::string("cd '") + folder_.string() + "' && '" + ETLC_COMMAND + "' run " + words;
         std::FILE* const pipe = ::popen(call.c_str(), "r");
         std::string text;
         for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
@@ -164,6 +170,35 @@ TEST_F(Run, SummaryCountsVerdictsAndSamples) {
               "step 4 (1 s); unknown on 1 step\n" +
                   rest);
     EXPECT_TRUE(fs::exists(folder_ / "rows.csv"));
+}
+
+/// Neither the state nor the counts of the first episode matter to the second.
+TEST_F(Run, StepsSeveralEpisodesOneAfterAnother) {
+    const auto rows_of = [](const std::string& text, const std::string& first_cell) {
+        std::string rows;
+        std::istringstream lines(text.substr(text.find('\n') + 1));
+        for (std::string line; std::getline(lines, line);) rows += first_cell + line + "\n";
+        return rows;
+    };
+    const std::string other = "x,y\n0,3\n0.75,0\n,\n";
+    const std::string head = watched("").substr(0, watched("").find('\n'));
+    const std::string first = watched("--finish --distances");
+    const std::string summary = watched("--summary");
+    const std::string changes = watched("--changes");
+    fs::create_directory(folder_ / "runs");
+    fs::copy_file(folder_ / "watch.csv", folder_ / "runs/a, 1.csv");
+    const std::string second = watched("--finish --distances", kWatchSpec, other);
+    const std::string summaries =
+        "runs/a, 1.csv\n" + summary + "runs/b.csv\n" + watched("--summary", kWatchSpec, other);
+    fs::copy_file(folder_ / "watch.csv", folder_ / "runs/b.csv");
+    EXPECT_EQ(said("watch.etl --data runs --finish --distances"),
+              "trace," + first.substr(0, first.find('\n') + 1) +
+                  rows_of(first, "\"runs/a, 1.csv\",") + rows_of(second, "runs/b.csv,"));
+    EXPECT_EQ(said("watch.etl --data runs --summary"), summaries);
+    EXPECT_EQ(said("watch.etl --data runs/b.csv").substr(0, head.size() + 6), "trace," + head);
+    EXPECT_EQ(said("watch.etl --data 'runs/a*' --changes -o rows.csv").substr(0, 14),
+              "runs/a, 1.csv\n");
+    EXPECT_NE(changes, "");
 }
 
 /// An int8 has no -0, a float32 has.

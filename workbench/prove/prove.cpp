@@ -270,7 +270,7 @@ diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
     proof.atoms = atoms_of(plan);
     proof.steps = request.steps > 0 ? request.steps : usual_steps(plan);
     const auto program =
-        Program::make(plan, {request.header, request.name_space, proof.steps, 0}, proof.atoms);
+        Program::make(plan, {request.header, request.name_space, proof.steps}, proof.atoms);
     if (!program) return program.failure();
     proof.compiler = program->compiler();
     std::set<float> numbers = numbers_of(proof.atoms);
