@@ -108,10 +108,6 @@ std::string certificate(const source::File& spec, const plan::Plan& plan, const 
     if (std::any_of(plan.monitors.begin(), plan.monitors.end(), restarts))
         text += proof.restarts ? "proved for all sequences of restarts of one monitor\n"
                                : "proved for one restart of one monitor\n";
-    if (proof.repetition)
-        text += fmt::format(
-            "proved for inputs of any length: the states after {} and {} steps are alike\n",
-            proof.repetition->first, proof.repetition->second);
     return text;
 }
 
