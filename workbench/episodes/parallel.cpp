@@ -43,6 +43,12 @@ void report(const std::vector<Fault>& faults, std::size_t episodes, diag::Sink& 
     }
 }
 
+std::size_t threads_for(unsigned asked, std::size_t most) {
+    const std::size_t wanted =
+        std::max(1U, asked > 0 ? asked : std::thread::hardware_concurrency());
+    return std::min(wanted, most);
+}
+
 std::exception_ptr in_threads(unsigned asked, std::size_t most, const std::function<void()>& work) {
     std::exception_ptr first;
     std::mutex ending;
@@ -54,9 +60,7 @@ std::exception_ptr in_threads(unsigned asked, std::size_t most, const std::funct
             if (!first) first = std::current_exception();
         }
     };
-    const std::size_t wanted =
-        std::max(1U, asked > 0 ? asked : std::thread::hardware_concurrency());
-    const std::size_t threads = std::min(wanted, most);
+    const std::size_t threads = threads_for(asked, most);
     std::vector<std::thread> others;
     try {
         if (threads > 1) others.reserve(threads - 1);

@@ -29,9 +29,11 @@ struct Fault {
 /// Reports each kind of fault once, with the other episodes that have it, out of `episodes`.
 void report(const std::vector<Fault>& faults, std::size_t episodes, diag::Sink& sink);
 
-/// Runs `work` in this thread and in others: as many as asked for (0: one per core), at most
-/// `most`, and no more than can be started. Returns when all have ended, with the first exception
-/// that ended one of them.
+/// Returns the threads to use: as many as asked for (0: one per core), at most `most`.
+std::size_t threads_for(unsigned asked, std::size_t most);
+
+/// Runs `work` in this thread and in others: threads_for(), and no more than can be started.
+/// Returns when all have ended, with the first exception that ended one of them.
 std::exception_ptr in_threads(unsigned asked, std::size_t most, const std::function<void()>& work);
 
 /// Reads all episodes: `make()` makes the reader of a thread, whose `score(path)` returns a

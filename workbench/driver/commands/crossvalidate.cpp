@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <exception>
 #include <memory>
 #include <set>
+#include <thread>
 
 #include "calibrate/shift.hpp"
 #include "episodes/admission/admission.hpp"
@@ -54,9 +59,14 @@ private:
 /// spec for the next stage.
 class Chain {
 public:
+    /// `beside`: the number of chains at work at a time, which share the memory for episodes.
     Chain(const source::File& file, const Request& request, calibrate::Request calibration,
-          diag::Sink& sink)
-        : file_(file), request_(request), calibration_(std::move(calibration)), sink_(sink) {}
+          std::size_t beside, diag::Sink& sink)
+        : file_(file),
+          request_(request),
+          calibration_(std::move(calibration)),
+          beside_(beside),
+          sink_(sink) {}
 
     std::optional<Trained> train(const Paths& episodes) {
         const auto untrained = check({true, true, true});
@@ -111,6 +121,7 @@ private:
         fit::Request request{episodes, calibration_.reading, calibration_.allow_overlap,
                              calibration_.jobs};
         request.separation = false;  // the fold itself tells how well the fit does elsewhere
+        request.most_kept /= beside_;
         request.version = calibration_.version;
         request.progress = calibration_.progress;
         auto found = fit::fit(*model, request, sink_);
@@ -159,6 +170,7 @@ private:
     const source::File& file_;
     const Request& request_;
     calibrate::Request calibration_;  ///< with the fitted entries, once they exist
+    std::size_t beside_;
     diag::Sink& sink_;
     thresholds::File thresholds_;
 };
@@ -195,18 +207,42 @@ std::optional<Folds> deal(const check::Model& model, const calibrate::Request& r
 std::optional<std::vector<Trained>> train(const source::File& file, const Request& request,
                                           const calibrate::Request& calibration, const Folds& folds,
                                           diag::Sink& sink) {
+    struct OfFold {
+        Paths others;
+        diag::Sink found;
+        std::optional<Trained> trained;
+    };
+    std::vector<OfFold> of_folds(folds.count);
+    // Much of a fold's work is for one thread, so folds are trained side by side; the last ones,
+    // fewer than there are threads, share all threads.
+    const std::size_t threads = episodes::threads_for(calibration.jobs, SIZE_MAX);
+    const std::size_t beside = std::min<std::size_t>(threads, folds.count);
+    const std::size_t last = folds.count % beside;
+    const auto train_without = [&](std::uint32_t fold, bool shows_progress) {
+        OfFold& of = of_folds[fold];
+        for (const std::size_t e : folds.order)
+            if (folds.of[e] != fold) of.others.push_back(calibration.episodes[e]);
+        calibrate::Request asked = calibration;
+        const bool is_last = fold >= folds.count - last;
+        asked.jobs = static_cast<unsigned>(threads / (is_last ? last : beside));
+        if (!shows_progress) asked.progress = nullptr;
+        of.trained = Chain(file, request, asked, beside, of.found).train(of.others);
+    };
+    const auto caller = std::this_thread::get_id();  // it alone shows its progress
+    std::atomic<std::uint32_t> next = 0;
+    const auto failure = episodes::in_threads(calibration.jobs, folds.count, [&] {
+        for (std::uint32_t fold = next++; fold < folds.count; fold = next++)
+            train_without(fold, std::this_thread::get_id() == caller);
+    });
+    if (failure) std::rethrow_exception(failure);
     std::vector<Trained> all;
     Telling telling(sink);
     for (std::uint32_t fold = 0; fold < folds.count; ++fold) {
-        Paths others;
-        for (const std::size_t e : folds.order)
-            if (folds.of[e] != fold) others.push_back(calibration.episodes[e]);
-        diag::Sink found;
-        auto trained = Chain(file, request, calibration, found).train(others);
-        telling.tell(found, fmt::format("fold {} of {}: trained on {}", fold + 1, folds.count,
-                                        diag::counted(others.size(), "other episode")));
-        if (!trained) return std::nullopt;
-        all.push_back(std::move(*trained));
+        OfFold& of = of_folds[fold];
+        telling.tell(of.found, fmt::format("fold {} of {}: trained on {}", fold + 1, folds.count,
+                                           diag::counted(of.others.size(), "other episode")));
+        if (!of.trained) return std::nullopt;
+        all.push_back(std::move(*of.trained));
     }
     return all;
 }

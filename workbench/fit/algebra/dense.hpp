@@ -14,7 +14,8 @@ using Vector = Eigen::VectorXd;
 /// Call this first: the order of sums in Eigen's products depends on cache sizes. With these fixed
 /// ones, it is the same on every machine.
 inline void fix_order_of_sums() {
-    Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20);
+    [[maybe_unused]] static const bool once =  // other threads may be at work
+        (Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20), true);
 }
 
 /// P(z) = A (z - m).
