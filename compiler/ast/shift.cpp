@@ -35,7 +35,7 @@ private:
     }
     template <class... Alternatives>
     void move(std::variant<Alternatives...>& part) const {
-        std::visit([this](auto& one) { move(one); }, part);
+        std::visit([this](auto& one) { this->move(one); }, part);
     }
 
     void move(Name& x) const { all(x.span); }
