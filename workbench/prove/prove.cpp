@@ -264,7 +264,7 @@ diag::Result<Proof> prove_with(const std::set<float>& numbers, const plan::Plan&
 diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
     if (plan.values == check::Values::boolean)
         return no_proof(
-            "a class with --values boolean branches on truth values, so its way "
+            "a class with --values boolean branches on truth values, so its control flow "
             "depends on the samples");
     Proof proof;
     proof.atoms = atoms_of(plan);

@@ -70,13 +70,20 @@ private:
     bool run(const std::string& trace) {
         trace_ = trace;
         step_ = steps_ = 0;
+        is_named_ = !is_of_several();
         summary_.emplace(plan_);
         changes_.emplace(plan_);
         first_cells_ = is_of_several() ? source::csv_cell(trace) + "," : "";
         if (!step_through_trace()) return false;
         if (!request_.run.summary) return true;
-        const std::string name = is_of_several() ? source::visible(trace) + "\n" : "";
-        return print(name + summary_->text(steps_, monitors_.evaluator()), sink_);
+        return print_lines(summary_->text(steps_, monitors_.evaluator()));
+    }
+
+    /// Prints lines about this trace, the first ones below its name.
+    bool print_lines(const std::string& lines) {
+        const std::string name = is_named_ ? "" : source::visible(trace_) + "\n";
+        is_named_ = true;
+        return print(source::visible_lines(name + lines), sink_);
     }
 
     bool fail(const diag::Failure& failure) {
@@ -169,9 +176,7 @@ private:
         const std::string lines =
             step_ < steps_ ? changes_->after(step_, verdicts, monitors_.evaluator())
                            : changes_->after_finish(step_, verdicts, monitors_.evaluator());
-        if (lines.empty()) return true;
-        const std::string name = is_of_several() ? source::visible(trace_) + "\n" : "";
-        return print(name + source::visible_lines(lines), sink_);
+        return lines.empty() || print_lines(lines);
     }
 
     void print_row(std::size_t m, const Verdict& v, const std::string& telemetry) {
@@ -232,6 +237,7 @@ private:
     std::string trace_;  ///< this one
     std::optional<watch::Summary> summary_;
     std::optional<watch::Changes> changes_;
+    bool is_named_ = true;     ///< lines about it need no name above them any more
     std::string first_cells_;  ///< of each row
     OutputFiles output_;
     /// The name of each column of distances, and a predicate that has this distance.
