@@ -20,11 +20,15 @@ struct Client {
     bool hierarchical_symbols = false;
 };
 
+/// Thrown where a request has a better answer once the monitors are planned.
+struct Unplanned {};
+
 /// A request about a document.
 struct Question {
     Document& document;
     const Json& params;
     const Client& client;
+    bool can_wait = false;  ///< for the plan
 
     const Analysis& analysis() const { return document.analysis(); }
     const std::string& uri() const { return document.uri(); }
@@ -35,8 +39,8 @@ struct Question {
 };
 
 /// Answers with the declaration of a name and what is known of it, or with the meaning of a word of
-/// the language. Plans the monitors where their budget is asked for. What has an error is shown as
-/// it is written.
+/// the language. The budget of a monitor waits for the plan. What has an error is shown as it is
+/// written.
 Json hover(const Question& question);
 /// Answers with names of the kinds that fit, words that the grammar takes there, and durations that
 /// are whole numbers of steps.
