@@ -18,6 +18,12 @@ def spec(monitors=100):
     return "\n".join(lines) + "\n"
 
 
+def patient_client():
+    client = Client(ETLC)
+    client.patience = 300  # with sanitizers planning takes long
+    return client
+
+
 def published(client):
     return client.note("textDocument/publishDiagnostics")
 
@@ -29,7 +35,7 @@ def is_planned(found):
 
 def at_peace(text):
     """Returns the findings of a server that is left in peace, and the seconds that it takes."""
-    client = Client(ETLC)
+    client = patient_client()
     start = time.monotonic()
     client.open(text)
     first = published(client)
@@ -43,7 +49,7 @@ def at_peace(text):
 def answers_meanwhile():
     expected, seconds = at_peace(spec())
     assert seconds > 2 * PAUSE, f"planning takes only {seconds} s, so this test would see nothing"
-    client = Client(ETLC)
+    client = patient_client()
     text = client.open(spec())
     assert not is_planned(published(client))
     time.sleep(PAUSE + (seconds - PAUSE) / 4)
@@ -57,7 +63,7 @@ def answers_meanwhile():
 def newest_text_wins():
     after = spec().replace("F[0, 399]", "F[0, 398]").replace("heavy", "heavier")
     expected, seconds = at_peace(after)
-    client = Client(ETLC)
+    client = patient_client()
     text = client.open(spec())
     published(client)
     time.sleep(PAUSE + (seconds - PAUSE) / 4)
@@ -74,7 +80,7 @@ def newest_text_wins():
 
 
 def ends_meanwhile():
-    client = Client(ETLC)
+    client = patient_client()
     text = client.open(spec())
     published(client)
     # A monitor's budget waits for the plan, and the end does not.
@@ -89,7 +95,7 @@ def ends_meanwhile():
 
 
 def budgets_wait():
-    client = Client(ETLC)
+    client = patient_client()
     small = "spec a;\ninput x : f32;\nmonitor m = G x > 0;\nmonitor n = F x > 0;\n"
     text = client.open(small)
     for name in "m =", "n =", "m =":

@@ -1,7 +1,8 @@
 // The answers of the language server, a function for each request of the protocol.
 // Takes: an open document and the parameters of the request. Gives: the result, null where there is
 // none. Throws Refusal where a request cannot be answered. Keeps true: figures are those of the
-// generated header; the same place of a text gives the same answer.
+// generated header; the same place of a text gives the same answer, unless it is edited before the
+// plan is there.
 #pragma once
 
 #include <cstdint>
