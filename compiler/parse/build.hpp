@@ -20,10 +20,12 @@ public:
     explicit Builder(const source::File& file) : file_(file) {}
 
     /// Returns the name in `spec NAME;`, or the declaration.
-    std::variant<ast::Name, ast::Declaration> declaration(
-        Grammar::DeclarationContext& context) const;
+    std::variant<ast::Name, ast::SharedDeclaration> declaration(
+        Grammar::DeclarationContext& context);
 
 private:
+    ast::Declaration built(Grammar::DeclarationContext& context) const;
+
     /// A tree and the length of its longest path.
     template <class T>
     struct Tree {
@@ -122,6 +124,7 @@ private:
     [[noreturn]] static void too_high(source::Span span);
 
     const source::File& file_;
+    mutable ast::Amounts amounts_;  ///< of the declaration so far
 };
 
 }  // namespace etlc::parse

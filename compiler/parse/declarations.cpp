@@ -22,11 +22,17 @@ source::Span last_part(const Grammar::DeclarationContext& context) {
 
 }  // namespace
 
-std::variant<ast::Name, ast::Declaration> Builder::declaration(
-    Grammar::DeclarationContext& context) const {
-    const source::Span span = span_of_declaration(context, last_part(context));
+std::variant<ast::Name, ast::SharedDeclaration> Builder::declaration(
+    Grammar::DeclarationContext& context) {
     if (auto* const d = dynamic_cast<Grammar::SpecDeclarationContext*>(&context))
         return name(*d->name());
+    amounts_ = {};
+    ast::Declaration declaration = built(context);
+    return ast::SharedDeclaration(std::move(declaration), std::move(amounts_));
+}
+
+ast::Declaration Builder::built(Grammar::DeclarationContext& context) const {
+    const source::Span span = span_of_declaration(context, last_part(context));
     if (auto* const d = dynamic_cast<Grammar::RateDeclarationContext*>(&context))
         return ast::Rate{number(*d->amount()), false, "Hz", rounding(d->rounding()), span};
     if (auto* const d = dynamic_cast<Grammar::PeriodDeclarationContext*>(&context))
@@ -326,6 +332,7 @@ ast::Name Builder::name(const Grammar::NameContext& context) const {
 }
 
 ast::Number Builder::number(const Token& token) const {
+    amounts_.any = amounts_.any || is_name(token);
     return {text(token), span_of(token), is_name(token) ? text(token) : ""};
 }
 

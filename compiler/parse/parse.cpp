@@ -92,8 +92,7 @@ private:
         const source::Span span =
             source::join(span_of(token(slice.begin)), span_of(token(slice.end - 1)));
         const std::string_view text = file_.text(span);
-        read_.take(text, *known_);
-        if (auto found = read_.find(text, span.begin)) return std::move(*found);
+        if (auto found = read_.take(text, span.begin, *known_)) return std::move(*found);
         Said result = parsed(slice);
         read_.add(text, span.begin, result);
         return result;
@@ -127,7 +126,7 @@ private:
         throw SyntaxError{std::move(error)};
     }
 
-    Said parsed(Slice slice) const {
+    Said parsed(Slice slice) {
         refuse_mistakes(slice);
         refuse_deep_nesting(slice);
         SliceStream stream(*tokens_, slice);
@@ -138,7 +137,7 @@ private:
     }
 
     void add(Said read, source::Span first) {
-        if (auto* const declaration = std::get_if<ast::Declaration>(&read)) {
+        if (auto* const declaration = std::get_if<ast::SharedDeclaration>(&read)) {
             spec_.declarations.push_back(std::move(*declaration));
             return;
         }

@@ -17,6 +17,7 @@ class Client:
         self.buffer = b""
         self.last_id = 0
         self.notes = []  # notifications not yet read
+        self.patience = 20  # seconds that a message may take
         if capabilities is not None:
             self.initialized = self.ask("initialize", {"capabilities": capabilities})
             self.tell("initialized", {})
@@ -31,7 +32,7 @@ class Client:
         content = json.dumps(message).encode()
         self.send_bytes(b"Content-Length: %d\r\n\r\n" % len(content) + content)
 
-    def receive(self, seconds=20):
+    def receive(self):
         """Returns the next message, or None at the end of the server's output."""
         while True:
             head, mark, rest = self.buffer.partition(b"\r\n\r\n")
@@ -40,8 +41,8 @@ class Client:
                 if len(rest) >= length:
                     self.buffer = rest[length:]
                     return json.loads(rest[:length])
-            ready, _, _ = select.select([self.process.stdout], [], [], seconds)
-            assert ready, f"no answer in {seconds} s"
+            ready, _, _ = select.select([self.process.stdout], [], [], self.patience)
+            assert ready, f"no answer in {self.patience} s"
             data = os.read(self.process.stdout.fileno(), 1 << 16)
             if not data:
                 return None

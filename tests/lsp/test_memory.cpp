@@ -1,11 +1,12 @@
-// Edits texts at random, and compares what is read of each state with what is read without a memory
-// of earlier states.
+// Edits texts at random, and compares what is read of each state, and what the server answers about
+// it, with the same without a memory of earlier states.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "good_specs.hpp"
+#include "lsp/answers/answers.hpp"
 #include "lsp/spec/analysis.hpp"
 #include "parse/parse.hpp"
 
@@ -28,15 +29,34 @@ std::string findings(const std::string& text, parse::Memory& memory) {
         for (const diag::Note& note : one.notes)
             result += "  " + (note.span ? shown(*note.span) : "") + note.text + "\n";
     }
-    for (const Declared& one : all.names.declared)
+    for (const Declared& one : all.names().declared)
         result += one.name + " " + shown(one.name_span) + shown(one.span) + "\n";
-    for (const Occurrence& one : all.names.occurrences)
+    for (const Occurrence& one : all.names().occurrences)
         result += one.name + " " + shown(one.span) + (one.uncertain ? "?\n" : "\n");
-    for (const NamedFile& one : all.names.files) result += one.path + " " + shown(one.span) + "\n";
+    for (const NamedFile& one : all.names().files)
+        result += one.path + " " + shown(one.span) + "\n";
     for (const parse::Word& word : memory.words_of(all.file))
         result += fmt::format("{} {}", static_cast<int>(word.kind), shown(word.span));
     diag::Sink sink;
     return result + "\n" + ast::print(memory.parse(all.file, sink));
+}
+
+/// Returns the diagnostics, the outline, and hovers and completions at places all over the text.
+std::string answers(Document& document) {
+    const Client client{true, true, true};
+    const Json nothing;
+    const Analysis& analysis = document.analysis();
+    Json all{diagnostics_of(analysis, nullptr, document.uri(), client),
+             symbols({document, nothing, client})};
+    const auto ask = [&](std::uint32_t offset) {
+        const Json params{{"position", analysis.lines.position(offset)}};
+        for (const auto answer : {hover, definition, references, completion})
+            all.push_back(answer({document, params, client}));
+    };
+    for (std::size_t i = 0; i < analysis.names().declared.size(); i += 3)
+        ask(analysis.names().declared[i].name_span.begin);
+    for (std::uint32_t at = 0; at < document.text().size(); at += 97) ask(at);
+    return all.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
 /// Replaces some bytes, or most often inserts some, as one who types does.
@@ -64,6 +84,22 @@ TEST(Memory, FindsWhatAFreshReaderFinds) {
             edit(text, specs[random() % specs.size()], random);
             parse::Memory fresh;
             ASSERT_EQ(findings(text, memory), findings(text, fresh)) << text;
+        }
+    }
+}
+
+TEST(Memory, AnswersWhatAFreshServerAnswers) {
+    std::mt19937 random(12);
+    const std::vector<std::string> specs = good_specs();
+    for (std::size_t s = 0; s < specs.size(); s += 5) {
+        std::string text = specs[s];
+        Document edited("file:///nowhere/a.etl", text, 1, Encoding::utf16);
+        for (int step = 0; step < 16; ++step) {
+            if (step % 4 == 3) text = specs[s];
+            edit(text, specs[random() % specs.size()], random);
+            edited.replace(text);
+            Document fresh("file:///nowhere/a.etl", text, 1, Encoding::utf16);
+            ASSERT_EQ(answers(edited), answers(fresh)) << text;
         }
     }
 }

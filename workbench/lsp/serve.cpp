@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 
 #include "data/files/descriptor.hpp"
 #include "lsp/lsp.hpp"
@@ -13,14 +14,10 @@ namespace etlc::lsp {
 
 namespace {
 
-enum class Ready : std::uint8_t { input, nothing, broken };
+/// How long the client has to be quiet before its monitors are planned, in milliseconds.
+constexpr int kPause = 250;
 
-Ready wait_for(int in, int milliseconds) {
-    pollfd descriptor{in, POLLIN, 0};
-    const int ready = data::uninterrupted([&] { return ::poll(&descriptor, 1, milliseconds); });
-    if (ready < 0) return Ready::broken;
-    return ready == 0 ? Ready::nothing : Ready::input;
-}
+enum class Ready : std::uint8_t { input, plan, nothing, broken };
 
 class Service {
 public:
@@ -36,25 +33,32 @@ public:
                 if (const auto status = session_.exit_status()) return *status;
             }
             // Read waiting messages before the present state is analysed.
-            const Ready ready = wait_for(in_, 0);
+            Ready ready = wait(0);
             if (ready == Ready::nothing) {
                 session_.catch_up();
-                if (!rest()) continue;
+                ready = wait(session_.has_idle_work() ? kPause : -1);
             }
-            if (!read_some()) return end();
+            if (ready == Ready::nothing)
+                session_.do_idle_work();
+            else if (ready == Ready::plan)
+                session_.take_plan();
+            else if (!read_some())
+                return end();
         }
         return 1;
     }
 
+    bool is_planning() const { return session_.is_planning(); }
+
 private:
-    /// Waits for more input; false where it did idle work instead.
-    bool rest() {
-        const bool has_work = session_.has_idle_work();
-        if (wait_for(in_, has_work ? static_cast<int>(session_.pause().count()) : -1) !=
-            Ready::nothing)
-            return true;
-        session_.do_idle_work();
-        return false;
+    /// Waits for input first of all.
+    Ready wait(int milliseconds) {
+        std::array<pollfd, 2> descriptors{{{in_, POLLIN, 0}, {session_.has_plan(), POLLIN, 0}}};
+        const int ready = data::uninterrupted(
+            [&] { return ::poll(descriptors.data(), descriptors.size(), milliseconds); });
+        if (ready < 0) return Ready::broken;
+        if (ready == 0) return Ready::nothing;
+        return descriptors[0].revents != 0 ? Ready::input : Ready::plan;
     }
 
     /// Reads some input; false at its end.
@@ -68,7 +72,7 @@ private:
     }
 
     int end() {
-        session_.catch_up();
+        session_.end();
         return can_write_ ? session_.status_at_end() : 1;
     }
 
@@ -81,7 +85,12 @@ private:
 }  // namespace
 
 int serve(int in, int out) {
-    return Service(in, out).run();
+    Service service(in, out);
+    const int status = service.run();
+    // A plan in work cannot be stopped, and nobody waits for it. Its thread must not see how the
+    // process ends.
+    if (service.is_planning()) std::_Exit(status);
+    return status;
 }
 
 }  // namespace etlc::lsp

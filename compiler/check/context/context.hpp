@@ -132,8 +132,8 @@ void for_each_name(const ast::Declaration& declaration, const Visit& visit) {
 /// Returns the meaning of a name; null, with an error at the first use, if it is not declared.
 /// `wanted` describes what is accepted ("a predicate, a let or a bool input"); similar names are
 /// searched among `kinds`.
-const Reference* find(Context& context, const ast::Name& name, const std::vector<NameKind>& kinds,
-                      std::string_view wanted);
+const Reference* find(Context& context, const ast::Name& name,
+                      std::initializer_list<NameKind> kinds, std::string_view wanted);
 /// Returns the index of a name of one kind; kNone after an error or if its declaration is broken.
 Index resolve(Context& context, const ast::Name& name, NameKind kind);
 

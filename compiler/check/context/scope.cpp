@@ -47,11 +47,11 @@ const Entity* Scope::declare(NameKind kind, const ast::Name& name) {
 }
 
 const Reference* Scope::find(std::string_view name) const {
-    const auto found = names_.find(std::string(name));
+    const auto found = names_.find(name);
     return found == names_.end() ? nullptr : &found->second;
 }
 
-std::string Scope::nearest(std::string_view name, const std::vector<NameKind>& kinds) {
+std::string Scope::nearest(std::string_view name, std::initializer_list<NameKind> kinds) {
     std::vector<std::string> candidates;
     for (const NameKind kind : kinds)
         for (const Entity& entity : all(kind)) candidates.push_back(entity.name);

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -59,11 +61,15 @@ public:
 
     /// Returns the name of one of `kinds` that is most similar to `name`; empty if none is similar,
     /// or if a spec full of unknown names would make the search long.
-    std::string nearest(std::string_view name, const std::vector<NameKind>& kinds);
+    std::string nearest(std::string_view name, std::initializer_list<NameKind> kinds);
 
 private:
+    struct Hash : std::hash<std::string_view> {
+        using is_transparent = void;
+    };
+
     std::array<std::vector<Entity>, kNameKinds> entities_;
-    std::unordered_map<std::string, Reference> names_;
+    std::unordered_map<std::string, Reference, Hash, std::equal_to<>> names_;
     std::size_t comparisons_ = 0;
 };
 

@@ -90,9 +90,11 @@ Constancy past_at_start(const Formula& formula, const Operands& operands) {
 
 std::vector<Constancies> constancies(const Model& model) {
     std::vector<Constancies> result(model.formulas.size());
+    Operands anywhere, at_start;
     for (std::size_t i = 0; i < model.formulas.size(); ++i) {
         const Formula& formula = model.formulas[i];
-        Operands anywhere, at_start;
+        anywhere.clear();
+        at_start.clear();
         for (const Index operand : formula.operands) {
             anywhere.push_back(result[operand].anywhere);
             at_start.push_back(result[operand].at_start);

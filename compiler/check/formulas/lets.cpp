@@ -19,9 +19,11 @@ struct Use {
     Span span;
 };
 
-std::vector<Use> lets_in(const Context& c, const ast::Formula& formula) {
+/// `pending` is empty, and kept from call to call for its memory.
+std::vector<Use> lets_in(const Context& c, const ast::Formula& formula,
+                         std::vector<const ast::Formula*>& pending) {
     std::vector<Use> uses;
-    std::vector<const ast::Formula*> pending{&formula};
+    pending.push_back(&formula);
     while (!pending.empty()) {
         const ast::Formula& next = *pending.back();
         pending.pop_back();
@@ -40,8 +42,9 @@ std::vector<Use> lets_in(const Context& c, const ast::Formula& formula) {
 class LetOrder {
 public:
     explicit LetOrder(Context& context) : c_(context) {
+        std::vector<const ast::Formula*> pending;
         for_each_declaration<ast::Let>(c_.spec, [&](const ast::Let& let, Index) {
-            uses_.push_back(lets_in(c_, *let.formula));
+            uses_.push_back(lets_in(c_, *let.formula, pending));
         });
         states_.resize(uses_.size());
     }

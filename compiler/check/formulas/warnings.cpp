@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <tuple>
+#include <unordered_map>
+#include <utility>
 
 #include "check/context/context.hpp"
 #include "check/formulas/constancy.hpp"
@@ -71,7 +75,7 @@ void report_same(Context& c, std::string_view kind, const Entity& entity, const 
 }
 
 void warn_of_same_predicates(Context& c) {
-    std::map<std::string, const Entity*> first;
+    std::unordered_map<std::string, const Entity*> first;
     for (Index i = 0; i < c.scope.all(NameKind::predicate).size(); ++i) {
         const Predicate& predicate = c.model.predicates[i];
         const Entity& entity = c.scope.entity(NameKind::predicate, i);
@@ -93,20 +97,26 @@ using Kind = Formula::Kind;
 
 /// Numbers the formulas; those of the same structure have the same number.
 std::vector<Index> structures(const Model& model) {
-    std::map<std::vector<Index>, Index> known;
+    struct Hash {
+        std::size_t operator()(const std::vector<Index>& key) const {
+            const std::string_view bytes(reinterpret_cast<const char*>(key.data()),
+                                         key.size() * sizeof(Index));
+            return std::hash<std::string_view>()(bytes);
+        }
+    };
+    std::unordered_map<std::vector<Index>, Index, Hash> known(model.formulas.size());
     std::vector<Index> result;
+    result.reserve(model.formulas.size());
+    std::vector<Index> key;
     for (const Formula& formula : model.formulas) {
-        std::vector<Index> operands;
-        for (const Index operand : formula.operands) operands.push_back(result[operand]);
+        key = {static_cast<Index>(formula.kind), formula.index, formula.low, formula.high};
+        const auto first = static_cast<std::ptrdiff_t>(key.size());
+        for (const Index operand : formula.operands) key.push_back(result[operand]);
         const bool commutes = formula.kind == Kind::conjunction ||
                               formula.kind == Kind::disjunction ||
                               formula.kind == Kind::equivalence;
-        if (commutes) std::sort(operands.begin(), operands.end());
-        std::vector<Index> key{static_cast<Index>(formula.kind), formula.index, formula.low,
-                               formula.high};
-        key.insert(key.end(), operands.begin(), operands.end());
-        result.push_back(
-            known.try_emplace(std::move(key), static_cast<Index>(known.size())).first->second);
+        if (commutes) std::sort(key.begin() + first, key.end());
+        result.push_back(known.try_emplace(key, static_cast<Index>(known.size())).first->second);
     }
     return result;
 }
@@ -122,7 +132,8 @@ public:
           model_(context.model),
           structures_(structures(model_)),
           constancies_(constancies(model_)),
-          reaches_(reaches(model_)) {}
+          reaches_(reaches(model_)),
+          below_(model_.formulas.size(), kNone) {}
 
     void run() {
         for (Index i = 0; i < model_.formulas.size(); ++i) {
@@ -157,10 +168,8 @@ private:
     void warn_of_same_operands(Index at) {
         const Formula& formula = model_.formulas[at];
         if (formula.operands.size() < 2) return;
-        std::map<Index, Index> seen;
         for (const Index operand : formula.operands) {
-            const auto [same, is_new] = seen.try_emplace(structures_[operand], operand);
-            if (is_new) continue;
+            if (std::exchange(below_[structures_[operand]], at) != at) continue;
             c_.report(Code::same_operands, c_.operator_spans[at],
                       fmt::format("{} has the operand '{}' twice",
                                   ast::operator_of(formula.kind)->symbol, shown(model_, operand)));
@@ -169,7 +178,7 @@ private:
         for (const Index operand : formula.operands) {
             if (model_.formulas[operand].kind != Kind::negation) continue;
             const Index inner = model_.formulas[operand].operands[0];
-            if (!seen.contains(structures_[inner])) continue;
+            if (below_[structures_[inner]] != at) continue;
             c_.report(Code::same_operands, c_.operator_spans[at],
                       fmt::format("{} has the operand '{}' and its negation",
                                   ast::operator_of(formula.kind)->symbol, shown(model_, inner)));
@@ -256,6 +265,7 @@ private:
     std::vector<Index> structures_;
     std::vector<Constancies> constancies_;
     std::vector<Reach> reaches_;
+    std::vector<Index> below_;  ///< for each structure the last formula with such an operand
     std::map<std::tuple<Index, bool, Restarts>, const Entity*> monitors_;
 };
 

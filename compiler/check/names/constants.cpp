@@ -230,13 +230,27 @@ private:
 
 }  // namespace
 
+namespace {
+
+/// Whether a declaration may have names of constants, right or wrong ones.
+bool has_constants(const Context& c, const ast::Amounts& amounts) {
+    return amounts.any ||
+           std::any_of(amounts.operands.begin(), amounts.operands.end(),
+                       [&](const std::string& name) {
+                           const Reference* const meant = c.scope.find(name);
+                           return meant != nullptr && meant->kind == NameKind::constant;
+                       });
+}
+
+}  // namespace
+
 void set_constants(Context& c, ast::Spec& spec) {
     std::vector<ast::Constant*> constants;
-    for (ast::Declaration& declaration : spec.declarations) {
+    for (ast::SharedDeclaration& declaration : spec.declarations) {
         for_each_name(declaration,
                       [&](NameKind kind, const ast::Name& name) { c.scope.declare(kind, name); });
-        if (auto* const constant = std::get_if<ast::Constant>(&declaration))
-            constants.push_back(constant);
+        if (std::holds_alternative<ast::Constant>(*declaration))
+            constants.push_back(&std::get<ast::Constant>(declaration.changed()));
     }
     for (const ast::Name& name : spec.unreadable) c.scope.declare(NameKind::unreadable, name);
     c.model.constants.resize(constants.size());
@@ -247,8 +261,9 @@ void set_constants(Context& c, ast::Spec& spec) {
     }
 
     Replacement replacement(c, constants);
-    const auto is_broken = [&](ast::Declaration& declaration) {
-        if (replacement.in(declaration)) return false;
+    const auto is_broken = [&](ast::SharedDeclaration& declaration) {
+        if (!has_constants(c, declaration.amounts())) return false;
+        if (replacement.in(declaration.changed())) return false;
         for_each_name(declaration, [&](NameKind /*kind*/, const ast::Name& name) {
             spec.unreadable.push_back(name);
         });

@@ -55,7 +55,8 @@ void declare_all(Context& c) {
 
 /// Returns the replacement for a name known from other languages (TRUE, infinity; G p for Gp), or
 /// nothing.
-std::string meant_by(const Context& c, std::string_view name, const std::vector<NameKind>& kinds) {
+std::string meant_by(const Context& c, std::string_view name,
+                     std::initializer_list<NameKind> kinds) {
     std::string lower(name);
     for (char& letter : lower)
         letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
@@ -93,7 +94,7 @@ void declare_names(Context& c) {
             .note("add a line such as 'monitor m = G p;'");
 }
 
-const Reference* find(Context& c, const ast::Name& name, const std::vector<NameKind>& kinds,
+const Reference* find(Context& c, const ast::Name& name, std::initializer_list<NameKind> kinds,
                       std::string_view wanted) {
     const Reference* found = c.scope.find(name.text);
     if (found != nullptr) {

@@ -39,7 +39,7 @@ constexpr std::pair<std::string_view, std::string_view> kUsual[] = {
 constexpr std::array<std::string_view, 4> kUnits{"us", "ms", "s", "min"};
 
 Quantity step_of(const Analysis& analysis) {
-    return {Decimal::parse(analysis.checked.step_number), analysis.checked.step_unit};
+    return {Decimal::parse(analysis.checked->step_number), analysis.checked->step_unit};
 }
 
 class Found {
@@ -65,7 +65,7 @@ void add_written(Found& found, const Analysis& analysis, std::string_view number
     const check::StepCount count = check::count_steps({Decimal::parse(number), unit}, step);
     if (count.too_many) return;
     const std::string text = check::with_unit(number, unit);
-    const std::string& rounding = analysis.checked.model.rounding;
+    const std::string& rounding = analysis.checked->model.rounding;
     if (count.whole) return found.add(text, count.floor, false);
     if (!rounding.empty()) {
         const bool up = rounding == "up" || (rounding == "to the nearest" && count.upper_half);
@@ -78,7 +78,7 @@ void add_written(Found& found, const Analysis& analysis, std::string_view number
 
 /// Returns usual durations; none where the spec has no rate.
 std::vector<Duration> durations(const Analysis& analysis) {
-    if (analysis.checked.step_number.empty()) return {};
+    if (analysis.checked->step_number.empty()) return {};
     Found found;
     for (const auto& [number, unit] : kUsual) add_written(found, analysis, number, unit, false);
     return found.take();
@@ -86,7 +86,7 @@ std::vector<Duration> durations(const Analysis& analysis) {
 
 /// Returns the number with each unit; where that is no whole number of steps, the two neighbours.
 std::vector<Duration> durations_near(const Analysis& analysis, const std::string& number) {
-    if (analysis.checked.step_number.empty()) return {};
+    if (analysis.checked->step_number.empty()) return {};
     if (Decimal::parse(number).digits.size() > check::kMaxTimeDigits) return {};
     Found found;
     for (const std::string_view unit : kUnits) add_written(found, analysis, number, unit, true);
@@ -202,7 +202,7 @@ private:
 
 /// Adds the names that fit, except that of the declaration that is being written.
 void add_names(Items& items, const Analysis& analysis, const parse::Continuations& at) {
-    for (const Declared& declared : analysis.names.declared) {
+    for (const Declared& declared : analysis.names().declared) {
         if (!declared.kind || !fits(declared, at.role, at.declaration)) continue;
         const std::uint32_t name = declared.name_span.begin;
         const bool is_own = at.begin <= name && name <= at.typed.begin;

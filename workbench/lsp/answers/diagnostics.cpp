@@ -77,9 +77,7 @@ source::Span place_of(const diag::Diagnostic& found, const Analysis& analysis) {
     if (found.span) return *found.span;
     for (const diag::Note& note : found.notes)
         if (!found.file.empty() && note.span) return *note.span;
-    for (const Declared& declared : analysis.names.declared)
-        if (!declared.kind) return declared.name_span;
-    return {0, 0};
+    return analysis.spec.name.text.empty() ? source::Span{0, 0} : analysis.spec.name.span;
 }
 
 }  // namespace

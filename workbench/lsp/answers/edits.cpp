@@ -18,9 +18,9 @@ namespace {
 }
 
 const Occurrence& name_at(const Analysis& analysis, std::uint32_t offset) {
-    const Occurrence* const at = occurrence_at(analysis.names, offset);
+    const Occurrence* const at = occurrence_at(analysis.names(), offset);
     if (at == nullptr) refuse("no name of this spec stands here");
-    if (declaration_of(analysis.names, *at) == nullptr)
+    if (declaration_of(analysis.names(), *at) == nullptr)
         refuse(fmt::format("'{}' is not declared", at->name));
     return *at;
 }
@@ -32,7 +32,7 @@ unsigned line_of(const Analysis& analysis, source::Span span) {
 /// Refuses a rename where the old name has uses that cannot be renamed.
 void refuse_where_unsure(const Analysis& analysis, const Occurrence& of) {
     const std::string& name = of.name;
-    for (const Occurrence& occurrence : analysis.names.occurrences) {
+    for (const Occurrence& occurrence : analysis.names().occurrences) {
         if (!occurrence.means_the_same(of)) continue;
         if (occurrence.uncertain)
             refuse(fmt::format("line {} has '{}' in a declaration that cannot be read",
@@ -54,7 +54,7 @@ void refuse_bad_name(const Analysis& analysis, const Declared& declared,
         refuse(fmt::format("'{}' {}; use another name, for example '{}'", new_name, *why,
                            check::allowed_name(
                                new_name, is_spec ? "spec" : check::word(*declared.kind), is_spec)));
-    for (const Declared& other : analysis.names.declared)
+    for (const Declared& other : analysis.names().declared)
         if (!is_spec && other.kind && other.name == new_name)
             refuse(fmt::format("'{}' is declared already, on line {}", new_name,
                                line_of(analysis, other.name_span)));
@@ -80,9 +80,9 @@ void refuse_other_meaning(const Analysis& analysis, const std::vector<const Occu
     const source::File file(analysis.file.path(), renamed(analysis, all, new_name));
     diag::Sink sink;
     const Names after = names_of(parse::parse(file, sink), file);
-    std::vector<Occurrence> before = analysis.names.occurrences;
+    std::vector<Occurrence> before = analysis.names().occurrences;
     std::erase_if(before, [](const Occurrence& occurrence) { return occurrence.uncertain; });
-    bool same = after.readable.size() == analysis.names.readable.size() &&
+    bool same = after.readable.size() == analysis.names().readable.size() &&
                 after.occurrences.size() == before.size();
     for (std::size_t i = 0; same && i < before.size(); ++i) {
         const Occurrence& now = after.occurrences[i];
@@ -98,7 +98,7 @@ void refuse_other_meaning(const Analysis& analysis, const std::vector<const Occu
 /// Returns the edits of all occurrences of a name.
 Json edits_of_name(const Analysis& analysis, const Occurrence& of, const std::string& new_name) {
     Json edits = Json::array();
-    for (const Occurrence& occurrence : analysis.names.occurrences)
+    for (const Occurrence& occurrence : analysis.names().occurrences)
         if (occurrence.means_the_same(of))
             edits.push_back(
                 {{"range", analysis.lines.range(occurrence.span)}, {"newText", new_name}});
@@ -111,7 +111,7 @@ std::string title(const diag::Diagnostic& found, const Analysis& analysis) {
 }
 
 Json edits(const diag::Diagnostic& found, const Analysis& analysis) {
-    for (const Occurrence& occurrence : analysis.names.occurrences)
+    for (const Occurrence& occurrence : analysis.names().occurrences)
         if (occurrence.declares && occurrence.span == *found.span)
             return edits_of_name(analysis, occurrence, found.meant);
     return Json::array({{{"range", analysis.lines.range(*found.span)}, {"newText", found.meant}}});
@@ -132,9 +132,9 @@ Json rename(const Question& question) {
     const Occurrence& of = name_at(analysis, question.offset());
     if (of.name == new_name) return nullptr;
     refuse_where_unsure(analysis, of);
-    refuse_bad_name(analysis, *declaration_of(analysis.names, of), new_name);
+    refuse_bad_name(analysis, *declaration_of(analysis.names(), of), new_name);
     std::vector<const Occurrence*> all;
-    for (const Occurrence& occurrence : analysis.names.occurrences)
+    for (const Occurrence& occurrence : analysis.names().occurrences)
         if (occurrence.means_the_same(of)) all.push_back(&occurrence);
     refuse_other_meaning(analysis, all, new_name);
     return {{"changes", {{question.uri(), edits_of_name(analysis, of, new_name)}}}};

@@ -160,7 +160,7 @@ Sentences about(const check::Constant& constant) {
 }  // namespace
 
 Sentences facts_of(const Analysis& analysis, const std::string& name, const Planned* planned) {
-    const check::Inspected& checked = analysis.checked;
+    const check::Inspected& checked = *analysis.checked;
     const check::Inspected::Named* const named = checked.find(name);
     if (named == nullptr) return {};
     const Model& model = checked.model;

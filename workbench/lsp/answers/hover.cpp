@@ -55,10 +55,11 @@ Json hover(const Question& question) {
     const Analysis& analysis = document.analysis();
     const std::uint32_t offset = question.offset();
     const bool with_markdown = question.client.hover_in_markdown;
-    if (const Occurrence* const at = occurrence_at(analysis.names, offset)) {
-        const Declared* const declared = declaration_of(analysis.names, *at);
+    if (const Occurrence* const at = occurrence_at(analysis.names(), offset)) {
+        const Declared* const declared = declaration_of(analysis.names(), *at);
         if (declared == nullptr) return nullptr;
-        if (declared->kind == check::NameKind::monitor) document.plan();
+        const bool has_budget = declared->kind == check::NameKind::monitor;
+        if (has_budget && question.can_wait && document.needs_plan()) throw Unplanned{};
         const std::vector<std::string> facts =
             declared->kind ? facts_of(analysis, at->name, document.planned())
                            : std::vector<std::string>{};

@@ -46,12 +46,12 @@ std::string detail_of(const Declared& declared) {
 Json definition(const Question& question) {
     const Analysis& analysis = question.analysis();
     const std::uint32_t offset = question.offset();
-    if (const Occurrence* const at = occurrence_at(analysis.names, offset)) {
-        const Declared* const declared = declaration_of(analysis.names, *at);
+    if (const Occurrence* const at = occurrence_at(analysis.names(), offset)) {
+        const Declared* const declared = declaration_of(analysis.names(), *at);
         if (declared == nullptr) return nullptr;
         return location(question.uri(), analysis.lines.range(declared->name_span));
     }
-    for (const NamedFile& named : analysis.names.files) {
+    for (const NamedFile& named : analysis.names().files) {
         if (offset < named.span.begin || offset > named.span.end) continue;
         const std::filesystem::path path =
             std::filesystem::path(analysis.file.path()).parent_path() / named.path;
@@ -66,10 +66,10 @@ Json references(const Question& question) {
     const Analysis& analysis = question.analysis();
     const Json* const asked = find_path(question.params, "context/includeDeclaration");
     const bool with_declaration = asked == nullptr || *asked == true;
-    const Occurrence* const at = occurrence_at(analysis.names, question.offset());
+    const Occurrence* const at = occurrence_at(analysis.names(), question.offset());
     if (at == nullptr) return nullptr;
     Json all = Json::array();
-    for (const Occurrence& occurrence : analysis.names.occurrences)
+    for (const Occurrence& occurrence : analysis.names().occurrences)
         if (occurrence.means_the_same(*at) && (with_declaration || !occurrence.declares))
             all.push_back(location(question.uri(), analysis.lines.range(occurrence.span)));
     return all;
@@ -77,12 +77,12 @@ Json references(const Question& question) {
 
 Json highlights(const Question& question) {
     const Analysis& analysis = question.analysis();
-    const Occurrence* const at = occurrence_at(analysis.names, question.offset());
+    const Occurrence* const at = occurrence_at(analysis.names(), question.offset());
     if (at == nullptr) return nullptr;
     constexpr int kRead = 2;
     constexpr int kWrite = 3;
     Json all = Json::array();
-    for (const Occurrence& occurrence : analysis.names.occurrences)
+    for (const Occurrence& occurrence : analysis.names().occurrences)
         if (occurrence.means_the_same(*at))
             all.push_back({{"range", analysis.lines.range(occurrence.span)},
                            {"kind", occurrence.declares ? kWrite : kRead}});
@@ -92,7 +92,7 @@ Json highlights(const Question& question) {
 Json symbols(const Question& question) {
     const Analysis& analysis = question.analysis();
     Json all = Json::array();
-    for (const Declared& declared : analysis.names.declared) {
+    for (const Declared& declared : analysis.names().declared) {
         Json symbol{{"name", declared.name}, {"kind", symbol_kind(declared)}};
         const Range whole = analysis.lines.range(declared.span);
         if (question.client.hierarchical_symbols) {

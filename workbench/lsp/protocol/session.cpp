@@ -103,15 +103,19 @@ void Session::receive(const Json& message) {
     const Json* const params = find(message, "params");
     const auto& name = method->get_ref<const std::string&>();
     if (id != nullptr)
-        answer(*id, name, params != nullptr ? *params : kNone);
+        answer({*id, name, params != nullptr ? *params : kNone}, true);
     else
         take_note(name, params != nullptr ? *params : kNone);
 }
 
-void Session::answer(const Json& id, const std::string& method, const Json& params) {
+void Session::answer(const Request& request, bool can_wait) {
+    const Json& id = request.id;
     try {
-        Json result = result_of(method, params);
+        Json result = result_of(request, can_wait);
         send_({{"jsonrpc", "2.0"}, {"id", id}, {"result", std::move(result)}});
+    } catch (const Unplanned&) {
+        waiting_.push_back(request);
+        begin_plan(document_of(request.params));
     } catch (const Refusal& refusal) {
         respond_error(id, refusal.code, refusal.message);
     } catch (const std::bad_alloc&) {
@@ -121,7 +125,12 @@ void Session::answer(const Json& id, const std::string& method, const Json& para
     }
 }
 
-Json Session::result_of(const std::string& method, const Json& params) {
+void Session::answer_waiting(bool can_wait) {
+    for (const Request& request : std::exchange(waiting_, {})) answer(request, can_wait);
+}
+
+Json Session::result_of(const Request& request, bool can_wait) {
+    const auto& [id, method, params] = request;
     if (life_ == Life::new_born && method != "initialize")
         throw Refusal{ErrorCode::server_not_initialized, "expected 'initialize' first"};
     if (life_ == Life::shut_down)
@@ -131,7 +140,7 @@ Json Session::result_of(const std::string& method, const Json& params) {
     const auto found = answers().find(method);
     if (found == answers().end())
         throw Refusal{ErrorCode::method_not_found, fmt::format("there is no '{}' here", method)};
-    return found->second({document_of(params), params, client_});
+    return found->second({document_of(params), params, client_, can_wait});
 }
 
 void Session::take_note(const std::string& method, const Json& params) {
@@ -139,6 +148,7 @@ void Session::take_note(const std::string& method, const Json& params) {
     if (life_ != Life::running) return;
     const auto found = notifications().find(method);
     if (found == notifications().end()) return;
+    answer_waiting(false);  // they are about the text before
     try {
         (this->*found->second)(params);
     } catch (const Refusal& refusal) {
@@ -185,11 +195,13 @@ Json Session::initialize(const Json& params) {
 }
 
 Json Session::shutdown() {
+    answer_waiting(false);
     life_ = Life::shut_down;
     return nullptr;
 }
 
 void Session::exit(const Json& /*params*/) {
+    answer_waiting(false);
     exit_status_ = status_at_end();
 }
 
@@ -215,8 +227,9 @@ std::int64_t version_of(const Json& document) {
 void Session::opened(const Json& params) {
     const Json& document = member(params, "textDocument");
     const std::string& uri = text_of(document, "uri");
-    documents_.insert_or_assign(
-        uri, Document(uri, text_of(document, "text"), version_of(document), encoding_));
+    const std::string& text = text_of(document, "text");
+    documents_.erase(uri);
+    documents_.try_emplace(uri, uri, text, version_of(document), encoding_);
 }
 
 void Session::changed(const Json& params) {
@@ -269,28 +282,39 @@ void Session::catch_up() {
         if (document.is_news) publish(document);
 }
 
-bool Session::has_idle_work() const {
-    return life_ == Life::running &&
-           std::any_of(documents_.begin(), documents_.end(),
-                       [](const auto& entry) { return !entry.second.is_planned; });
+void Session::end() {
+    answer_waiting(false);
+    catch_up();
 }
 
-std::chrono::milliseconds Session::pause() const {
-    using std::chrono::milliseconds;
-    return std::clamp(4 * last_planning_, milliseconds(250), milliseconds(10'000));
+bool Session::has_idle_work() const {
+    return life_ == Life::running && !is_planning() &&
+           std::any_of(documents_.begin(), documents_.end(),
+                       [](const auto& entry) { return entry.second.needs_plan(); });
 }
 
 void Session::do_idle_work() {
-    using Clock = std::chrono::steady_clock;
-    for (auto& [uri, document] : documents_) {
-        if (document.is_planned) continue;
-        const Clock::time_point start = Clock::now();
-        document.plan();
-        last_planning_ =
-            std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - start);
-        break;  // messages may be waiting
+    for (auto& [uri, document] : documents_)
+        if (document.needs_plan()) begin_plan(document);
+}
+
+void Session::begin_plan(Document& document) {
+    if (!is_planning()) planner_.start(document.analysis().checked);
+}
+
+void Session::take_plan() {
+    const Planner::Checked checked = planner_.checked();
+    auto planned = std::make_unique<Planned>();  // if it fails: no plan, and no second try
+    try {
+        planned = planner_.take();
+    } catch (const std::bad_alloc&) {
+        log("there is not enough memory to plan the monitors");
+    } catch (const data::SpillError& error) {
+        log(error.what());
     }
-    catch_up();
+    for (auto& [uri, document] : documents_)
+        if (document.has(checked)) document.take(std::move(planned));
+    answer_waiting(true);
 }
 
 }  // namespace etlc::lsp

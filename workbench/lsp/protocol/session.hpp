@@ -1,14 +1,15 @@
 // A client's session: its state, its documents, and the dispatch of its messages.
 // Takes: messages. Gives: responses and notifications, through `send`, in the order of the
-// requests. Keeps true: every request gets exactly one response; only `exit` ends the process;
+// requests, but for those that wait for a plan; these are answered before the next edit.
+// Keeps true: every request gets exactly one response; only `exit` ends the process;
 // findings are published for the last state of a document, and cleared when it closes.
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lsp/answers/answers.hpp"
 #include "lsp/protocol/reader.hpp"
@@ -26,12 +27,16 @@ public:
     /// Publishes new findings. Call it when no message is waiting, so that only the last state of a
     /// burst of edits is analysed.
     void catch_up();
-    /// Returns whether documents wait to be planned, which is done when the client is idle.
+    /// Returns whether a document waits to be planned, which begins when the client is idle.
     bool has_idle_work() const;
-    /// Returns how long the client has to be idle: longer where planning took long, since no
-    /// message is read meanwhile.
-    std::chrono::milliseconds pause() const;
     void do_idle_work();
+    /// Whether a plan is in work.
+    bool is_planning() const { return planner_.is_busy(); }
+    /// Returns a descriptor that can be read once there is a plan to take.
+    int has_plan() const { return planner_.ready(); }
+    void take_plan();
+    /// Does what can be done at the end of the input.
+    void end();
 
     /// Returns the exit status after `exit`.
     std::optional<int> exit_status() const { return exit_status_; }
@@ -43,9 +48,21 @@ private:
     using Notification = void (Session::*)(const Json& params);
 
     void receive(const Json& message);
-    void answer(const Json& id, const std::string& method, const Json& params);
+    struct Request {
+        Json id;
+        std::string method;
+        Json params;
+    };
+
+    /// `can_wait`: for a plan.
+    void answer(const Request& request, bool can_wait);
     void take_note(const std::string& method, const Json& params);
-    Json result_of(const std::string& method, const Json& params);
+    Json result_of(const Request& request, bool can_wait);
+    /// Answers the requests that wait for a plan; those that still want one go on waiting if they
+    /// can.
+    void answer_waiting(bool can_wait);
+    /// Begins to plan a document, unless a plan is in work.
+    void begin_plan(Document& document);
     void respond_error(const Json& id, ErrorCode code, const std::string& message);
     void log(const std::string& message);
     void publish(Document& document);
@@ -71,7 +88,8 @@ private:
     Encoding encoding_ = Encoding::utf16;
     Client client_;
     std::map<std::string, Document> documents_;
-    std::chrono::milliseconds last_planning_{0};
+    std::vector<Request> waiting_;  ///< for plans
+    Planner planner_;
 };
 
 }  // namespace etlc::lsp

@@ -8,22 +8,21 @@ namespace etlc::lsp {
 
 Analysis::Analysis(std::string path, std::string text, Encoding encoding, parse::Memory& read,
                    check::KnownMatrices& known)
-    : file(std::move(path), std::move(text)), lines(file.text(), encoding) {
-    ast::Spec spec = read.parse(file, sink);
+    : file(std::move(path), std::move(text)), lines(file.text(), encoding), read_(read) {
+    spec = read.parse(file, sink);
     has_syntax_errors = sink.has_errors();
-    names = names_of(spec, file);
-    if (has_syntax_errors) add_uncertain(names, read.words_of(file), file);
     check::Options options;
     options.allow_missing = true;
-    checked = check::inspect(std::move(spec), file, options, known, sink);
+    checked =
+        std::make_shared<const check::Inspected>(check::inspect(spec, file, options, known, sink));
 }
 
-std::optional<Planned> plan(const Analysis& analysis) {
-    if (!analysis.checked.complete) return std::nullopt;
-    Planned result;
-    check::Model model = analysis.checked.model;
-    result.compiled = pipeline::compile(std::move(model), {}, result.sink);
-    return result;
+const Names& Analysis::names() const {
+    if (!names_) {
+        names_ = names_of(spec, file);
+        if (has_syntax_errors) add_uncertain(*names_, read_.words_of(file), file);
+    }
+    return *names_;
 }
 
 Document::Document(std::string uri, std::string text, std::int64_t version, Encoding encoding)
@@ -44,7 +43,6 @@ void Document::replace(Range range, std::string_view text) {
 void Document::forget() {
     planned_.reset();
     analysis_.reset();
-    is_planned = false;
     is_news = true;
 }
 
@@ -54,11 +52,9 @@ const Analysis& Document::analysis() {
     return *analysis_;
 }
 
-void Document::plan() {
-    if (is_planned) return;
-    planned_ = lsp::plan(analysis());
-    is_planned = true;
-    is_news = is_news || (planned_ && !planned_->sink.sorted().empty());
+void Document::take(std::unique_ptr<Planned> plan) {
+    planned_ = std::move(plan);
+    is_news = is_news || !planned_->sink.sorted().empty();
 }
 
 }  // namespace etlc::lsp

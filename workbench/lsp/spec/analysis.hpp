@@ -8,44 +8,47 @@
 #include <optional>
 #include <string>
 
+#include "ast/ast.hpp"
 #include "check/check.hpp"
 #include "diag/diag.hpp"
 #include "lsp/spec/names.hpp"
+#include "lsp/spec/planner.hpp"
 #include "lsp/text/position.hpp"
 #include "parse/memory.hpp"
-#include "pipeline/compile.hpp"
 #include "source/source.hpp"
 
 namespace etlc::lsp {
 
-struct Analysis {
-    /// `read`: what was read of an earlier state; `known`: the files of the spec that were read.
+class Analysis {
+public:
+    /// `read`: what was read of an earlier state, which outlives the analysis; `known`: the files
+    /// of the spec that were read.
     Analysis(std::string path, std::string text, Encoding encoding, parse::Memory& read,
              check::KnownMatrices& known);
     Analysis(const Analysis&) = delete;  // `lines` refers to `file`
     Analysis& operator=(const Analysis&) = delete;
 
+    /// The names of the spec, which only some requests need.
+    const Names& names() const;
+
     source::File file;
     Lines lines;
     diag::Sink sink;
+    ast::Spec spec;
     bool has_syntax_errors = false;
-    Names names;
-    check::Inspected checked;
-};
+    std::shared_ptr<const check::Inspected> checked;
 
-/// The result of planning the monitors, which takes longer.
-struct Planned {
-    diag::Sink sink;
-    std::optional<pipeline::Compiled> compiled;
+private:
+    parse::Memory& read_;
+    mutable std::optional<Names> names_;
 };
-
-/// Plans the monitors; nothing where the model is incomplete.
-std::optional<Planned> plan(const Analysis& analysis);
 
 /// A text that is open in the client.
 class Document {
 public:
     Document(std::string uri, std::string text, std::int64_t version, Encoding encoding);
+    Document(const Document&) = delete;  // the analysis refers to what was read
+    Document& operator=(const Document&) = delete;
 
     const std::string& uri() const { return uri_; }
     const std::string& text() const { return text_; }
@@ -59,13 +62,21 @@ public:
     void forget();
 
     const Analysis& analysis();
+    /// Whether this is the model of the present state.
+    bool has(const Planner::Checked& checked) const {
+        return analysis_ && analysis_->checked == checked;
+    }
+    /// Whether the model of this state is complete, and has no plan yet.
+    bool needs_plan() const {
+        return analysis_ && analysis_->checked->complete && planned_ == nullptr;
+    }
     /// Returns the plan; null where the model is incomplete or not planned yet.
-    const Planned* planned() const { return planned_ ? &*planned_ : nullptr; }
-    void plan();
+    const Planned* planned() const { return planned_.get(); }
+    /// Takes the plan of its model.
+    void take(std::unique_ptr<Planned> plan);
 
     /// The findings of this state, or of its planning, have not been published.
     bool is_news = true;
-    bool is_planned = false;
 
 private:
     std::string uri_;
@@ -75,7 +86,7 @@ private:
     parse::Memory read_;
     check::KnownMatrices known_;
     std::unique_ptr<Analysis> analysis_;
-    std::optional<Planned> planned_;
+    std::unique_ptr<Planned> planned_;
 };
 
 }  // namespace etlc::lsp
