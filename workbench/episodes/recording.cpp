@@ -93,6 +93,16 @@ void Seen::add(const std::vector<plan::Sample>& samples) {
     hash_.add(seen_);
 }
 
+std::string Seen::inputs() const {
+    std::string names;
+    for (const Index index : inputs_) {
+        const Input& input = model_.inputs[index];
+        names += fmt::format("{}, {} x {}\n", name_of(input), static_cast<int>(input.type),
+                             input.dimension);
+    }
+    return names;
+}
+
 /// Applies range, `hold` and `missing` as plan::Evaluator does.
 void Seen::see(const Input& input, const plan::Sample& sample, Held& held,
                std::vector<float>& seen) const {
@@ -237,13 +247,16 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const std::string&
     const auto is_unmarked = read_encoders(wanted, path, options.names);
     if (!is_unmarked) return is_unmarked.failure();
     if (auto failure = data::check_rate(path, wanted.model->step_seconds)) return *failure;
+    std::shared_ptr<KnownIdentities> identities;
     const Opener file = [&](const std::vector<Channel>& channels) {
-        return open_labelled(path, channels, options);
+        return open_labelled(path, channels, options, &identities);
     };
     auto recording = open(wanted, wrap ? wrap(file) : file);
     if (!recording) return recording;
     recording->path_ = path;
     recording->is_unmarked_ = *is_unmarked;
+    if (identities) recording->known_ = identities->find(recording->seen_.inputs());
+    recording->identities_ = std::move(identities);
     return recording;
 }
 
@@ -303,12 +316,16 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
 diag::Result<bool> Recording::next() {
     auto more = trace_->next(sample_);
     if (more && !*more && frames_ == 0) return data::no_steps();
+    if (more && !*more && identities_ && !known_) {
+        known_ = std::make_shared<const Identity>(seen_.identity());
+        identities_->add(seen_.inputs(), known_);
+    }
     if (!more || !*more) return more;
     const auto narrowed = narrow();
     if (!narrowed) return narrowed;
     if (leaks_ != nullptr && !leak_) leak_ = leaks_->find(samples_, frames_);
     if (leaks_ != nullptr) leaks_->find_near(samples_, frames_, near_);
-    seen_.add(samples_);
+    if (!known_) seen_.add(samples_);
     for (std::size_t c = 0; c < channel_inputs_.size(); ++c) {
         std::vector<double>& recorded = frame_[channel_inputs_[c]];
         std::swap(recorded, sample_.values[c]);
