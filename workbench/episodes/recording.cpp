@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 
@@ -58,15 +56,9 @@ std::vector<data::HashedInput> hashed(const check::Model& model, const std::vect
     return result;
 }
 
-/// Written so that compilers vectorise it.
-bool are_finite(const std::vector<float>& values) {
-    bool finite = true;
-    for (const float x : values) finite &= std::abs(x) <= std::numeric_limits<float>::max();
-    return finite;
-}
-
 bool is_there(const Input& input, const plan::Sample& sample) {
-    return sample.present && !sample.values.empty() && are_finite(sample.values) &&
+    return sample.present && !sample.values.empty() &&
+           plan::all_finite(sample.values.data(), sample.values.size()) &&
            (input.type != InputType::scalar || input.range.contains(sample.values[0]));
 }
 
@@ -341,11 +333,12 @@ diag::Result<bool> Recording::narrow() {
         if (!narrowed_[c]) continue;
         const Index input = channel_inputs_[c];
         std::string why;
-        auto sample =
-            plan::narrow(model_->inputs[input], sample_.present[c], sample_.values[c], why);
+        auto sample = plan::narrow(model_->inputs[input], sample_.present[c], sample_.values[c],
+                                   why, std::move(samples_[input]));
         if (!sample) return Failure{Code::trace_value, fmt::format("step {}: {}", frames_, why)};
         const check::Input& of = model_->inputs[input];
-        if (is_there(of, *sample) && !freshness_[c].accepts(of, sample->values))
+        if (of.stale_after > 0 && is_there(of, *sample) &&
+            !freshness_[c].accepts(of, sample->values))
             *sample = {.is_stale = true};
         samples_[input] = std::move(*sample);
     }

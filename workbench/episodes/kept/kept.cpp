@@ -51,11 +51,10 @@ public:
     void add(bool present, const std::vector<double>& values) {
         if (!has_) return;
         present_.push_back(present ? 1 : 0);
-        if (present && !is_wide_ && !are_floats(values)) widen();
         if (is_wide_)
             append(present, values, wide_);
-        else
-            append(present, values, narrow_);
+        else if (!append(present, values, narrow_))
+            widen(values);
     }
     /// Sets the values of a frame and returns whether it is present.
     bool get(std::uint64_t frame, std::vector<double>& values) const {
@@ -72,23 +71,23 @@ public:
     }
 
 private:
-    /// Written so that compilers vectorise it.
-    static bool are_floats(const std::vector<double>& values) {
-        bool exact = true;
-        for (const double x : values)
-            exact &= static_cast<double>(static_cast<float>(x)) == x || x != x;
-        return exact;
-    }
+    /// Returns whether T has these values exactly. Written so that compilers vectorise it.
     template <class T>
-    void append(bool present, const std::vector<double>& values, std::vector<T>& all) const {
+    bool append(bool present, const std::vector<double>& values, std::vector<T>& all) const {
         const std::size_t at = all.size();
         all.resize(at + width_);
-        if (!present) return;
-        for (std::size_t i = 0; i < width_; ++i) all[at + i] = static_cast<T>(values[i]);
+        bool exact = true;
+        for (std::size_t i = 0; present && i < width_; ++i) {
+            all[at + i] = static_cast<T>(values[i]);
+            exact &= static_cast<double>(all[at + i]) == values[i] || values[i] != values[i];
+        }
+        return exact;
     }
-    void widen() {
+    /// Changes to double; the last frame is not exact yet.
+    void widen(const std::vector<double>& last) {
         wide_.reserve(narrow_.capacity());
         wide_.assign(narrow_.begin(), narrow_.end());
+        std::copy(last.begin(), last.end(), wide_.end() - width_);
         narrow_ = {};
         is_wide_ = true;
     }
