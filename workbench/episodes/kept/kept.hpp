@@ -36,7 +36,7 @@ private:
     std::atomic<std::size_t> left_;
 };
 
-/// What distinguishes an episode from others, over some of its inputs.
+/// Distinguishes an episode from others by some of its inputs.
 struct Identity {
     std::string hash;  ///< 16 hex digits
     data::EpisodeContent content;
