@@ -1,6 +1,7 @@
-// Keeping episodes in memory affects only time: with all, none, or some of them kept, `etlc fit`
-// gives the same bytes.
+// Keeping episodes in memory affects only time: with all, none, or some of them kept, their samples
+// are those of the files, and `etlc fit` gives the same bytes.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -114,8 +115,99 @@ TEST(Fitted, FramesAreSelectedByTheTruthOfALet) {
     EXPECT_EQ(check::print(model, model.monitors[0].truth), "F was");
 }
 
+using Channels = std::vector<data::Channel>;
+
+const data::Channel kZ{"z", data::Channel::Kind::vector, 3};
+const data::Channel kX{"x", data::Channel::Kind::scalar};
+const data::Channel kSeen{"seen", data::Channel::Kind::boolean};
+const data::Channel kAbsent{"absent", data::Channel::Kind::scalar, 1, true};
+
+/// Returns all samples of an episode, exactly, or what is wrong.
+std::string samples(data::Trace& trace, std::size_t channels) {
+    std::string text;
+    for (std::size_t c = 0; c < channels; ++c) text += trace.has(c) ? "has " : "lacks ";
+    for (data::Sample sample;;) {
+        const auto more = trace.next(sample);
+        if (!more) return more.failure().message;
+        if (!*more) return text;
+        for (std::size_t c = 0; c < channels; ++c)
+            text += sample.present[c] ? fmt::format("{} ", fmt::join(sample.values[c], ",")) : "- ";
+    }
+}
+
+struct Opened {
+    std::string samples;
+    bool was_kept = false;
+};
+
+Opened opened(episodes::KeptTraces& kept, const std::string& path, const Channels& channels) {
+    const auto found = kept.open(path, channels);
+    if (!found) return {found.failure().message};
+    const bool was_kept = found->trace->length() > 0;  // a CSV file does not give it
+    return {samples(*found->trace, channels.size()), was_kept};
+}
+
+std::string in_file(const std::string& path, const Channels& channels) {
+    const auto trace = data::open_trace(path, channels);
+    return trace ? samples(**trace, channels.size()) : trace.failure().message;
+}
+
+TEST(KeptTraces, HaveTheSamplesOfTheirFiles) {
+    const Episodes all;
+    data::Channel required = kAbsent;
+    required.optional = false;
+    for (const std::size_t bytes : {std::size_t{0}, std::size_t{3000}, episodes::kMostKept}) {
+        episodes::KeptTraces kept(bytes);
+        for (const std::string& path : all.request.episodes)
+            for (const Channels& channels :
+                 {Channels{kZ}, {kZ, kX}, {kSeen, kAbsent, kX}, {kZ, required}, {kX, kZ, kAbsent}})
+                EXPECT_EQ(opened(kept, path, channels).samples, in_file(path, channels));
+        const bool keeps = bytes > 0;
+        EXPECT_EQ(opened(kept, all.request.episodes[0], {kZ}).was_kept, keeps) << bytes;
+        EXPECT_EQ(opened(kept, all.request.episodes[6], {kX, kZ, kSeen}).was_kept,
+                  bytes == episodes::kMostKept);
+        EXPECT_FALSE(opened(kept, all.request.episodes[0], {kZ, required}).was_kept);
+    }
+}
+
+TEST(KeptTraces, ReadChangedFilesAgain) {
+    const Episodes all;
+    const std::string& path = all.request.episodes[0];
+    episodes::KeptTraces kept;
+    const std::string before = opened(kept, path, {kX}).samples;
+    ASSERT_TRUE(opened(kept, path, {kX}).was_kept);
+    std::ofstream(path) << "z[0],z[1],z[2],x,seen\n1,2,3,0.1,1\n";
+    for (const bool was_kept : {false, true}) {
+        const Opened now = opened(kept, path, {kX});
+        EXPECT_EQ(now.samples, "has 0.1 ");
+        EXPECT_EQ(now.was_kept, was_kept);
+    }
+    EXPECT_EQ(opened(kept, path, {kX, kZ}).samples, "has has 0.1 1,2,3 ");
+    std::ofstream(path) << "z[0],z[1],z[2],x,seen\n1,2,3,oops,1\n";
+    EXPECT_EQ(opened(kept, path, {kX}).samples, in_file(path, {kX}));
+    EXPECT_FALSE(opened(kept, path, {kX}).was_kept) << "an episode with an error";
+    fs::remove(path);
+    EXPECT_EQ(opened(kept, path, {kX}).samples, in_file(path, {kX}));
+}
+
+/// Only what was read to its end is kept, and its room is free again if it was not.
+TEST(KeptTraces, AreWhole) {
+    const Episodes all;
+    const std::string& path = all.request.episodes[0];
+    episodes::KeptTraces kept(kSteps * (sizeof(double) + 1));  // room for one `x`
+    for (int time = 0; time < 3; ++time) {
+        const auto half = kept.open(path, {kX});
+        data::Sample sample;
+        for (std::size_t step = 0; step < kSteps / 2; ++step) half->trace->next(sample);
+    }
+    EXPECT_FALSE(opened(kept, path, {kX}).was_kept);
+    EXPECT_TRUE(opened(kept, path, {kX}).was_kept);
+    EXPECT_FALSE(opened(kept, all.request.episodes[1], {kX}).was_kept);
+    EXPECT_FALSE(opened(kept, all.request.episodes[1], {kX}).was_kept) << "there is no room";
+}
+
 TEST(Room, IsNeverOverdrawn) {
-    Room room(100);
+    episodes::Room room(100);
     EXPECT_FALSE(room.take(11, 10));
     EXPECT_FALSE(room.take(UINT64_MAX, 10)) << "more than there are bytes to count";
     EXPECT_TRUE(room.take(9, 10));

@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <utility>
 
 namespace etlc::episodes {
 
@@ -72,12 +73,25 @@ bool can_be_dealt(const std::vector<std::string>& episodes, const ReadOptions& r
     return false;
 }
 
-ContentScorer::ContentScorer(const check::Model& model, const ReadOptions& reading)
+ContentScorer::ContentScorer(const check::Model& model, const ReadOptions& reading,
+                             std::vector<Index> labelled)
     : wanted_{&model, identity_inputs(model), {}, identity_inputs(model), nullptr},
-      reading_(reading) {}
+      reading_(reading) {
+    if (!reading.kept) return;
+    for_later_ = wanted_;
+    for_later_->predicates = std::move(labelled);
+    for_later_->optional.resize(model.inputs.size());
+    std::iota(for_later_->optional.begin(), for_later_->optional.end(), Index{0});
+}
 
 diag::Result<Recorded> ContentScorer::score(const std::string& path) const {
-    auto recording = Recording::open(wanted_, path, reading_);
+    if (for_later_)
+        if (auto recorded = read(*for_later_, path)) return recorded;
+    return read(wanted_, path);
+}
+
+diag::Result<Recorded> ContentScorer::read(const Wanted& wanted, const std::string& path) const {
+    auto recording = Recording::open(wanted, path, reading_);
     if (!recording) return recording.failure();
     for (;;) {
         const auto more = recording->next();

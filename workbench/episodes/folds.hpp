@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,13 +36,19 @@ bool can_be_dealt(const std::vector<std::string>& episodes, const ReadOptions& r
 /// Reads the identity of episodes. Not thread-safe; the arguments outlive it.
 class ContentScorer {
 public:
-    ContentScorer(const check::Model& model, const ReadOptions& reading);
+    /// `labelled`: predicates whose labels are read too, if episodes are kept for later stages, as
+    /// are all inputs; what is wrong with these is left to them.
+    ContentScorer(const check::Model& model, const ReadOptions& reading,
+                  std::vector<Index> labelled);
 
     /// Failures do not name the path.
     diag::Result<Recorded> score(const std::string& path) const;
 
 private:
+    diag::Result<Recorded> read(const Wanted& wanted, const std::string& path) const;
+
     Wanted wanted_;
+    std::optional<Wanted> for_later_;
     const ReadOptions& reading_;
 };
 

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 
@@ -58,15 +56,9 @@ std::vector<data::HashedInput> hashed(const check::Model& model, const std::vect
     return result;
 }
 
-/// Written so that compilers vectorise it.
-bool are_finite(const std::vector<float>& values) {
-    bool finite = true;
-    for (const float x : values) finite &= std::abs(x) <= std::numeric_limits<float>::max();
-    return finite;
-}
-
 bool is_there(const Input& input, const plan::Sample& sample) {
-    return sample.present && !sample.values.empty() && are_finite(sample.values) &&
+    return sample.present && !sample.values.empty() &&
+           plan::all_finite(sample.values.data(), sample.values.size()) &&
            (input.type != InputType::scalar || input.range.contains(sample.values[0]));
 }
 
@@ -91,6 +83,16 @@ void Seen::add(const std::vector<plan::Sample>& samples) {
     for (std::size_t i = 0; i < inputs_.size(); ++i)
         see(model_.inputs[inputs_[i]], samples[inputs_[i]], held_[i], seen_[i]);
     hash_.add(seen_);
+}
+
+std::string Seen::inputs() const {
+    std::string names;
+    for (const Index index : inputs_) {
+        const Input& input = model_.inputs[index];
+        names += fmt::format("{}, {} x {}\n", name_of(input), static_cast<int>(input.type),
+                             input.dimension);
+    }
+    return names;
 }
 
 /// Applies range, `hold` and `missing` as plan::Evaluator does.
@@ -237,13 +239,16 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const std::string&
     const auto is_unmarked = read_encoders(wanted, path, options.names);
     if (!is_unmarked) return is_unmarked.failure();
     if (auto failure = data::check_rate(path, wanted.model->step_seconds)) return *failure;
+    std::shared_ptr<KnownIdentities> identities;
     const Opener file = [&](const std::vector<Channel>& channels) {
-        return open_labelled(path, channels, options);
+        return open_labelled(path, channels, options, &identities);
     };
     auto recording = open(wanted, wrap ? wrap(file) : file);
     if (!recording) return recording;
     recording->path_ = path;
     recording->is_unmarked_ = *is_unmarked;
+    if (identities) recording->known_ = identities->find(recording->seen_.inputs());
+    recording->identities_ = std::move(identities);
     return recording;
 }
 
@@ -303,12 +308,16 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
 diag::Result<bool> Recording::next() {
     auto more = trace_->next(sample_);
     if (more && !*more && frames_ == 0) return data::no_steps();
+    if (more && !*more && identities_ && !known_) {
+        known_ = std::make_shared<const Identity>(seen_.identity());
+        identities_->add(seen_.inputs(), known_);
+    }
     if (!more || !*more) return more;
     const auto narrowed = narrow();
     if (!narrowed) return narrowed;
     if (leaks_ != nullptr && !leak_) leak_ = leaks_->find(samples_, frames_);
     if (leaks_ != nullptr) leaks_->find_near(samples_, frames_, near_);
-    seen_.add(samples_);
+    if (!known_) seen_.add(samples_);
     for (std::size_t c = 0; c < channel_inputs_.size(); ++c) {
         std::vector<double>& recorded = frame_[channel_inputs_[c]];
         std::swap(recorded, sample_.values[c]);
@@ -324,11 +333,12 @@ diag::Result<bool> Recording::narrow() {
         if (!narrowed_[c]) continue;
         const Index input = channel_inputs_[c];
         std::string why;
-        auto sample =
-            plan::narrow(model_->inputs[input], sample_.present[c], sample_.values[c], why);
+        auto sample = plan::narrow(model_->inputs[input], sample_.present[c], sample_.values[c],
+                                   why, std::move(samples_[input]));
         if (!sample) return Failure{Code::trace_value, fmt::format("step {}: {}", frames_, why)};
         const check::Input& of = model_->inputs[input];
-        if (is_there(of, *sample) && !freshness_[c].accepts(of, sample->values))
+        if (of.stale_after > 0 && is_there(of, *sample) &&
+            !freshness_[c].accepts(of, sample->values))
             *sample = {.is_stale = true};
         samples_[input] = std::move(*sample);
     }

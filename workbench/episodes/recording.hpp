@@ -33,8 +33,10 @@ public:
 
     /// Adds the next frame; `samples`: by index of the model's inputs.
     void add(const std::vector<plan::Sample>& samples);
-    /// Returns the hash of the frames so far.
-    const data::EpisodeHash& hash() const { return hash_; }
+    /// Returns the identity of the frames so far.
+    Identity identity() const { return {hash_.text(), hash_.content()}; }
+    /// Returns a text that names the inputs with all of their declarations.
+    std::string inputs() const;
 
 private:
     struct Held {
@@ -153,10 +155,11 @@ public:
     std::uint64_t frames() const override { return frames_; }
     /// Returns the number of frames if the file gives it, else 0.
     std::uint64_t length() const { return trace_->length(); }
-    /// Returns the identity of the frames so far, over the inputs of `identity`.
+    /// Returns the identity of the frames so far, over the inputs of `identity`; of all frames
+    /// where it was known before.
     Recorded recorded() const {
-        return {path_, seen_.hash().text(), seen_.hash().content(), frames_, leak_,
-                near_, is_unmarked_};
+        const Identity identity = known_ ? *known_ : seen_.identity();
+        return {path_, identity.hash, identity.content, frames_, leak_, near_, is_unmarked_};
     }
 
 private:
@@ -177,6 +180,8 @@ private:
     bool is_unmarked_ = false;
     bool is_complete_ = true;
     Seen seen_;
+    std::shared_ptr<KnownIdentities> identities_;  ///< null: the episode is not kept
+    std::shared_ptr<const Identity> known_;        ///< null: `seen_` computes it
     std::unique_ptr<data::Trace> trace_;
     std::vector<Index> channel_inputs_;       ///< per channel of an input, the input
     std::vector<bool> narrowed_;              ///< per such channel: whether its samples are wanted

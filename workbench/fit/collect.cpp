@@ -205,9 +205,9 @@ public:
 
 private:
     diag::Result<bool> add(std::size_t episode, std::vector<Collected>& collected) {
-        const auto opened = readings_.open(episode);
+        auto opened = readings_.open(episode);
         if (!opened) return opened.failure();
-        episodes::Frames& frames = **opened;
+        episodes::Recording& frames = *opened;
         where_.reset();
         recent_.reset();
         std::vector<Collector> collectors;

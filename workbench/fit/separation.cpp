@@ -124,14 +124,14 @@ public:
     diag::Result<Episode> score(const std::string& path) {
         const std::size_t episode = collection_.readings.index_of(path);
         const std::size_t at = collection_.fold_of(episode);
-        const auto frames = collection_.readings.open(episode);
+        auto frames = collection_.readings.open(episode);
         if (!frames) return frames.failure();
         Episode result(predicates_.size());
         recent_.reset();
-        const auto done = episodes::replay(**frames, {followers_[at].get()}, [&] {
-            recent_.push((**frames).samples());
+        const auto done = episodes::replay(*frames, {followers_[at].get()}, [&] {
+            recent_.push(frames->samples());
             for (std::size_t i = 0; i < predicates_.size(); ++i)
-                add(*folds_[at], *followers_[at], **frames, episode, i, result[i]);
+                add(*folds_[at], *followers_[at], *frames, episode, i, result[i]);
             return true;
         });
         if (!done) return done.failure();

@@ -313,39 +313,39 @@ std::string predicates(const Material& material, const Scene& scene) {
     return dumped(all);
 }
 
-std::string document(const Material& material, const Scene& scene, const std::string& predicates,
-                     const Totals& totals, const std::vector<evaluate::EpisodeRow>& judged,
-                     const std::vector<Row>& rows) {
+std::string head(const Material& material, const Scene& scene, const std::string& predicates,
+                 const Totals& totals) {
     const check::Model& model = *scene.plan.model;
-    Json head = {{"spec",
-                  {{"name", model.name},
-                   {"path", material.file.path()},
-                   {"text", std::string(material.file.text())},
-                   {"step_seconds", model.step_seconds},
-                   {"reservations", model.reservations}}},
-                 {"has_truth", material.judgement != nullptr},
-                 {"why_no_truth", material.why_no_truth},
-                 {"episodes", totals.episodes},
-                 {"steps", totals.steps},
-                 {"inputs", inputs_json(scene.plan, totals)}};
-    Json all;
-    all["monitors"] = Json::array();
+    const Json first = {{"spec",
+                         {{"name", model.name},
+                          {"path", material.file.path()},
+                          {"text", std::string(material.file.text())},
+                          {"step_seconds", model.step_seconds},
+                          {"reservations", model.reservations}}},
+                        {"has_truth", material.judgement != nullptr},
+                        {"why_no_truth", material.why_no_truth},
+                        {"episodes", totals.episodes},
+                        {"steps", totals.steps},
+                        {"inputs", inputs_json(scene.plan, totals)}};
+    Json rest;
+    rest["monitors"] = Json::array();
     for (const plan::Monitor& monitor : scene.plan.monitors)
-        all["monitors"].push_back(monitor_json(model, monitor));
-    all["planes"] = Json::array();
-    for (const Plane& plane : scene.planes) all["planes"].push_back(plane_json(model, plane));
-    all["target_pictures"] = Json::object();
+        rest["monitors"].push_back(monitor_json(model, monitor));
+    rest["planes"] = Json::array();
+    for (const Plane& plane : scene.planes) rest["planes"].push_back(plane_json(model, plane));
+    rest["target_pictures"] = Json::object();
     for (const auto& [target, pictures] : scene.target_pictures)
-        all["target_pictures"][model.targets[target].name] = pictures;
-    all["rows"] = Json::array();
-    for (const Row& row : rows)
-        all["rows"].push_back(row_json(row, judged.empty() ? nullptr : &judged[row.rank]));
-    std::string text = dumped(head);
+        rest["target_pictures"][model.targets[target].name] = pictures;
+    std::string text = dumped(first);
     text.back() = ',';  // in place of its bracket
     text += "\"predicates\":" + predicates + ',';
-    const std::string rest = dumped(all);
-    text.append(rest, 1);
-    return in_script(text);
+    text.append(dumped(rest), 1);
+    text.back() = ',';
+    return in_script(text + "\"rows\":[");
+}
+
+std::string text_of(const Row& row, const evaluate::EpisodeRow* judged) {
+    return in_script(dumped(row_json(row, judged)));
 }
 
 }  // namespace etlc::report

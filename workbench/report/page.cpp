@@ -31,20 +31,23 @@ std::string filled(std::string_view frame,
     }
 }
 
-std::string page_of(const std::string& data, const std::string& figures) {
+Frame frame_of(const std::string& figures) {
+    constexpr std::string_view kData = "{{data}}";
     const auto& files = page_files();
     const PageFile& d3 = page_file(files, "d3.js");
     const PageFile& script = page_file(files, "page.js");
     const PageFile& style = page_file(files, "page.css");
-    return filled(page_file(files, "page.html").text,
-                  {{"style", std::string(style.text)},
-                   {"style-hash", hash_source(style)},
-                   {"d3", std::string(d3.text)},
-                   {"d3-licence", std::string(page_file(files, "d3_licence.txt").text)},
-                   {"script", std::string(script.text)},
-                   {"script-hashes", hash_source(d3) + " " + hash_source(script)},
-                   {"figures", figures},
-                   {"data", data}});
+    const std::map<std::string, std::string, std::less<>> parts{
+        {"style", std::string(style.text)},
+        {"style-hash", hash_source(style)},
+        {"d3", std::string(d3.text)},
+        {"d3-licence", std::string(page_file(files, "d3_licence.txt").text)},
+        {"script", std::string(script.text)},
+        {"script-hashes", hash_source(d3) + " " + hash_source(script)},
+        {"figures", figures}};
+    const std::string_view page = page_file(files, "page.html").text;
+    const std::size_t at = page.find(kData);
+    return {filled(page.substr(0, at), parts), filled(page.substr(at + kData.size()), parts)};
 }
 
 std::string what_is_missing() {

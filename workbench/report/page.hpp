@@ -29,9 +29,15 @@ std::string hash_source(const PageFile& file);
 std::string filled(std::string_view frame,
                    const std::map<std::string, std::string, std::less<>>& parts);
 
-/// Returns the page. `figures` is the output of `etlc evaluate --json`, or null. Neither text may
-/// be able to end a script element.
-std::string page_of(const std::string& data, const std::string& figures);
+/// The page before and after its data.
+struct Frame {
+    std::string before;
+    std::string after;
+};
+
+/// `figures` is the output of `etlc evaluate --json`, or null. Neither they nor the data may be
+/// able to end a script element.
+Frame frame_of(const std::string& figures);
 
 /// Returns why this etlc cannot make pages, or an empty text.
 std::string what_is_missing();

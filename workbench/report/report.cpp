@@ -191,8 +191,17 @@ bool report_unpictured(const Gathering& gathered, diag::Sink& sink) {
 
 }  // namespace
 
-std::optional<std::string> page(const Material& material, const Request& request,
-                                diag::Sink& sink) {
+bool Page::write(const std::function<bool(std::string_view)>& take) const {
+    if (!take(head_)) return false;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const Row& row = rows_[i];
+        const std::string text = text_of(row, judged_.empty() ? nullptr : &judged_[row.rank]);
+        if ((i > 0 && !take(",")) || !take(text)) return false;
+    }
+    return take(tail_);
+}
+
+std::optional<Page> page(const Material& material, const Request& request, diag::Sink& sink) {
     if (!check_pattern(request.frames, request.episodes.size(), sink)) return std::nullopt;
     const plan::Plan& plan = material.spec.plan;
     std::optional<pipeline::Compiled> truth;
@@ -229,8 +238,10 @@ std::optional<std::string> page(const Material& material, const Request& request
     const Totals none{0, 0, std::vector<plan::SampleCounts>(plan.inputs.size())};
     const std::uint64_t bytes = request.megabytes * 1'000'000;
     const std::string shown = predicates(material, scene);
+    Frame frame = frame_of(figures);
+    frame.after.insert(0, kEnd);
     const std::uint64_t fixed =
-        page_of(document(material, scene, shown, none, {}, {}), figures).size();
+        frame.before.size() + head(material, scene, shown, none).size() + frame.after.size();
     Shelf shelf(!judged.empty(), !request.frames.text.empty(), request.episodes.size(),
                 bytes > 2 * fixed ? bytes - fixed : bytes / 2);
     Gathering gathered(plan, judged, shelf);
@@ -239,8 +250,8 @@ std::optional<std::string> page(const Material& material, const Request& request
         [&] { return std::make_unique<Packer>(scene, request, shelf); },
         [&](std::size_t, Packer::Packed packed) { gathered.add(std::move(packed)); });
     if (!read || !report_unpictured(gathered, sink)) return std::nullopt;
-    return page_of(document(material, scene, shown, gathered.totals, judged, shelf.take()),
-                   figures);
+    return Page(frame.before + head(material, scene, shown, gathered.totals), shelf.take(),
+                std::move(judged), std::move(frame.after));
 }
 
 }  // namespace etlc::report

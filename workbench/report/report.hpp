@@ -7,6 +7,8 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "artifacts/thresholds.hpp"
@@ -14,7 +16,9 @@
 #include "diag/diag.hpp"
 #include "evaluate/evaluate.hpp"
 #include "pipeline/compile.hpp"
+#include "report/blob.hpp"
 #include "report/pictures.hpp"
+#include "report/tracks.hpp"
 
 namespace etlc::report {
 
@@ -42,8 +46,42 @@ struct Material {
     std::optional<thresholds::File> thresholds;  ///< if calibrated
 };
 
+/// A row of the list of episodes.
+struct Row {
+    std::string path;
+    std::uint64_t frames = 0;
+    std::vector<Outcome> outcomes;
+    std::uint64_t missing = 0;  ///< samples, including those out of range
+    /// Index in the evaluation's rows, worst first. Without truths rows are ordered by alarm, then
+    /// by the least robustness.
+    std::size_t rank = 0;
+    Blob blob;          ///< empty text if left out
+    Pictures pictures;  ///< empty if left out or not requested
+};
+
+/// A page, whose rows become text as it is written.
+class Page {
+public:
+    /// `head`: what comes before the rows; `tail`: what comes after them.
+    Page(std::string head, std::vector<Row> rows, std::vector<evaluate::EpisodeRow> judged,
+         std::string tail)
+        : head_(std::move(head)),
+          rows_(std::move(rows)),
+          judged_(std::move(judged)),
+          tail_(std::move(tail)) {}
+
+    /// Passes the pieces to `take` until it returns false; returns whether it took all.
+    bool write(const std::function<bool(std::string_view)>& take) const;
+
+private:
+    std::string head_;
+    std::vector<Row> rows_;
+    std::vector<evaluate::EpisodeRow> judged_;
+    std::string tail_;
+};
+
 /// Returns the page, or nothing after an error, which it reports.
-std::optional<std::string> page(const Material& material, const Request& request, diag::Sink& sink);
+std::optional<Page> page(const Material& material, const Request& request, diag::Sink& sink);
 
 /// Returns the timelines of one trace, without truths, as an SVG picture.
 std::optional<std::string> picture(const pipeline::Compiled& spec, const std::string& trace,

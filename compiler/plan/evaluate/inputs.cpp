@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "plan/targets/narrow_targets.hpp"
 
@@ -18,10 +19,10 @@ data::Channel channel_of(const check::Input& input) {
 }
 
 std::optional<Sample> narrow(const check::Input& input, bool present,
-                             const std::vector<double>& numbers, std::string& why) {
-    Sample sample;
+                             const std::vector<double>& numbers, std::string& why, Sample reused) {
+    Sample sample{present, std::move(reused.values)};
+    sample.values.clear();
     if (!present) return sample;
-    sample.present = true;
     if (input.type != check::InputType::f16 && input.type != check::InputType::i8) {
         sample.values.assign(numbers.begin(), numbers.end());
         return sample;

@@ -25,9 +25,10 @@ struct Sample {
 data::Channel channel_of(const check::Input& input);
 
 /// Returns the sample, or nothing where a number is not of the input's type; sets `why` to what was
-/// found and expected.
+/// found and expected. `reused`: an earlier one, whose memory it takes.
 std::optional<Sample> narrow(const check::Input& input, bool present,
-                             const std::vector<double>& numbers, std::string& why);
+                             const std::vector<double>& numbers, std::string& why,
+                             Sample reused = {});
 
 /// Returns whether all elements are finite, as etlmon::finite() does, with the widest vectors of
 /// this machine: embeddings are long.

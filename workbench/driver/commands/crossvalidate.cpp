@@ -59,14 +59,9 @@ private:
 /// spec for the next stage.
 class Chain {
 public:
-    /// `beside`: the number of chains at work at a time, which share the memory for episodes.
     Chain(const source::File& file, const Request& request, calibrate::Request calibration,
-          std::size_t beside, diag::Sink& sink)
-        : file_(file),
-          request_(request),
-          calibration_(std::move(calibration)),
-          beside_(beside),
-          sink_(sink) {}
+          diag::Sink& sink)
+        : file_(file), request_(request), calibration_(std::move(calibration)), sink_(sink) {}
 
     std::optional<Trained> train(const Paths& episodes) {
         const auto untrained = check({true, true, true});
@@ -121,7 +116,6 @@ private:
         fit::Request request{episodes, calibration_.reading, calibration_.allow_overlap,
                              calibration_.jobs};
         request.separation = false;  // the fold itself tells how well the fit does elsewhere
-        request.most_kept /= beside_;
         request.version = calibration_.version;
         request.progress = calibration_.progress;
         auto found = fit::fit(*model, request, sink_);
@@ -170,7 +164,6 @@ private:
     const source::File& file_;
     const Request& request_;
     calibrate::Request calibration_;  ///< with the fitted entries, once they exist
-    std::size_t beside_;
     diag::Sink& sink_;
     thresholds::File thresholds_;
 };
@@ -189,9 +182,12 @@ std::optional<Folds> deal(const check::Model& model, const calibrate::Request& r
                           std::uint32_t folds, diag::Sink& sink) {
     if (!episodes::can_be_dealt(request.episodes, request.reading, folds, model, sink))
         return std::nullopt;
-    const auto read = episodes::over_episodes<episodes::Recorded>(
-        request.episodes, request, sink,
-        [&] { return std::make_unique<episodes::ContentScorer>(model, request.reading); });
+    const auto labelled = episodes::labelled_in(model, request.episodes.front(), request.reading);
+    const auto read =
+        episodes::over_episodes<episodes::Recorded>(request.episodes, request, sink, [&] {
+            return std::make_unique<episodes::ContentScorer>(
+                model, request.reading, labelled ? *labelled : std::vector<check::Index>{});
+        });
     if (!read) return std::nullopt;
     const auto recorded = episodes::recorded(*read);
     Folds result{folds,
@@ -226,7 +222,7 @@ std::optional<std::vector<Trained>> train(const source::File& file, const Reques
         const bool is_last = fold >= folds.count - last;
         asked.jobs = static_cast<unsigned>(threads / (is_last ? last : beside));
         if (!shows_progress) asked.progress = nullptr;
-        of.trained = Chain(file, request, asked, beside, of.found).train(of.others);
+        of.trained = Chain(file, request, asked, of.found).train(of.others);
     };
     const auto caller = std::this_thread::get_id();  // it alone shows its progress
     std::atomic<std::uint32_t> next = 0;

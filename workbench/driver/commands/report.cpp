@@ -69,6 +69,7 @@ bool report(const source::File& spec, const Compiled& compiled, const Request& r
         }
         truths = std::move(*found);
     }
+    wanted.reading.kept = std::make_shared<episodes::KeptTraces>();  // for figures, then for tracks
     report::Material material{spec, compiled};
     material.thresholds = thresholds_of(model, spec.path(), request);
     material.why_no_truth = truths.why_not;
@@ -88,7 +89,9 @@ bool report(const source::File& spec, const Compiled& compiled, const Request& r
         episodes::warn_of_unmarked(model, compiled.plan.inputs, wanted.episodes,
                                    wanted.reading.names, sink);
     const auto page = report::page(material, wanted, sink);
-    return page && !sink.refused() && output.write(*page) && output.commit();
+    return page && !sink.refused() &&
+           page->write([&](std::string_view piece) { return output.write(piece); }) &&
+           output.commit();
 }
 
 std::optional<std::string> page_of_trace(const source::File& spec, const Compiled& compiled,
@@ -100,7 +103,14 @@ std::optional<std::string> page_of_trace(const source::File& spec, const Compile
     wanted.episodes = {trace};
     wanted.reading.names = names;
     wanted.jobs = 1;
-    return report::page(material, wanted, sink);
+    const auto page = report::page(material, wanted, sink);
+    if (!page) return std::nullopt;
+    std::string text;
+    page->write([&](std::string_view piece) {
+        text += piece;
+        return true;
+    });
+    return text;
 }
 
 }  // namespace etlc::driver

@@ -96,10 +96,25 @@ std::string LabelSet::group_of(const std::string& episode) const {
     return found == groups_.end() ? "" : found->second;
 }
 
-diag::Result<std::unique_ptr<data::Trace>> open_labelled(const std::string& path,
-                                                         const std::vector<data::Channel>& channels,
-                                                         const ReadOptions& options) {
-    auto trace = data::open_trace(path, data::renamed(channels, options.names));
+namespace {
+
+diag::Result<std::unique_ptr<data::Trace>> open_unlabelled(
+    const std::string& path, const std::vector<data::Channel>& channels, const ReadOptions& options,
+    std::shared_ptr<KnownIdentities>* identities) {
+    const auto renamed = data::renamed(channels, options.names);
+    if (!options.kept) return data::open_trace(path, renamed);
+    auto opened = options.kept->open(path, renamed);
+    if (!opened) return opened.failure();
+    if (identities != nullptr) *identities = opened->identities;
+    return std::move(opened->trace);
+}
+
+}  // namespace
+
+diag::Result<std::unique_ptr<data::Trace>> open_labelled(
+    const std::string& path, const std::vector<data::Channel>& channels, const ReadOptions& options,
+    std::shared_ptr<KnownIdentities>* identities) {
+    auto trace = open_unlabelled(path, channels, options, identities);
     const EpisodeLabels* const labels = options.labels ? options.labels->of(path) : nullptr;
     if (!trace || labels == nullptr) return trace;
     auto labelled = std::make_unique<LabelledTrace>(std::move(*trace), *labels);

@@ -15,6 +15,7 @@
 #include "check/model/model.hpp"
 #include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
+#include "episodes/kept/kept.hpp"
 #include "episodes/labels/label.hpp"
 
 namespace etlc::episodes {
@@ -70,14 +71,15 @@ private:
 struct ReadOptions {
     data::NamesInFile names;                 ///< names of inputs and labels in the files
     std::shared_ptr<const LabelSet> labels;  ///< null: none beside the files
+    std::shared_ptr<KeptTraces> kept;        ///< what was read; null: files are read each time
 };
 
 /// Opens an episode as data::open_trace does, with its labels as Boolean channels `truth.NAME`.
 /// Fails with E0862 where the file has such an array too. At its end `next` fails with E0861 where
-/// there are labels of later steps.
-diag::Result<std::unique_ptr<data::Trace>> open_labelled(const std::string& path,
-                                                         const std::vector<data::Channel>& channels,
-                                                         const ReadOptions& options);
+/// there are labels of later steps. `identities`: set to those of the episode if it is kept.
+diag::Result<std::unique_ptr<data::Trace>> open_labelled(
+    const std::string& path, const std::vector<data::Channel>& channels, const ReadOptions& options,
+    std::shared_ptr<KnownIdentities>* identities = nullptr);
 
 /// Returns the groups of episodes, in order; empty where an episode has none.
 std::vector<std::string> groups_of(const std::vector<std::string>& episodes,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "episodes/random.hpp"
 #include "fit/algebra/dense.hpp"
@@ -198,8 +199,9 @@ void run(std::vector<Lloyd>& all, std::size_t members) {
 
 }  // namespace
 
-Points::Points(const Matrix& points, unsigned jobs)
-    : middle_(points.rowwise().mean()), centred_(points.colwise() - middle_) {
+Points::Points(Matrix points, unsigned jobs)
+    : middle_(points.rowwise().mean()), centred_(std::move(points)) {
+    centred_.colwise() -= middle_;
     products_ = Matrix::Zero(size(), size());
     add_products(centred_.transpose(), 1, products_, jobs);
     products_.triangularView<Eigen::StrictlyUpper>() = products_.transpose();

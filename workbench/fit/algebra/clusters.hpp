@@ -15,7 +15,7 @@ class Points {
 public:
     Points() = default;
     /// `points`: as columns. `jobs`: threads; 0: one per core.
-    explicit Points(const Matrix& points, unsigned jobs = 1);
+    explicit Points(Matrix points, unsigned jobs = 1);
 
     Eigen::Index size() const { return centred_.cols(); }
     Vector operator[](Eigen::Index i) const { return centred_.col(i) + middle_; }
