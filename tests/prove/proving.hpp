@@ -33,10 +33,12 @@ inline std::optional<pipeline::Compiled> compiled(const std::string& text, check
                              sink);
 }
 
+inline std::string header_of(const plan::Plan& plan) {
+    return emit::header(plan, {"proved", library::kVersion, "", "proved.targets.bin"});
+}
+
 inline diag::Result<prove::Proof> proof_of(const plan::Plan& plan, std::uint32_t steps) {
-    return prove::prove(
-        plan, {emit::header(plan, {"proved", library::kVersion, "", "proved.targets.bin"}),
-               "proved", steps});
+    return prove::prove(plan, {header_of(plan), "proved", steps});
 }
 
 inline std::vector<plan::Sample> samples(const reference::Step& step) {

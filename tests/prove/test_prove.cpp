@@ -44,4 +44,26 @@ TEST(Prove, RandomClassesAreRight) {
     EXPECT_GT(formulas, 3 * n);
 }
 
+/// A class whose monitors disturb each other only if both are restarted.
+TEST(Prove, RestartsOfSeveralMonitors) {
+    const auto spec = compiled(
+        "spec restarts;\ninput a, b : bool;\n"
+        "restartable monitor one = F[2, 3] a;\nrestartable monitor other = G (a -> F[1, 2] b);\n"
+        "monitor plain = F[1, 2] b;\n",
+        check::Values::robustness);
+    ASSERT_TRUE(spec);
+    std::string header = header_of(spec->plan);
+    const auto right = prove::prove(spec->plan, {header, "proved", kLongest});
+    ASSERT_TRUE(right && !right->fault && right->restarts);
+    EXPECT_EQ(right->together, kLongest);
+
+    const std::string restart = "one_position_ = 0;\n";
+    ASSERT_NE(header.find(restart), std::string::npos);
+    header.replace(header.find(restart), restart.size(),
+                   "if (other_position_ == position_ || position_ == 0) " + restart);
+    const auto wrong = prove::prove(spec->plan, {header, "proved", kLongest});
+    ASSERT_TRUE(wrong && !wrong->fault);
+    EXPECT_EQ(wrong->together, 0U);
+}
+
 }  // namespace

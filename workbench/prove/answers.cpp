@@ -8,7 +8,7 @@ namespace etlc::prove {
 
 namespace {
 
-enum Entry : std::uint32_t { kNumber = 1, kNode, kVerdict, kReset, kWindow, kEnd };
+enum Entry : std::uint32_t { kNumber = 1, kNode, kVerdict, kReset, kTogether, kWindow, kEnd };
 
 /// The exit statuses of the program, as stand_in/etlmon/temporal/value.hpp has them.
 constexpr int kBranches = 10;
@@ -65,6 +65,12 @@ Numbers Answers::verdict() {
 bool Answers::forgotten() {
     if (next() != kReset) end();
     return word() == 1;
+}
+
+Together Answers::together() {
+    if (next() != kTogether) end();
+    const std::uint32_t steps = word();
+    return {steps, word() == 1};
 }
 
 std::optional<Window> Answers::window() {

@@ -63,6 +63,13 @@ struct Window {
     bool is_too_long = false;  ///< for a proof of that
 };
 
+/// Restarts of several monitors: whether none disturbs another, and for how many steps that is
+/// known.
+struct Together {
+    std::uint32_t steps = 0;
+    bool is_proved = false;
+};
+
 /// Reads what the program says, into the diagrams of this proof.
 class Answers {
 public:
@@ -72,6 +79,7 @@ public:
     Numbers verdict();
     /// Whether all later restarts were alike.
     bool forgotten();
+    Together together();
     /// The next window of the class, if there is one more.
     std::optional<Window> window();
 

@@ -42,6 +42,8 @@ public:
         for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m)
             if (restarts(m) == check::Restarts::when_final) compare_restarted(m);
         if (proof_.fault) return;
+        const Together together = answers_.together();
+        proof_.together = together.is_proved ? together.steps : 0;
         while (const auto window = answers_.window()) take(*window);
     }
 

@@ -41,10 +41,11 @@ struct Fault {
 struct Proof {
     std::vector<Atom> atoms;
     std::uint32_t steps = 0;
-    std::string compiler;                     ///< its first line about its version
-    std::uint64_t verdicts = 0;               ///< that were compared
-    bool restarts = false;                    ///< any sequence of restarts is covered
-    std::vector<std::uint32_t> windows;       ///< lengths of those that were proved to be two
+    std::string compiler;                ///< its first line about its version
+    std::uint64_t verdicts = 0;          ///< that were compared
+    bool restarts = false;               ///< any sequence of restarts is covered
+    std::uint32_t together = 0;          ///< first steps in which those of several monitors are
+    std::vector<std::uint32_t> windows;  ///< lengths of those that were proved to be two
     std::vector<std::uint32_t> long_windows;  ///< and of those that are assumed to be
     std::optional<Fault> fault;
 };

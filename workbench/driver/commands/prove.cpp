@@ -70,6 +70,20 @@ std::string options_of(const plan::Plan& plan, const Request& request) {
     return words.empty() ? "none" : fmt::format("{}", fmt::join(words, " "));
 }
 
+std::string restarts_of(const plan::Plan& plan, const prove::Proof& proof) {
+    const auto count = std::count_if(
+        plan.monitors.begin(), plan.monitors.end(),
+        [](const plan::Monitor& monitor) { return monitor.restarts != check::Restarts::never; });
+    if (count == 0) return "";
+    if (!proof.restarts) return "proved for one restart of one monitor\n";
+    if (count == 1) return "proved for all sequences of restarts\n";
+    const std::string one = "proved for all sequences of restarts of one monitor";
+    if (proof.together == 0)
+        return one + "\nnot proved: that restarts of several monitors do not disturb each other\n";
+    return fmt::format("{}, and in the first {} of several\n", one,
+                       diag::counted(proof.together, "step"));
+}
+
 std::string certificate(const source::File& spec, const plan::Plan& plan, const Request& request,
                         const std::string& header, const prove::Proof& proof) {
     std::vector<std::string> monitors;
@@ -102,13 +116,7 @@ std::string certificate(const source::File& spec, const plan::Plan& plan, const 
             "assumed of its windows of {} steps, which are too long for this "
             "proof: the same\n",
             lengths(proof.long_windows));
-    const auto restarts = [](const plan::Monitor& monitor) {
-        return monitor.restarts != check::Restarts::never;
-    };
-    if (std::any_of(plan.monitors.begin(), plan.monitors.end(), restarts))
-        text += proof.restarts ? "proved for all sequences of restarts of one monitor\n"
-                               : "proved for one restart of one monitor\n";
-    return text;
+    return text + restarts_of(plan, proof);
 }
 
 /// Returns the measurements of a witness, as a trace.

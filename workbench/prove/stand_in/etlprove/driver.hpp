@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "etlprove/output.hpp"
+#include "etlprove/together.hpp"
 #include "etlprove/windows.hpp"
 
 namespace etlprove {
@@ -74,20 +75,22 @@ public:
         State known = first_episode();
         State state = later_episode();
         for (uint32_t step = 0; step < steps_; ++step) {
-            states_.push_back(copy(state));
+            states_.push_back(copy_of<Monitor>(state));
             report(advance(*known, step, false));
             report(advance(*state, step, true));
-            State ended = copy(state);
+            State ended = copy_of<Monitor>(state);
             for (uint32_t call = 0; call < about_.finishes; ++call)
                 report(finish<Monitor, Verdicts>(**ended, 0));
         }
-        states_.push_back(copy(state));
+        states_.push_back(copy_of<Monitor>(state));
         for (const uint32_t monitor : about_.restartable) {
             left_over_.assign(steps_, {});
             for (uint32_t step = 1; step < steps_; ++step) run_restarted(monitor, step);
+            left_over_by_monitor_.push_back(left_over_);
         }
         for (uint32_t n = 0; n < about_.repeating.size(); ++n)
             for (uint32_t step = 1; step < steps_; ++step) run_repeated(n, step);
+        report_together();
         for (const WindowOfClass& window : about_.windows) {
             put(static_cast<uint32_t>(Entry::window));
             put(window.length);
@@ -99,37 +102,20 @@ public:
     }
 
 private:
-    struct Memory {
-        alignas(Monitor) unsigned char bytes[sizeof(Monitor)];
-        Monitor& operator*() { return *reinterpret_cast<Monitor*>(bytes); }
-    };
-    using State = std::unique_ptr<Memory>;
+    using State = etlprove::State<Monitor>;
     using Atoms = typename Monitor::Atoms;
     using Value = typename Monitor::Value;
 
     Class<Monitor> about_;
     uint32_t steps_;
     std::vector<State> states_;  ///< before each step, with every sample possibly missing
-    std::vector<std::set<uint32_t>> left_over_;  ///< [step]: words that earlier restarts change
-    std::set<uint32_t> counters_;                ///< words that count final verdicts
+    LeftOver left_over_;         ///< of the monitor that restarts
+    std::vector<LeftOver> left_over_by_monitor_;  ///< of each that can restart
+    std::set<uint32_t> counters_;                 ///< words that count final verdicts
     Sent sent_;
 
-    static State copy(const State& state) { return std::make_unique<Memory>(*state); }
-    static constexpr size_t kWords = sizeof(Monitor) / sizeof(uint32_t);
-    static uint32_t word(const Memory& of, size_t at) {
-        uint32_t word = 0;
-        memcpy(&word, of.bytes + at * sizeof word, sizeof word);
-        return word;
-    }
-    static void set(Memory& of, size_t at, uint32_t word) {
-        memcpy(of.bytes + at * sizeof word, &word, sizeof word);
-    }
-
-    /// A word that held a diagram and was not written since.
-    static constexpr uint32_t kNeverSet = 0x5b5b5b5b;
-
     static State first_episode() {
-        State state = std::make_unique<Memory>();
+        State state = std::make_unique<Memory<Monitor>>();
         memset(state->bytes, 0, sizeof state->bytes);
         (**state).reset();
         return state;
@@ -139,7 +125,7 @@ private:
     State later_episode() {
         State state = first_episode();
         for (uint32_t step = 0; step < steps_ / 2 + 1; ++step) advance(*state, step, true);
-        for (size_t at = 0; at < kWords; ++at)
+        for (size_t at = 0; at < kWords<Monitor>; ++at)
             if (is_marked(word(*state, at))) set(*state, at, kNeverSet);
         (**state).reset();
         return state;
@@ -153,7 +139,7 @@ private:
         return {end(kLow), end(may_be_missing ? kHigh : kLow)};
     }
 
-    Verdicts advance(Memory& state, uint32_t step, bool may_be_missing) {
+    Verdicts advance(Memory<Monitor>& state, uint32_t step, bool may_be_missing) {
         std::vector<Value> values;
         for (uint32_t atom = 0; atom < about_.atoms; ++atom)
             values.push_back(Value(sample(step, atom, may_be_missing)));
@@ -183,12 +169,10 @@ private:
         fflush(stdout);
     }
 
-    void restart(Memory& state, uint32_t monitor) { about_.restart(*state, monitor); }
-
     /// The monitor is restarted before the step. Words of the state that depend on earlier restarts
     /// are unwritten here, so that the verdicts prove that they do not count.
     void run_restarted(uint32_t monitor, uint32_t at) {
-        State state = copy(states_[at]);
+        State state = copy_of<Monitor>(states_[at]);
         about_.restart(**state, monitor);
         for (const uint32_t word : left_over_[at]) set(*state, word, kNeverSet);
         run_from(std::move(state), monitor, at);
@@ -196,13 +180,13 @@ private:
 
     /// The monitor restarts by itself after the step before.
     void run_repeated(uint32_t n, uint32_t at) {
-        State state = copy(states_[at - 1]);
+        State state = copy_of<Monitor>(states_[at - 1]);
         finals().chosen = uint64_t{1} << n;
         advance(*state, at - 1, true);
         finals().chosen = 0;
-        State asked = copy(states_[at]);
+        State asked = copy_of<Monitor>(states_[at]);
         about_.restart(**asked, about_.repeating[n]);
-        for (size_t at_word = 0; at_word < kWords; ++at_word)
+        for (size_t at_word = 0; at_word < kWords<Monitor>; ++at_word)
             if (!is_marked(word(*state, at_word)) && word(*state, at_word) != word(*asked, at_word))
                 counters_.insert(static_cast<uint32_t>(at_word));
         run_from(std::move(state), about_.repeating[n], at);
@@ -218,14 +202,24 @@ private:
         put(forgotten ? 1 : 0);
     }
 
+    void report_together() {
+        Together<Monitor, Verdicts> together(
+            {about_.monitors, about_.restartable, about_.restart, states_, left_over_by_monitor_},
+            [this](Memory<Monitor>& state, uint32_t step) { return advance(state, step, true); });
+        put(static_cast<uint32_t>(Entry::together));
+        put(together.steps());
+        put(together.run() ? 1 : 0);
+        fflush(stdout);
+    }
+
     /// Whether a restart before the step gives the state that it gives without the earlier one, but
     /// for diagrams that are left over.
-    bool forgets(const Memory& restarted, uint32_t monitor, uint32_t step) {
-        Memory again = restarted;
-        State first = copy(states_[step]);
+    bool forgets(const Memory<Monitor>& restarted, uint32_t monitor, uint32_t step) {
+        Memory<Monitor> again = restarted;
+        State first = copy_of<Monitor>(states_[step]);
         about_.restart(*again, monitor);
         about_.restart(**first, monitor);
-        for (size_t at = 0; at < kWords; ++at) {
+        for (size_t at = 0; at < kWords<Monitor>; ++at) {
             const uint32_t one = word(again, at), other = word(*first, at);
             if (one == other || counters_.count(static_cast<uint32_t>(at)) != 0) continue;
             const bool are_diagrams =

@@ -8,7 +8,17 @@
 namespace etlprove {
 
 /// The words that begin an entry.
-enum class Entry : uint32_t { number = 1, node, verdict, reset, window, end, status = 20, step };
+enum class Entry : uint32_t {
+    number = 1,
+    node,
+    verdict,
+    reset,
+    together,
+    window,
+    end,
+    status,
+    finished
+};
 
 inline void put(uint32_t word) {
     if (fwrite(&word, sizeof word, 1, stdout) != 1) _Exit(1);
