@@ -36,6 +36,8 @@ struct Fault {
     std::optional<std::uint32_t> restarted;  ///< the monitor was restarted before that step
     std::string number;  ///< "robustness", "lower", "upper" or "whether it is decided"
     Witness witness;
+    /// Of truth values: the monitors that are restarted, and before which step.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> requests;
 };
 
 struct Proof {

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "etlprove/finish.hpp"
 #include "etlprove/output.hpp"
 #include "etlprove/together.hpp"
 #include "etlprove/windows.hpp"
@@ -56,15 +57,6 @@ struct Class {
     uint32_t finishes;  ///< calls of finish() that report something
     std::vector<WindowOfClass> windows;
 };
-
-template <class Monitor, class Verdicts>
-auto finish(Monitor& monitor, int) -> decltype(monitor.finish()) {
-    return monitor.finish();
-}
-template <class Monitor, class Verdicts>
-Verdicts finish(Monitor&, long) {
-    return {};
-}
 
 template <class Monitor, class Verdicts>
 class Driver {

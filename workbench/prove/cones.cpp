@@ -1,0 +1,334 @@
+#include "prove/cones.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <regex>
+#include <utility>
+
+namespace etlc::prove {
+namespace {
+
+using Names = Cones::Names;
+
+bool is_part_of_name(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+std::string without_comments(std::string_view text) {
+    std::string result;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        if (text.substr(at, 2) == "//") at = std::min(text.find('\n', at), text.size() - 1);
+        result += text[at];
+    }
+    return result;
+}
+
+/// Returns the place of the bracket that closes the one at `open`.
+std::size_t closing(std::string_view text, std::size_t open) {
+    int depth = 0;
+    for (std::size_t at = open; at < text.size(); ++at) {
+        if (text[at] == '(' || text[at] == '{' || text[at] == '[') ++depth;
+        if (text[at] == ')' || text[at] == '}' || text[at] == ']') --depth;
+        if (depth == 0) return at;
+    }
+    throw Unreadable{"a bracket that is not closed"};
+}
+
+std::size_t skip_space(std::string_view text, std::size_t at) {
+    while (at < text.size() && std::isspace(static_cast<unsigned char>(text[at])) != 0) ++at;
+    return at;
+}
+
+/// Returns the name that begins here; empty where none does.
+std::string_view name_at(std::string_view text, std::size_t at) {
+    if (at >= text.size() || std::isdigit(static_cast<unsigned char>(text[at])) != 0) return {};
+    std::size_t end = at;
+    while (end < text.size() && is_part_of_name(text[end])) ++end;
+    return text.substr(at, end - at);
+}
+
+/// A name in a text. Each verdict is one: "answers_.stay".
+struct Found {
+    std::string name;
+    std::size_t begin;
+    std::size_t end;
+};
+
+/// Words that are no names of the class.
+const Names kWords = {"const", "static",   "constexpr", "bool",   "float",  "int",  "uint8_t",
+                      "auto",  "uint32_t", "Value",     "return", "if",     "for",  "else",
+                      "true",  "false",    "nullptr",   "using",  "Reading"};
+
+/// Leaves out fields, and names of a namespace.
+std::vector<Found> names_in(std::string_view text) {
+    std::vector<Found> found;
+    for (std::size_t at = 0; at < text.size();) {
+        const bool is_within = at > 0 && is_part_of_name(text[at - 1]);
+        std::string_view name = is_within ? std::string_view() : name_at(text, at);
+        if (name.empty()) {
+            ++at;
+            continue;
+        }
+        const std::size_t end = at + name.size();
+        if (name == "answers_" && end < text.size() && text[end] == '.')
+            name = text.substr(at, name.size() + 1 + name_at(text, end + 1).size());
+        const std::size_t after = at + name.size();
+        const bool is_elsewhere = (at > 0 && text[at - 1] == '.') ||
+                                  text.substr(0, at).ends_with("::") ||
+                                  text.substr(after).starts_with("::");
+        if (!is_elsewhere && !kWords.contains(std::string(name)))
+            found.push_back({std::string(name), at, after});
+        at = after;
+    }
+    return found;
+}
+
+Names set_of(const std::vector<Found>& found) {
+    Names names;
+    for (const Found& one : found) names.insert(one.name);
+    return names;
+}
+
+/// Functions that do not write what they are given, and methods that do not change their object.
+const Names kPure = {"min_of",  "max_of",  "negate",        "max_in",          "min_in",
+                     "exists",  "push",    "static_cast",   "prefix_verdict",  "sliding_verdict",
+                     "at",      "if",      "truth_of",      "Verdicts",        "BooleanVerdict",
+                     "present", "value",   "data",          "reset"};
+const Names kConst = {"final",   "alarm", "satisfied", "violated", "unknown",
+                      "decided", "value", "present",   "data",     "at"};
+
+/// Returns the functions in whose arguments a place is.
+std::vector<std::string> calls_around(std::string_view text, std::size_t place) {
+    std::vector<std::string> calls;
+    for (std::size_t at = 0; at < place; ++at) {
+        if (text[at] != '(' || closing(text, at) < place) continue;
+        std::size_t end = at;
+        if (end > 0 && text[end - 1] == '>') end = text.rfind('<', end);
+        std::size_t begin = end;
+        while (begin > 0 && is_part_of_name(text[begin - 1])) --begin;
+        if (begin != end) calls.emplace_back(text.substr(begin, end - begin));
+    }
+    return calls;
+}
+
+bool is_written(std::string_view text, const Found& found) {
+    std::size_t before = found.begin;
+    while (before > 0 && std::isspace(static_cast<unsigned char>(text[before - 1])) != 0) --before;
+    const std::string_view ahead = text.substr(0, before);
+    if (ahead.ends_with("++") || ahead.ends_with("--")) return true;
+    if (ahead.ends_with("&") && !ahead.ends_with("&&")) return true;
+    std::size_t at = skip_space(text, found.end);
+    while (at < text.size() && (text[at] == '[' || text[at] == '.')) {
+        if (text[at] == '[') {
+            at = skip_space(text, closing(text, at) + 1);
+            continue;
+        }
+        const std::string_view field = name_at(text, at + 1);
+        at = skip_space(text, at + 1 + field.size());
+        if (at < text.size() && text[at] == '(') return !kConst.contains(std::string(field));
+    }
+    const std::string_view rest = text.substr(at);
+    if (rest.starts_with("++") || rest.starts_with("--")) return true;
+    static const std::regex kAssigns(R"(^([-+*/|&^%]|<<|>>)?=([^=]|$))");
+    if (std::regex_search(rest.begin(), rest.end(), kAssigns)) return true;
+    const std::vector<std::string> calls = calls_around(text, found.begin);
+    return std::any_of(calls.begin(), calls.end(),
+                       [](const std::string& call) { return !kPure.contains(call); });
+}
+
+/// Whether a statement declares a reference, which is then another name for what it refers to.
+bool makes_reference(std::string_view text) {
+    static const std::regex kReference(R"(^\s*(const\s+)?[\w:<>]+\s*[&*]\s*(const\s+)?\w+\s*=)");
+    return std::regex_search(text.begin(), text.end(), kReference);
+}
+
+constexpr std::string_view kLazy = "const etlmon::Lazy ";
+
+}  // namespace
+
+/// Reads the body of a function into statements.
+class Cones::Reader {
+public:
+    Reader(Cones& cones, const Names& atoms) : cones_(cones), atoms_(atoms) {}
+
+    Statements body(std::string_view text) {
+        statements_.clear();
+        read(text, {});
+        return std::move(statements_);
+    }
+
+private:
+    Cones& cones_;
+    const Names& atoms_;
+    Statements statements_;
+    std::uint32_t lazies_ = 0;
+    bool counts_ = true;  ///< every lazy value so far is made at every step
+
+    void read(std::string_view text, const Names& conditions) {
+        for (std::size_t at = skip_space(text, 0); at < text.size(); at = skip_space(text, at)) {
+            const std::string_view word = name_at(text, at);
+            if (word == "if" || word == "for") {
+                at = read_block(text, at + word.size(), conditions);
+            } else if (word == "ETLMON_UNROLL") {
+                at += word.size();
+            } else if (text[at] == '{') {
+                const std::size_t end = closing(text, at);
+                read(text.substr(at + 1, end - at - 1), conditions);
+                at = end + 1;
+            } else {
+                const std::size_t end = end_of_statement(text, at);
+                read_simple(text.substr(at, end - at), conditions);
+                at = end + 1;
+            }
+        }
+    }
+
+    /// Reads what follows "if" or "for", with every "else". Returns the place after it.
+    std::size_t read_block(std::string_view text, std::size_t at, Names conditions) {
+        for (;;) {
+            at = skip_space(text, at);
+            if (at < text.size() && text[at] == '(') {
+                const std::size_t end = closing(text, at);
+                const std::string_view head = text.substr(at + 1, end - at - 1);
+                read_simple(head, conditions);
+                conditions.merge(set_of(names_in(head)));
+                at = skip_space(text, end + 1);
+            }
+            const bool is_block = at < text.size() && text[at] == '{';
+            const std::size_t end = is_block ? closing(text, at) : end_of_statement(text, at);
+            const std::string_view inside =
+                is_block ? text.substr(at + 1, end - at - 1) : text.substr(at, end - at);
+            if (inside.find(kLazy) != std::string_view::npos) counts_ = false;
+            read(inside, conditions);
+            at = skip_space(text, end + 1);
+            if (name_at(text, at) != "else") return end + 1;
+            at = skip_space(text, at + 4);
+            if (name_at(text, at) == "if") at += 2;
+        }
+    }
+
+    static std::size_t end_of_statement(std::string_view text, std::size_t at) {
+        for (; at < text.size() && text[at] != ';'; ++at)
+            if (text[at] == '(' || text[at] == '{' || text[at] == '[') at = closing(text, at);
+        return at;
+    }
+
+    void read_simple(std::string_view text, const Names& conditions) {
+        static const Names kJumps = {"while", "do",   "switch", "case", "break",
+                                     "goto",  "try",  "throw",  "asm",  "continue"};
+        const std::string first(name_at(text, 0));
+        if (kJumps.contains(first) || (first == "return" && !conditions.empty()))
+            throw Unreadable{fmt::format("'{}' in a step", first)};
+        if (text.starts_with(kLazy)) return read_lazy(text, conditions);
+        if (text == "answers_ = Verdicts()") return;  // each verdict becomes a constant
+        add(text, conditions, {});
+    }
+
+    void add(std::string_view text, const Names& conditions, Names written) {
+        const std::vector<Found> found = names_in(text);
+        Statement statement{std::move(written), set_of(found)};
+        if (makes_reference(text)) statement.written = statement.named;
+        for (const Found& one : found)
+            if (is_written(text, one)) statement.written.insert(one.name);
+        statement.named.insert(conditions.begin(), conditions.end());
+        statements_.push_back(std::move(statement));
+    }
+
+    /// Reads "const etlmon::Lazy NAME([&]() noexcept { ... })".
+    void read_lazy(std::string_view text, const Names& conditions) {
+        const std::string name(name_at(text, skip_space(text, kLazy.size())));
+        const std::size_t open = text.find('{');
+        if (name.empty() || open == std::string_view::npos)
+            throw Unreadable{"a lazy value without a function"};
+        if (conditions.empty() && counts_) cones_.lazies_[name] = lazies_;
+        ++lazies_;
+        const std::string_view inside = text.substr(open + 1, closing(text, open) - open - 1);
+        if (!atoms_.contains(name)) return add(inside, conditions, {name});
+        Statements before = std::move(statements_);
+        statements_.clear();
+        read(inside, {});
+        for (const Statement& statement : statements_)
+            cones_.measured_.insert(statement.written.begin(), statement.written.end());
+        statements_ = std::move(before);
+    }
+};
+
+Cones::Cones(std::string_view header, const Names& atoms) {
+    const std::string text = without_comments(header);
+    const std::size_t begin = text.find("\nclass Monitor {");
+    constexpr std::string_view kAdvance = " Monitor::advance(const Inputs& in) noexcept {";
+    const std::size_t advance = text.find(kAdvance);
+    if (begin == std::string::npos || advance == std::string::npos)
+        throw Unreadable{"no class 'Monitor' with a function 'advance'"};
+    Reader reader(*this, atoms);
+    const auto body = [&](std::size_t open) {
+        return std::string_view(text).substr(open + 1, closing(text, open) - open - 1);
+    };
+    functions_["advance"] = reader.body(body(advance + kAdvance.size() - 1));
+    const std::size_t open = text.find('{', begin);
+    const std::string_view inside = body(open);
+    static const std::regex kFunction(R"((\w+)\([^()]*\)\s*(const\s+)?noexcept\s*\{)");
+    using Iterator = std::regex_iterator<std::string_view::const_iterator>;
+    for (Iterator at(inside.begin(), inside.end(), kFunction), end; at != end; ++at) {
+        const auto last = static_cast<std::size_t>(at->position() + at->length()) - 1;
+        functions_[(*at)[1].str()] = Reader(*this, {}).body(body(open + 1 + last));
+    }
+    while (join_calls()) {
+    }
+}
+
+bool Cones::join_calls() {
+    bool changed = false;
+    for (const auto& [name, statements] : functions_)
+        for (auto& [caller, of] : functions_)
+            for (Statement& statement : of) {
+                if (!statement.named.contains(name)) continue;
+                const std::size_t before = statement.named.size() + statement.written.size();
+                for (const Statement& one : statements) {
+                    statement.named.insert(one.named.begin(), one.named.end());
+                    statement.written.insert(one.written.begin(), one.written.end());
+                }
+                changed |= statement.named.size() + statement.written.size() != before;
+            }
+    return changed;
+}
+
+Names Cones::of(const std::string& name) const {
+    Names names{name};
+    for (std::size_t before = 0; before != names.size();) {
+        before = names.size();
+        for (const auto& [function, statements] : functions_)
+            for (const Statement& statement : statements) {
+                const bool counts = std::any_of(
+                    statement.written.begin(), statement.written.end(), [&](const auto& written) {
+                        return names.contains(written) || written == "answers_";
+                    });
+                if (counts) names.insert(statement.named.begin(), statement.named.end());
+            }
+    }
+    for (const std::string& one : names)
+        if (measured_.contains(one))
+            throw Unreadable{fmt::format("a verdict that depends on '{}', which is measured", one)};
+    return names;
+}
+
+bool Cones::writes(const std::string& function, const Names& names) const {
+    const auto found = functions_.find(function);
+    if (found == functions_.end()) return true;
+    return std::any_of(
+        found->second.begin(), found->second.end(), [&](const Statement& statement) {
+            return std::any_of(statement.written.begin(), statement.written.end(),
+                               [&](const auto& written) { return names.contains(written); });
+        });
+}
+
+std::uint32_t Cones::lazy(const std::string& atom) const {
+    const auto found = lazies_.find(atom);
+    if (found == lazies_.end())
+        throw Unreadable{fmt::format("no lazy value '{}' at every step", atom)};
+    return found->second;
+}
+
+}  // namespace etlc::prove

@@ -1,0 +1,52 @@
+// What the verdict of a monitor depends on, by the text of its class. Takes: a header with
+// --values boolean, as etlc writes it. Gives: for each monitor the members of the state and the
+// atoms that its verdict depends on, at any later step. Keeps true: too much may be named, never too
+// little; a text that is not understood is refused.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace etlc::prove {
+
+/// Thrown where the text of a class is not as etlc writes it.
+struct Unreadable {
+    std::string what;
+};
+
+class Cones {
+public:
+    using Names = std::set<std::string>;
+
+    /// `atoms`: the names of its lazy values that are predicates and bool inputs. Throws Unreadable.
+    Cones(std::string_view header, const Names& atoms);
+
+    /// Returns the names that a name of the class depends on, with itself. Throws Unreadable.
+    Names of(const std::string& name) const;
+    /// Whether a function of the class writes one of these names.
+    bool writes(const std::string& function, const Names& names) const;
+    /// Returns the place of an atom among the lazy values of a step. Throws Unreadable.
+    std::uint32_t lazy(const std::string& atom) const;
+
+private:
+    /// What is written depends on all that is named, and on the conditions around it.
+    struct Statement {
+        Names written;
+        Names named;
+    };
+    using Statements = std::vector<Statement>;
+    class Reader;
+
+    /// A call names and writes what the function does. Returns whether that adds something.
+    bool join_calls();
+
+    std::map<std::string, Statements, std::less<>> functions_;
+    Names measured_;  ///< what only atoms write
+    std::map<std::string, std::uint32_t> lazies_;
+};
+
+}  // namespace etlc::prove
