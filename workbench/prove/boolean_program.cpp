@@ -32,7 +32,7 @@ std::string target(const plan::Plan& plan, const Cones& cones, std::uint32_t m,
     std::vector<std::string> parts;
     for (const std::string& name : cone)
         if (name.ends_with("_") || name.starts_with("answers_."))
-            parts.push_back(fmt::format("part(monitor, monitor.{})", name));
+            parts.push_back(fmt::format("etlprove::part(monitor, monitor.{})", name));
     std::vector<bool> counts;
     for (const std::string& atom : atoms) counts.push_back(cone.contains(atom));
     std::vector<std::uint32_t> restarts;
@@ -85,10 +85,6 @@ std::string boolean_main(const plan::Plan& plan, const Request& request,
         "#include \"etlprove/cases.hpp\"\n#define private public\n#include \"class.hpp\"\n"
         "#undef private\n\nusing {0}::Monitor;\nusing {0}::Verdicts;\n\n"
         "static void restart(Monitor& monitor, uint32_t m) {{\n    (void)monitor, (void)m;\n{1}}}\n"
-        "template <class Member>\n"
-        "std::pair<size_t, size_t> part(const Monitor& monitor, const Member& member) {{\n"
-        "    return {{reinterpret_cast<const char*>(&member) -\n"
-        "                reinterpret_cast<const char*>(&monitor), sizeof member}};\n}}\n\n"
         "int main() {{\n    static Monitor monitor;\n"
         "    static_assert(sizeof(Verdicts) == {2}, \"a byte for each monitor\");\n"
         "    etlprove::choices().describe({{{3}}}, {{{4}, {5}, {6}}});\n"

@@ -56,10 +56,11 @@ struct Found {
     std::size_t end;
 };
 
-/// Words that are no names of the class.
-const Names kWords = {"const", "static",   "constexpr", "bool",   "float",  "int",  "uint8_t",
-                      "auto",  "uint32_t", "Value",     "return", "if",     "for",  "else",
-                      "true",  "false",    "nullptr",   "using",  "Reading"};
+/// Words that no statement of the class writes.
+const Names kWords = {"const",  "static",   "constexpr", "bool",   "float",   "int",       "uint8_t",
+                      "auto",   "uint32_t", "Value",     "return", "if",      "for",       "else",
+                      "true",   "false",    "nullptr",   "using",  "Reading", "UINT32_MAX", "in",
+                      "Inputs", "noexcept"};
 
 /// Leaves out fields, and names of a namespace.
 std::vector<Found> names_in(std::string_view text) {
@@ -95,7 +96,7 @@ Names set_of(const std::vector<Found>& found) {
 const Names kPure = {"min_of",  "max_of",  "negate",        "max_in",          "min_in",
                      "exists",  "push",    "static_cast",   "prefix_verdict",  "sliding_verdict",
                      "at",      "if",      "truth_of",      "Verdicts",        "BooleanVerdict",
-                     "present", "value",   "data",          "reset"};
+                     "present", "value",   "data",          "reset",   "accept",  "Flag",      "Inputs"};
 const Names kConst = {"final",   "alarm", "satisfied", "violated", "unknown",
                       "decided", "value", "present",   "data",     "at"};
 
@@ -229,7 +230,10 @@ private:
     void add(std::string_view text, const Names& conditions, Names written) {
         const std::vector<Found> found = names_in(text);
         Statement statement{std::move(written), set_of(found)};
-        if (makes_reference(text)) statement.written = statement.named;
+        // Another name for what follows, or for one of two things.
+        const std::size_t choice = text.find('?') + 1;
+        if (makes_reference(text))
+            statement.written.merge(set_of(names_in(text.substr(choice))));
         for (const Found& one : found)
             if (is_written(text, one)) statement.written.insert(one.name);
         statement.named.insert(conditions.begin(), conditions.end());
@@ -275,22 +279,30 @@ Cones::Cones(std::string_view header, const Names& atoms) {
         const auto last = static_cast<std::size_t>(at->position() + at->length()) - 1;
         functions_[(*at)[1].str()] = Reader(*this, {}).body(body(open + 1 + last));
     }
-    while (join_calls()) {
+    for (auto& [caller, of] : functions_)
+        for (Statement& statement : of)
+            for (const auto& [name, statements] : functions_)
+                if (statement.named.erase(name) > 0) statement.called.insert(name);
+    while (join_calls(true)) {
+    }
+    while (join_calls(false)) {
     }
 }
 
-bool Cones::join_calls() {
+bool Cones::join_calls(bool conditions) {
     bool changed = false;
-    for (const auto& [name, statements] : functions_)
+    for (auto& [name, statements] : functions_)
         for (auto& [caller, of] : functions_)
-            for (Statement& statement : of) {
-                if (!statement.named.contains(name)) continue;
-                const std::size_t before = statement.named.size() + statement.written.size();
-                for (const Statement& one : statements) {
-                    statement.named.insert(one.named.begin(), one.named.end());
-                    statement.written.insert(one.written.begin(), one.written.end());
+            for (Statement& call : of) {
+                // What advance() does is known by its statements.
+                if (name == "advance" || !call.called.contains(name)) continue;
+                for (Statement& inside : statements) {
+                    const Names& from = conditions ? call.named : inside.named;
+                    Names& to = conditions ? inside.named : call.named;
+                    const std::size_t before = to.size();
+                    to.insert(from.begin(), from.end());
+                    changed = changed || to.size() != before;
                 }
-                changed |= statement.named.size() + statement.written.size() != before;
             }
     return changed;
 }
@@ -315,13 +327,21 @@ Names Cones::of(const std::string& name) const {
 }
 
 bool Cones::writes(const std::string& function, const Names& names) const {
-    const auto found = functions_.find(function);
-    if (found == functions_.end()) return true;
-    return std::any_of(
-        found->second.begin(), found->second.end(), [&](const Statement& statement) {
-            return std::any_of(statement.written.begin(), statement.written.end(),
-                               [&](const auto& written) { return names.contains(written); });
-        });
+    Names called{function};
+    for (std::size_t before = 0; before != called.size();) {
+        before = called.size();
+        for (const auto& [name, statements] : functions_)
+            for (const Statement& statement : statements)
+                if (called.contains(name))
+                    called.insert(statement.called.begin(), statement.called.end());
+    }
+    for (const auto& [name, statements] : functions_)
+        for (const Statement& statement : statements)
+            if (called.contains(name) &&
+                std::any_of(statement.written.begin(), statement.written.end(),
+                            [&](const auto& written) { return names.contains(written); }))
+                return true;
+    return !functions_.contains(function);
 }
 
 std::uint32_t Cones::lazy(const std::string& atom) const {

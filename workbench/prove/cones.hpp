@@ -37,12 +37,14 @@ private:
     struct Statement {
         Names written;
         Names named;
+        Names called{};  ///< functions of the class
     };
     using Statements = std::vector<Statement>;
     class Reader;
 
-    /// A call names and writes what the function does. Returns whether that adds something.
-    bool join_calls();
+    /// What a function writes depends on what its calls depend on, and what a call gives on what
+    /// the function names. Return whether that adds something.
+    bool join_calls(bool conditions);
 
     std::map<std::string, Statements, std::less<>> functions_;
     Names measured_;  ///< what only atoms write

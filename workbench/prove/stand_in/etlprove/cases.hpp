@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -21,13 +22,33 @@
 namespace etlprove {
 
 constexpr uint64_t kMostCases = 4000000;
+/// The bits of etlmon::Truth, whose byte may have anything in the others.
+constexpr unsigned char kTruthBits = 3;
+/// States whose step is not taken again.
+constexpr size_t kMostKept = 10000;
+
+/// Bytes of the state of a class. Those of truth values have two bits that count.
+struct Part {
+    size_t first, bytes;
+    unsigned char bits;
+};
+
+template <class Monitor, class Member>
+Part part(const Monitor& monitor, const Member& member) {
+    constexpr bool is_truth =
+        std::is_same<std::remove_all_extents_t<Member>, etlmon::Truth>::value;
+    const auto first =
+        reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&monitor);
+    return {static_cast<size_t>(first), sizeof member,
+            static_cast<unsigned char>(is_truth ? kTruthBits : 0xff)};
+}
 
 /// A monitor, and what its verdict depends on.
 struct Target {
     uint32_t monitor;
     bool is_prefix;
     bool repeats;  ///< it also restarts after a final verdict
-    std::vector<std::pair<size_t, size_t>> parts;  ///< of the state: first byte, bytes
+    std::vector<Part> parts;
     std::vector<bool> atoms;
     std::vector<uint32_t> restarts;  ///< monitors whose restart changes these parts
 };
@@ -72,6 +93,15 @@ private:
         Begun begun;
     };
     using States = std::map<std::string, State>;
+    /// Where a step leads to, and when, by the choices of a step.
+    struct Outcome {
+        Memory memory;
+        uint8_t status;
+        bool restarted;
+        uint32_t step;
+        Diagram when = kNever;
+    };
+    using Outcomes = std::map<std::pair<std::string, bool>, Outcome>;
     struct Answer {
         Diagram begun = kNever, satisfied = kNever, violated = kNever, decided = kNever,
                 final = kNever;
@@ -81,6 +111,7 @@ private:
         States states;
         Memory first;                           ///< in which an episode begins
         std::map<std::string, Memory> later{};  ///< what reset() made of later states, if not that
+        std::map<std::string, Outcomes> outcomes{};  ///< of states that had a step
     };
 
     CasesOf<Monitor> about_;
@@ -90,8 +121,9 @@ private:
 
     static std::string part(const Target& target, const Memory& memory) {
         std::string bytes;
-        for (const auto& [first, count] : target.parts)
-            bytes.append(reinterpret_cast<const char*>(memory.bytes) + first, count);
+        for (const Part& part : target.parts)
+            for (size_t at = 0; at < part.bytes; ++at)
+                bytes += static_cast<char>(memory.bytes[part.first + at] & part.bits);
         return bytes;
     }
 
@@ -124,24 +156,42 @@ private:
 
     /// Takes every case of a step, or of a call of finish(), and reports the verdicts.
     States stepped(Run& run, const States& from, uint32_t step, bool finishing) {
-        const Target& target = *run.target;
         States next;
         std::map<uint32_t, Answer> answers;
         for (const auto& [key, state] : from) {
-            choices().begin(step, target.atoms);
-            do {
-                if (++cases_ > kMostCases) stop(kTooMany);
-                Memory memory = state.memory;
-                const bool restarted = !finishing && step > 0 && restart(target, *memory);
-                const Verdicts verdicts = finishing ? finish<Monitor, Verdicts>(*memory, 0) : (*memory).step({});
-                uint8_t status = 0;
-                memcpy(&status, reinterpret_cast<const char*>(&verdicts) + target.monitor, 1);
-                add(target, state, {step, finishing, restarted, status}, answers, next, memory);
-            } while (choices().next());
+            const bool is_usual = !finishing && step > 0;
+            const auto known = is_usual ? run.outcomes.find(key) : run.outcomes.end();
+            const Outcomes found = known != run.outcomes.end()
+                                       ? known->second
+                                       : outcomes(*run.target, state.memory, step, finishing);
+            for (const auto& [way, outcome] : found)
+                add({*run.target, state, outcome, step, finishing}, answers, next[way.first]);
+            if (is_usual && run.outcomes.size() < kMostKept) run.outcomes.emplace(key, found);
         }
         for (auto& [key, state] : next) check_reset(run, state.memory);
         report(answers);
         return next;
+    }
+
+    /// Steps from one state with every sequence of choices.
+    Outcomes outcomes(const Target& target, const Memory& from, uint32_t step, bool finishing) {
+        Outcomes found;
+        choices().begin(step, target.atoms);
+        do {
+            if (++cases_ > kMostCases) stop(kTooMany);
+            Memory memory = from;
+            const bool restarted = !finishing && step > 0 && restart(target, *memory);
+            const Verdicts verdicts =
+                finishing ? finish<Monitor, Verdicts>(*memory, 0) : (*memory).step({});
+            uint8_t status = 0;
+            memcpy(&status, reinterpret_cast<const char*>(&verdicts) + target.monitor, 1);
+            const std::string key = part(target, memory) + static_cast<char>(status);
+            Outcome& outcome =
+                found.emplace(std::make_pair(key, restarted), Outcome{memory, status, restarted, step})
+                    .first->second;
+            outcome.when = diagrams().either(outcome.when, choices().condition());
+        } while (choices().next());
+        return found;
     }
 
     bool restart(const Target& target, Monitor& monitor) {
@@ -155,34 +205,32 @@ private:
     }
 
     struct Case {
+        const Target& target;
+        const State& from;
+        const Outcome& to;
         uint32_t step;
         bool finishing;
-        bool restarted;
-        uint8_t status;
     };
 
-    void add(const Target& target, const State& from, const Case& now,
-             std::map<uint32_t, Answer>& answers, States& next, const Memory& memory) {
+    void add(const Case& now, std::map<uint32_t, Answer>& answers, State& state) {
         using Bits = etlmon::BooleanVerdict;
         Diagrams& all = diagrams();
-        const bool ends = (now.status & Bits::kFinal) != 0 && target.repeats && !now.finishing;
-        std::string key = part(target, memory);
-        key += static_cast<char>(now.status);
-        State& state = next[key];
-        state.memory = memory;
-        state.status = now.status;
-        const Begun begun =
-            now.restarted ? Begun{{now.step, from.condition}} : from.begun;
+        const uint8_t status = now.to.status;
+        const bool ends = (status & Bits::kFinal) != 0 && now.target.repeats && !now.finishing;
+        const bool repeats_last = now.finishing && now.target.is_prefix;
+        state.memory = now.to.memory;
+        state.status = status;
+        const Diagram when = choices().moved(now.to.when, now.to.step, now.step);
+        const Begun begun = now.to.restarted ? Begun{{now.step, now.from.condition}} : now.from.begun;
         for (const auto& [at, within] : begun) {
-            const Diagram here = choices().condition(within);
+            const Diagram here = all.both(when, within);
             if (here == kNever) continue;
-            Answer& answer = answers[now.finishing && target.is_prefix ? 0 : at];
+            Answer& answer = answers[repeats_last ? 0 : at];
             const auto count = [&](Diagram& of, bool yes) { if (yes) of = all.either(of, here); };
-            const bool repeats_last = now.finishing && target.is_prefix;
-            const auto is = [&](uint8_t bit) { return !repeats_last && (now.status & bit) != 0; };
+            const auto is = [&](uint8_t bit) { return !repeats_last && (status & bit) != 0; };
             count(answer.begun, true);
             count(answer.satisfied,
-                  repeats_last ? now.status != from.status : is(Bits::kSatisfied));
+                  repeats_last ? status != now.from.status : is(Bits::kSatisfied));
             count(answer.violated, is(Bits::kViolated));
             count(answer.decided, is(Bits::kDecided));
             count(answer.final, is(Bits::kFinal));

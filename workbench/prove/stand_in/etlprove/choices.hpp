@@ -6,6 +6,7 @@
 
 #include <stdint.h>
 
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -75,12 +76,18 @@ public:
                                        : etlmon::kNo;
     }
 
-    /// Returns when the step makes the choices that it made, within a condition.
-    Diagram condition(Diagram within) const {
-        Diagram all = within;
-        for (auto made = made_.rbegin(); made != made_.rend(); ++made)
-            all = diagrams().both(all, made->ways[made->taken].second);
-        return all;
+    /// Returns when the step makes the choices that it made.
+    Diagram condition() const { return made_.empty() ? kAlways : made_.back().condition(); }
+
+    /// Returns a condition on the choices of one step as one on those of another.
+    Diagram moved(Diagram condition, uint32_t from, uint32_t to) {
+        if (condition <= kAlways || from == to) return condition;
+        const auto known = moved_.find({condition, to});
+        if (known != moved_.end()) return known->second;
+        const Diagrams::Node node = diagrams()[condition];
+        const Diagram without = moved(node.without, from, to), with = moved(node.with, from, to);
+        const Place place = node.place + from * places_.per_step() - to * places_.per_step();
+        return moved_[{condition, to}] = diagrams().choose(place, without, with);
     }
 
 private:
@@ -88,6 +95,8 @@ private:
     struct Choice {
         Ways ways;
         size_t taken;
+        Diagram before;  ///< condition of the choices before
+        Diagram condition() const { return diagrams().both(before, ways[taken].second); }
     };
 
     std::vector<Atom> atoms_;
@@ -97,6 +106,7 @@ private:
     uint32_t step_ = 0, lazies_ = 0;
     size_t asked_ = 0;
     std::vector<Choice> made_;
+    std::map<std::pair<Diagram, uint32_t>, Diagram> moved_;
     std::vector<std::pair<bool, etlmon::Truth>> answers_;  ///< of the atoms that were asked
 
     void begin_again() {
@@ -119,7 +129,10 @@ private:
 
     template <class Find>
     etlmon::Truth take(const Find& ways) {
-        if (asked_ == made_.size()) made_.push_back({ways(), 0});
+        if (asked_ == made_.size()) {
+            const Diagram before = condition();
+            made_.push_back({ways(), 0, before});
+        }
         const Choice& choice = made_[asked_++];
         return choice.ways[choice.taken].first;
     }
