@@ -16,6 +16,7 @@ enum Entry : std::uint32_t { kNumber = 1, kNode, kVerdict, kReset, kTogether, kW
 constexpr int kBranches = 10;
 constexpr int kExhausted = 11;
 constexpr int kTooMany = 13;
+constexpr int kLeftovers = 14;
 
 }  // namespace
 
@@ -23,6 +24,7 @@ void Answers::end() {
     const int status = child_.exit_status();
     if (status == kBranches) throw Ended{Ended::Why::branches, ""};
     if (status == kExhausted) throw Ended{Ended::Why::exhausted, ""};
+    if (status == kLeftovers) throw Ended{Ended::Why::leftovers, ""};
     if (status == kTooMany) throw Ended{Ended::Why::too_many, ""};
     throw Ended{Ended::Why::failed, child_.ending()};
 }
@@ -109,6 +111,7 @@ std::string why(const Ended& ended) {
         case Ended::Why::too_many:
             return "the class has more than 4,000,000 cases: its state and the truths that a step "
                    "asks for";
+        case Ended::Why::leftovers:
         case Ended::Why::failed: break;
     }
     return fmt::format("the class, compiled for the proof, {}", ended.how);

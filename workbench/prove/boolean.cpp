@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -168,7 +169,8 @@ diag::Failure no_boolean_proof(std::string why) {
     return {diag::Code::no_proof, std::move(why)};
 }
 
-diag::Result<Proof> compare(const plan::Plan& plan, const Program& program, Proof proof,
+/// Returns nothing where reset() leaves something of an earlier episode.
+std::optional<diag::Result<Proof>> compare(const plan::Plan& plan, const Program& program, Proof proof,
                             const std::vector<Truths>& truths) {
     const auto child = program.start();
     if (!child)
@@ -182,6 +184,7 @@ diag::Result<Proof> compare(const plan::Plan& plan, const Program& program, Proo
     } catch (const Exhausted&) {
         return no_boolean_proof("the diagrams of the definition are too large" + how_far(done));
     } catch (const Ended& ended) {
+        if (ended.why == Ended::Why::leftovers) return std::nullopt;
         return no_boolean_proof(why(ended) + how_far(done));
     }
 }
@@ -236,12 +239,16 @@ diag::Result<Proof> prove_boolean(const plan::Plan& plan, const Request& request
     proof.steps = request.steps > 0 ? request.steps : usual_steps(plan);
     const std::vector<Truths> truths = truths_of(plan, proof.atoms);
     try {
-        const auto program = Program::make(
-            request.header, boolean_main(plan, request, proof.atoms, truths, proof.steps),
-            "-Istand_in/boolean -Iruntime -Istand_in");
-        if (!program) return program.failure();
-        proof.compiler = program->compiler();
-        return compare(plan, *program, std::move(proof), truths);
+        for (const bool may_freeze : {true, false}) {
+            const auto program = Program::make(
+                request.header,
+                boolean_main(plan, request, proof.atoms, truths, proof.steps, may_freeze),
+                "-Istand_in/boolean -Iruntime -Istand_in");
+            if (!program) return program.failure();
+            proof.compiler = program->compiler();
+            if (auto result = compare(plan, *program, proof, truths)) return std::move(*result);
+        }
+        return no_boolean_proof("the class keeps something of an episode after reset()");
     } catch (const Unreadable& text) {
         return no_boolean_proof(
             fmt::format("the text of the class is not as etlc writes it: {}", text.what));

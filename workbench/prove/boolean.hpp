@@ -19,10 +19,11 @@ etlprove::TruthPlaces truth_places(const plan::Plan& plan, const std::vector<Ato
 /// Returns the calls of finish() that report something.
 std::uint32_t finishes_of(const plan::Plan& plan);
 
-/// Returns the main file of the program. Throws Unreadable.
+/// Returns the main file of the program. `may_freeze`: a final verdict stays, so what else it
+/// depended on is forgotten; only where reset() leaves nothing of it. Throws Unreadable.
 std::string boolean_main(const plan::Plan& plan, const Request& request,
                          const std::vector<Atom>& atoms, const std::vector<Truths>& truths,
-                         std::uint32_t steps);
+                         std::uint32_t steps, bool may_freeze);
 
 /// Makes an input on which a condition is true: the witness of a fault, and its restarts.
 void find_truths(Fault& fault, const etlprove::Diagrams& diagrams, Diagram condition,

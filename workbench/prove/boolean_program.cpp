@@ -26,9 +26,13 @@ std::vector<std::string> names_of(const plan::Plan& plan, const std::vector<Atom
 
 /// Returns one target of the program, as its initialiser.
 std::string target(const plan::Plan& plan, const Cones& cones, std::uint32_t m,
-                   const std::vector<std::string>& atoms) {
+                   const std::vector<std::string>& atoms, bool may_freeze) {
     const plan::Monitor& monitor = plan.monitors[m];
-    const Cones::Names cone = cones.of("answers_." + monitor.name);
+    const std::string verdict = "answers_." + monitor.name;
+    const auto local = emit::make_names(plan).open_local;
+    const bool freezes = may_freeze && monitor.restarts == check::Restarts::never &&
+                         local.contains(m) && cones.freezes(verdict, local.at(m));
+    const Cones::Names cone = cones.of(verdict, freezes ? local.at(m) : "");
     std::vector<std::string> parts;
     for (const std::string& name : cone)
         if (name.ends_with("_") || name.starts_with("answers_."))
@@ -40,8 +44,9 @@ std::string target(const plan::Plan& plan, const Cones& cones, std::uint32_t m,
         if (plan.monitors[other].restarts != check::Restarts::never &&
             cones.writes("restart_" + plan.monitors[other].name, cone))
             restarts.push_back(other);
-    return fmt::format("        {{{}, {}, {}, {{{}}}, {{{}}}, {{{}}}}},\n", m, !monitor.sliding,
-                       monitor.restarts == check::Restarts::when_final, fmt::join(parts, ", "),
+    return fmt::format("        {{{}, {}, {}, {}, {{{}}}, {{{}}}, {{{}}}}},\n", m, !monitor.sliding,
+                       monitor.restarts == check::Restarts::when_final, freezes,
+                       fmt::join(parts, ", "),
                        fmt::join(counts, ", "), fmt::join(restarts, ", "));
 }
 
@@ -65,7 +70,7 @@ etlprove::TruthPlaces truth_places(const plan::Plan& plan, const std::vector<Ato
 
 std::string boolean_main(const plan::Plan& plan, const Request& request,
                          const std::vector<Atom>& atoms, const std::vector<Truths>& truths,
-                         std::uint32_t steps) {
+                         std::uint32_t steps, bool may_freeze) {
     const std::vector<std::string> names = names_of(plan, atoms);
     const Cones cones(request.header, {names.begin(), names.end()});
     std::string lazies;
@@ -75,7 +80,7 @@ std::string boolean_main(const plan::Plan& plan, const Request& request,
     std::string restarts;
     std::string targets;
     for (std::uint32_t m = 0; m < plan.monitors.size(); ++m) {
-        targets += target(plan, cones, m, names);
+        targets += target(plan, cones, m, names, may_freeze);
         if (plan.monitors[m].restarts != check::Restarts::never)
             restarts +=
                 fmt::format("    if (m == {}) monitor.restart_{}();\n", m, plan.monitors[m].name);

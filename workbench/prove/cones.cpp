@@ -147,10 +147,23 @@ bool makes_reference(std::string_view text) {
 
 constexpr std::string_view kLazy = "const etlmon::Lazy ";
 
+/// Whether a condition is a name, or "a || b".
+bool is_choice(std::string_view text) {
+    static const std::regex kChoice(R"(^\s*\w+(\s*\|\|\s*\w+)*\s*$)");
+    return std::regex_match(text.begin(), text.end(), kChoice);
+}
+
 }  // namespace
 
 /// Reads the body of a function into statements.
 class Cones::Reader {
+    /// The conditions around a statement: what they name, and those that are "a || b".
+    struct Conditions {
+        Names named;
+        std::vector<Names> one_of;
+        bool empty() const { return named.empty() && one_of.empty(); }
+    };
+
 public:
     Reader(Cones& cones, const Names& atoms) : cones_(cones), atoms_(atoms) {}
 
@@ -167,7 +180,7 @@ private:
     std::uint32_t lazies_ = 0;
     bool counts_ = true;  ///< every lazy value so far is made at every step
 
-    void read(std::string_view text, const Names& conditions) {
+    void read(std::string_view text, const Conditions& conditions) {
         for (std::size_t at = skip_space(text, 0); at < text.size(); at = skip_space(text, at)) {
             const std::string_view word = name_at(text, at);
             if (word == "if" || word == "for") {
@@ -187,14 +200,18 @@ private:
     }
 
     /// Reads what follows "if" or "for", with every "else". Returns the place after it.
-    std::size_t read_block(std::string_view text, std::size_t at, Names conditions) {
-        for (;;) {
+    std::size_t read_block(std::string_view text, std::size_t at, Conditions conditions) {
+        const std::vector<Names> around = conditions.one_of;
+        for (bool is_first = true;; is_first = false) {
             at = skip_space(text, at);
             if (at < text.size() && text[at] == '(') {
                 const std::size_t end = closing(text, at);
                 const std::string_view head = text.substr(at + 1, end - at - 1);
                 read_simple(head, conditions);
-                conditions.merge(set_of(names_in(head)));
+                if (is_first && is_choice(head))
+                    conditions.one_of.push_back(set_of(names_in(head)));
+                else
+                    conditions.named.merge(set_of(names_in(head)));
                 at = skip_space(text, end + 1);
             }
             const bool is_block = at < text.size() && text[at] == '{';
@@ -206,6 +223,8 @@ private:
             at = skip_space(text, end + 1);
             if (name_at(text, at) != "else") return end + 1;
             at = skip_space(text, at + 4);
+            for (const Names& names : std::exchange(conditions.one_of, around))
+                conditions.named.insert(names.begin(), names.end());
             if (name_at(text, at) == "if") at += 2;
         }
     }
@@ -216,7 +235,7 @@ private:
         return at;
     }
 
-    void read_simple(std::string_view text, const Names& conditions) {
+    void read_simple(std::string_view text, const Conditions& conditions) {
         static const Names kJumps = {"while", "do",   "switch", "case", "break",
                                      "goto",  "try",  "throw",  "asm",  "continue"};
         const std::string first(name_at(text, 0));
@@ -227,21 +246,21 @@ private:
         add(text, conditions, {});
     }
 
-    void add(std::string_view text, const Names& conditions, Names written) {
+    void add(std::string_view text, const Conditions& conditions, Names written) {
         const std::vector<Found> found = names_in(text);
-        Statement statement{std::move(written), set_of(found)};
+        Statement statement{std::move(written), set_of(found), conditions.one_of};
         // Another name for what follows, or for one of two things.
         const std::size_t choice = text.find('?') + 1;
         if (makes_reference(text))
             statement.written.merge(set_of(names_in(text.substr(choice))));
         for (const Found& one : found)
             if (is_written(text, one)) statement.written.insert(one.name);
-        statement.named.insert(conditions.begin(), conditions.end());
+        statement.named.insert(conditions.named.begin(), conditions.named.end());
         statements_.push_back(std::move(statement));
     }
 
     /// Reads "const etlmon::Lazy NAME([&]() noexcept { ... })".
-    void read_lazy(std::string_view text, const Names& conditions) {
+    void read_lazy(std::string_view text, const Conditions& conditions) {
         const std::string name(name_at(text, skip_space(text, kLazy.size())));
         const std::size_t open = text.find('{');
         if (name.empty() || open == std::string_view::npos)
@@ -297,6 +316,10 @@ bool Cones::join_calls(bool conditions) {
                 // What advance() does is known by its statements.
                 if (name == "advance" || !call.called.contains(name)) continue;
                 for (Statement& inside : statements) {
+                    if (conditions && inside.written.empty()) continue;
+                    if (conditions)
+                        for (const Names& names : call.one_of)
+                            inside.named.insert(names.begin(), names.end());
                     const Names& from = conditions ? call.named : inside.named;
                     Names& to = conditions ? inside.named : call.named;
                     const std::size_t before = to.size();
@@ -307,23 +330,46 @@ bool Cones::join_calls(bool conditions) {
     return changed;
 }
 
-Names Cones::of(const std::string& name) const {
-    Names names{name};
+bool Cones::depends(const Statement& statement, const Names& names) {
+    return std::any_of(statement.written.begin(), statement.written.end(),
+                       [&](const auto& written) {
+                           return names.contains(written) || written == "answers_";
+                       });
+}
+
+Names Cones::of(const std::string& verdict, const std::string& open) const {
+    Names names{verdict};
     for (std::size_t before = 0; before != names.size();) {
         before = names.size();
         for (const auto& [function, statements] : functions_)
             for (const Statement& statement : statements) {
-                const bool counts = std::any_of(
-                    statement.written.begin(), statement.written.end(), [&](const auto& written) {
-                        return names.contains(written) || written == "answers_";
-                    });
-                if (counts) names.insert(statement.named.begin(), statement.named.end());
+                if (!depends(statement, names)) continue;
+                names.insert(statement.named.begin(), statement.named.end());
+                for (const Names& one_of : statement.one_of)  // is true while this is open
+                    if (!one_of.contains(open) || one_of.size() == 1)
+                        names.insert(one_of.begin(), one_of.end());
             }
     }
     for (const std::string& one : names)
         if (measured_.contains(one))
             throw Unreadable{fmt::format("a verdict that depends on '{}', which is measured", one)};
     return names;
+}
+
+bool Cones::freezes(const std::string& verdict, const std::string& open) const {
+    for (const Statement& statement : functions_.at("advance")) {
+        if (depends(statement, {verdict}) &&
+            std::find(statement.one_of.begin(), statement.one_of.end(), Names{open}) ==
+                statement.one_of.end())
+            return false;
+        const Names itself{verdict, open, "finishes_"};
+        if (depends(statement, {open}) &&
+            (!statement.one_of.empty() || !statement.called.empty() ||
+             !std::includes(itself.begin(), itself.end(), statement.named.begin(),
+                            statement.named.end())))
+            return false;
+    }
+    return !open.empty();
 }
 
 bool Cones::writes(const std::string& function, const Names& names) const {

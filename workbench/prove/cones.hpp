@@ -26,7 +26,12 @@ public:
     Cones(std::string_view header, const Names& atoms);
 
     /// Returns the names that a name of the class depends on, with itself. Throws Unreadable.
-    Names of(const std::string& name) const;
+    Names of(const std::string& name) const { return of(name, ""); }
+    /// Returns those that a verdict depends on while it is open, if it is not written once it is
+    /// not. `open`: the name of "it is open"; empty: this verdict has none. Throws Unreadable.
+    Names of(const std::string& verdict, const std::string& open) const;
+    /// Whether a verdict is written only while it is open, and this depends on nothing else.
+    bool freezes(const std::string& verdict, const std::string& open) const;
     /// Whether a function of the class writes one of these names.
     bool writes(const std::string& function, const Names& names) const;
     /// Returns the place of an atom among the lazy values of a step. Throws Unreadable.
@@ -37,8 +42,10 @@ private:
     struct Statement {
         Names written;
         Names named;
-        Names called{};  ///< functions of the class
+        std::vector<Names> one_of{};  ///< conditions "a || b"
+        Names called{};               ///< functions of the class
     };
+    static bool depends(const Statement& statement, const Names& names);
     using Statements = std::vector<Statement>;
     class Reader;
 

@@ -22,8 +22,6 @@
 namespace etlprove {
 
 constexpr uint64_t kMostCases = 4000000;
-/// The bits of etlmon::Truth, whose byte may have anything in the others.
-constexpr unsigned char kTruthBits = 3;
 /// States whose step is not taken again.
 constexpr size_t kMostKept = 10000;
 
@@ -33,6 +31,14 @@ struct Part {
     unsigned char bits;
 };
 
+/// The bits of etlmon::Truth; its byte may have anything in the others.
+inline unsigned char truth_bits() {
+    unsigned char byte = 0;
+    etlmon::Truth& truth = reinterpret_cast<etlmon::Truth&>(byte);
+    truth.low = truth.high = true;
+    return byte;
+}
+
 template <class Monitor, class Member>
 Part part(const Monitor& monitor, const Member& member) {
     constexpr bool is_truth =
@@ -40,7 +46,7 @@ Part part(const Monitor& monitor, const Member& member) {
     const auto first =
         reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&monitor);
     return {static_cast<size_t>(first), sizeof member,
-            static_cast<unsigned char>(is_truth ? kTruthBits : 0xff)};
+            static_cast<unsigned char>(is_truth ? truth_bits() : 0xff)};
 }
 
 /// A monitor, and what its verdict depends on.
@@ -48,6 +54,7 @@ struct Target {
     uint32_t monitor;
     bool is_prefix;
     bool repeats;  ///< it also restarts after a final verdict
+    bool freezes;  ///< a final verdict stays, whatever else it depended on
     std::vector<Part> parts;
     std::vector<bool> atoms;
     std::vector<uint32_t> restarts;  ///< monitors whose restart changes these parts
@@ -68,8 +75,9 @@ public:
 
     void run() {
         for (const Target& target : about_.targets) {
-            Memory first{};
-            (*first).reset();
+            const Memory first = reset(0);
+            if (target.freezes && part(target, first) != part(target, reset(0xff)))
+                stop(kLeftovers);
             runs_.push_back(begin(target, first));
         }
         for (uint32_t step = 0; step < about_.steps; ++step)
@@ -127,6 +135,14 @@ private:
         return bytes;
     }
 
+    /// Returns the state that reset() makes of one with these bytes.
+    static Memory reset(int byte) {
+        Memory memory;
+        memset(memory.bytes, byte, sizeof memory.bytes);
+        (*memory).reset();
+        return memory;
+    }
+
     static Run begin(const Target& target, const Memory& first) {
         return {&target, {{part(target, first), {first, 0, kAlways, {{0, kAlways}}}}}, first};
     }
@@ -168,7 +184,8 @@ private:
                 add({*run.target, state, outcome, step, finishing}, answers, next[way.first]);
             if (is_usual && run.outcomes.size() < kMostKept) run.outcomes.emplace(key, found);
         }
-        for (auto& [key, state] : next) check_reset(run, state.memory);
+        for (auto& [key, state] : next)
+            if (!run.target->freezes) check_reset(run, state.memory);
         report(answers);
         return next;
     }
@@ -185,7 +202,9 @@ private:
                 finishing ? finish<Monitor, Verdicts>(*memory, 0) : (*memory).step({});
             uint8_t status = 0;
             memcpy(&status, reinterpret_cast<const char*>(&verdicts) + target.monitor, 1);
-            const std::string key = part(target, memory) + static_cast<char>(status);
+            const bool frozen = target.freezes && (status & etlmon::BooleanVerdict::kFinal) != 0;
+            std::string key = frozen ? "" : part(target, memory);
+            key += static_cast<char>(status);
             Outcome& outcome =
                 found.emplace(std::make_pair(key, restarted), Outcome{memory, status, restarted, step})
                     .first->second;

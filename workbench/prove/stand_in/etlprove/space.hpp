@@ -11,6 +11,7 @@ namespace etlprove {
 
 /// Ends of the program besides success, as its exit status.
 constexpr int kBranches = 10, kExhausted = 11, kNewNumber = 12, kTooMany = 13;
+constexpr int kLeftovers = 14;
 constexpr uint32_t kMostNodes = 40u << 20;
 
 [[noreturn]] inline void stop(int status) {
