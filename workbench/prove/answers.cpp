@@ -108,9 +108,7 @@ std::string why(const Ended& ended) {
         case Ended::Why::branches:
             return "the class compares two values and branches on the result";
         case Ended::Why::exhausted: return "the diagrams of the class are too large";
-        case Ended::Why::too_many:
-            return "the class has more than 4,000,000 cases: its state and the truths that a step "
-                   "asks for";
+        case Ended::Why::too_many: return "the class has too many states and cases of a step";
         case Ended::Why::leftovers:
         case Ended::Why::failed: break;
     }

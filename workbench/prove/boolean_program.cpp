@@ -93,10 +93,10 @@ std::string boolean_main(const plan::Plan& plan, const Request& request,
         "int main() {{\n    static Monitor monitor;\n"
         "    static_assert(sizeof(Verdicts) == {2}, \"a byte for each monitor\");\n"
         "    etlprove::choices().describe({{{3}}}, {{{4}, {5}, {6}}});\n"
-        "    etlprove::CasesOf<Monitor> cases{{{7}, {8}, restart, {{\n{9}    }}}};\n"
+        "    etlprove::CasesOf<Monitor> cases{{{7}, {8}, {10}, restart, {{\n{9}    }}}};\n"
         "    etlprove::Cases<Monitor, Verdicts>(cases).run();\n}}\n",
         request.name_space, restarts, plan.monitors.size(), lazies, places.steps, places.atoms,
-        places.monitors, steps, finishes_of(plan), targets);
+        places.monitors, steps, finishes_of(plan), targets, request.most_cases);
 }
 
 }  // namespace etlc::prove

@@ -22,6 +22,8 @@ struct Request {
     std::string header;       ///< its text
     std::string name_space;   ///< of its class
     std::uint32_t steps = 0;  ///< 0: usual_steps()
+    /// Of truth values: states with the truths that a step asks for, of all steps together.
+    std::uint64_t most_cases = 1000000;
 };
 
 /// Twice the longest horizon and the longest buffer, at least 64.

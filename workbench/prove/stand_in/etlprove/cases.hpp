@@ -21,7 +21,6 @@
 
 namespace etlprove {
 
-constexpr uint64_t kMostCases = 4000000;
 /// States whose step is not taken again.
 constexpr size_t kMostKept = 10000;
 
@@ -63,7 +62,8 @@ struct Target {
 template <class Monitor>
 struct CasesOf {
     uint32_t steps;
-    uint32_t finishes;  ///< calls of finish() that report something
+    uint32_t finishes;    ///< calls of finish() that report something
+    uint64_t most_cases;  ///< of all steps together
     void (*restart)(Monitor&, uint32_t monitor);
     std::vector<Target> targets;
 };
@@ -195,7 +195,7 @@ private:
         Outcomes found;
         choices().begin(step, target.atoms);
         do {
-            if (++cases_ > kMostCases) stop(kTooMany);
+            if (++cases_ > about_.most_cases) stop(kTooMany);
             Memory memory = from;
             const bool restarted = !finishing && step > 0 && restart(target, *memory);
             const Verdicts verdicts =
