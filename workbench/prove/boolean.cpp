@@ -239,11 +239,13 @@ diag::Result<Proof> prove_boolean(const plan::Plan& plan, const Request& request
     proof.steps = request.steps > 0 ? request.steps : usual_steps(plan);
     const std::vector<Truths> truths = truths_of(plan, proof.atoms);
     try {
+        const std::string truths_text = text_of_truths();
         for (const bool may_freeze : {true, false}) {
             const auto program = Program::make(
                 request.header,
                 boolean_main(plan, request, proof.atoms, truths, proof.steps, may_freeze),
-                "-Istand_in/boolean -Iruntime -Istand_in");
+                "-Istand_in/boolean -Iruntime -Istand_in",
+                {{"boolean/etlmon/temporal/truth.hpp", truths_text}});
             if (!program) return program.failure();
             proof.compiler = program->compiler();
             if (auto result = compare(plan, *program, proof, truths)) return std::move(*result);

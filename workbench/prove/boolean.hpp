@@ -25,6 +25,9 @@ std::string boolean_main(const plan::Plan& plan, const Request& request,
                          const std::vector<Atom>& atoms, const std::vector<Truths>& truths,
                          std::uint32_t steps, bool may_freeze);
 
+/// Returns the runtime's truth.hpp, in which equal truths are equal bytes. Throws Unreadable.
+std::string text_of_truths();
+
 /// Makes an input on which a condition is true: the witness of a fault, and its restarts.
 void find_truths(Fault& fault, const etlprove::Diagrams& diagrams, Diagram condition,
                  const plan::Plan& plan, const std::vector<Atom>& atoms,

@@ -6,6 +6,7 @@
 #include "emit/names.hpp"
 #include "prove/boolean.hpp"
 #include "prove/cones.hpp"
+#include "prove/program.hpp"
 
 namespace etlc::prove {
 namespace {
@@ -55,6 +56,18 @@ std::string text_of(Truths truths) {
 }
 
 }  // namespace
+
+std::string text_of_truths() {
+    constexpr std::string_view kLast = "bool high : 1;";
+    for (const RuntimeFile& file : emit::runtime_files()) {
+        std::string text(file.text);
+        const std::size_t at = text.find(kLast);
+        if (std::string_view(file.name) != "etlmon/temporal/truth.hpp" || at == std::string::npos)
+            continue;
+        return text.insert(at + kLast.size(), " uint8_t rest : 6;");
+    }
+    throw Unreadable{"no truth of two bits"};
+}
 
 std::uint32_t finishes_of(const plan::Plan& plan) {
     std::uint32_t calls = 0;

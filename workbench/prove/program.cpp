@@ -112,11 +112,12 @@ Program::~Program() {
 
 diag::Result<Program> Program::make(const plan::Plan& plan, const Subject& subject,
                                     const std::vector<Atom>& atoms) {
-    return make(subject.header, main_text(plan, subject, atoms), "-Istand_in -Iruntime");
+    return make(subject.header, main_text(plan, subject, atoms), "-Istand_in -Iruntime", {});
 }
 
 diag::Result<Program> Program::make(const std::string& header, const std::string& main,
-                                    const std::string& folders) {
+                                    const std::string& folders,
+                                    const std::vector<RuntimeFile>& files) {
     std::error_code error;
     std::string pattern = (fs::temp_directory_path(error) / "etlc-prove-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr)
@@ -125,8 +126,9 @@ diag::Result<Program> Program::make(const std::string& header, const std::string
     const fs::path folder = pattern;
     bool written =
         write(folder / "class.hpp", header) && write(folder / "main.cpp", main);
-    for (const RuntimeFile& file : stand_in_files())
-        written = written && write(folder / "stand_in" / file.name, file.text);
+    for (const auto* const group : {&stand_in_files(), &files})
+        for (const RuntimeFile& file : *group)
+            written = written && write(folder / "stand_in" / file.name, file.text);
     for (const RuntimeFile& file : emit::runtime_files())
         written = written && write(folder / "runtime" / file.name, file.text);
     if (!written) return failure(fmt::format("cannot write to the temporary folder '{}'", pattern));

@@ -34,9 +34,11 @@ public:
     /// Writes and compiles it.
     static diag::Result<Program> make(const plan::Plan& plan, const Subject& subject,
                                       const std::vector<Atom>& atoms);
-    /// `main`: its text; `folders`: where the compiler looks for headers.
+    /// `main`: its text; `folders`: where the compiler looks for headers; `files`: more of them, in
+    /// the folder of those that stand in.
     static diag::Result<Program> make(const std::string& header, const std::string& main,
-                                      const std::string& folders);
+                                      const std::string& folders,
+                                      const std::vector<RuntimeFile>& files);
     Program(Program&& other) noexcept;
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;

@@ -23,7 +23,7 @@ struct Request {
     std::string name_space;   ///< of its class
     std::uint32_t steps = 0;  ///< 0: usual_steps()
     /// Of truth values: states with the truths that a step asks for, of all steps together.
-    std::uint64_t most_cases = 1000000;
+    std::uint64_t most_cases = 4000000;
 };
 
 /// Twice the longest horizon and the longest buffer, at least 64.

@@ -10,7 +10,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -24,28 +23,16 @@ namespace etlprove {
 /// States whose step is not taken again.
 constexpr size_t kMostKept = 10000;
 
-/// Bytes of the state of a class. Those of truth values have two bits that count.
+/// Bytes of the state of a class.
 struct Part {
     size_t first, bytes;
-    unsigned char bits;
 };
-
-/// The bits of etlmon::Truth; its byte may have anything in the others.
-inline unsigned char truth_bits() {
-    unsigned char byte = 0;
-    etlmon::Truth& truth = reinterpret_cast<etlmon::Truth&>(byte);
-    truth.low = truth.high = true;
-    return byte;
-}
 
 template <class Monitor, class Member>
 Part part(const Monitor& monitor, const Member& member) {
-    constexpr bool is_truth =
-        std::is_same<std::remove_all_extents_t<Member>, etlmon::Truth>::value;
     const auto first =
         reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&monitor);
-    return {static_cast<size_t>(first), sizeof member,
-            static_cast<unsigned char>(is_truth ? truth_bits() : 0xff)};
+    return {static_cast<size_t>(first), sizeof member};
 }
 
 /// A monitor, and what its verdict depends on.
@@ -130,8 +117,7 @@ private:
     static std::string part(const Target& target, const Memory& memory) {
         std::string bytes;
         for (const Part& part : target.parts)
-            for (size_t at = 0; at < part.bytes; ++at)
-                bytes += static_cast<char>(memory.bytes[part.first + at] & part.bits);
+            bytes.append(reinterpret_cast<const char*>(memory.bytes) + part.first, part.bytes);
         return bytes;
     }
 
