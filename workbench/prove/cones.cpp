@@ -145,6 +145,10 @@ bool makes_reference(std::string_view text) {
     return std::regex_search(text.begin(), text.end(), kReference);
 }
 
+bool is_member(std::string_view name) {
+    return name.ends_with("_") || name.starts_with("answers_.");
+}
+
 constexpr std::string_view kLazy = "const etlmon::Lazy ";
 
 /// Whether a condition is a name, or "a || b".
@@ -169,7 +173,13 @@ public:
 
     Statements body(std::string_view text) {
         statements_.clear();
+        skips_ = false;
         read(text, {});
+        const auto writes = [](const Statement& one) {
+            return std::any_of(one.written.begin(), one.written.end(), is_member);
+        };
+        if (skips_ && std::any_of(statements_.begin(), statements_.end(), writes))
+            throw Unreadable{"a 'return' before the end"};
         return std::move(statements_);
     }
 
@@ -178,7 +188,9 @@ private:
     const Names& atoms_;
     Statements statements_;
     std::uint32_t lazies_ = 0;
-    bool counts_ = true;  ///< every lazy value so far is made at every step
+    bool skips_ = false;     ///< a statement may end the function early
+    bool measures_ = false;  ///< in the function of an atom
+    bool counts_ = true;     ///< every lazy value so far is made at every step
 
     void read(std::string_view text, const Conditions& conditions) {
         for (std::size_t at = skip_space(text, 0); at < text.size(); at = skip_space(text, at)) {
@@ -239,7 +251,9 @@ private:
         static const Names kJumps = {"while", "do",   "switch", "case", "break",
                                      "goto",  "try",  "throw",  "asm",  "continue"};
         const std::string first(name_at(text, 0));
-        if (kJumps.contains(first) || (first == "return" && !conditions.empty()))
+        const bool may_skip = first == "return" && !conditions.empty();
+        skips_ = skips_ || may_skip;
+        if (!measures_ && kJumps.contains(first))
             throw Unreadable{fmt::format("'{}' in a step", first)};
         if (text.starts_with(kLazy)) return read_lazy(text, conditions);
         if (text == "answers_ = Verdicts()") return;  // each verdict becomes a constant
@@ -271,7 +285,11 @@ private:
         if (!atoms_.contains(name)) return add(inside, conditions, {name});
         Statements before = std::move(statements_);
         statements_.clear();
+        const bool skips = skips_;
+        measures_ = true;
         read(inside, {});
+        measures_ = false;
+        skips_ = skips;
         for (const Statement& statement : statements_)
             cones_.measured_.insert(statement.written.begin(), statement.written.end());
         statements_ = std::move(before);
