@@ -10,7 +10,17 @@ namespace etlc::prove {
 
 namespace {
 
-enum Entry : std::uint32_t { kNumber = 1, kNode, kVerdict, kReset, kTogether, kWindow, kEnd, kStatus, kFinished };
+enum Entry : std::uint32_t {
+    kNumber = 1,
+    kNode,
+    kVerdict,
+    kReset,
+    kTogether,
+    kWindow,
+    kEnd,
+    kStatus,
+    kFinished
+};
 
 /// The exit statuses of the program, as stand_in/etlprove/space.hpp has them.
 constexpr int kBranches = 10;

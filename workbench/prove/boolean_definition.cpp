@@ -72,9 +72,10 @@ Statuses BooleanDefinition::verdict(std::uint32_t monitor, std::uint32_t end,
     if (!prefix) prefix = std::make_unique<reference::PrefixOf<Condition>>(form_, literals_, end);
     const plan::Monitor& of = plan_.monitors[monitor];
     const reference::ValueOf<Condition> value = prefix->at(form_.roots[of.index], position);
-    // "satisfied where rho >= 0, violated where rho_high < 0"; "final where lower >= 0 or upper < 0"
-    const Condition final = of.sliding ? Condition(etlprove::kAlways)
-                                       : max(value.lower, -value.upper);
+    // "satisfied where rho >= 0, violated where rho_high < 0"; "final where lower >= 0 [...] or
+    // upper < 0"
+    const Condition final =
+        of.sliding ? Condition(etlprove::kAlways) : max(value.lower, -value.upper);
     return {value.rho.diagram(), (-value.rho_high).diagram(), final.diagram()};
 }
 

@@ -23,8 +23,12 @@ public:
     Diagram diagram() const { return of_.diagram(); }
 
     Condition operator-() const { return Condition((!of_).diagram()); }
-    friend Condition min(Condition a, Condition b) { return Condition(min(a.of_, b.of_).diagram()); }
-    friend Condition max(Condition a, Condition b) { return Condition(max(a.of_, b.of_).diagram()); }
+    friend Condition min(Condition a, Condition b) {
+        return Condition(min(a.of_, b.of_).diagram());
+    }
+    friend Condition max(Condition a, Condition b) {
+        return Condition(max(a.of_, b.of_).diagram());
+    }
 
 private:
     Symbol of_;

@@ -47,8 +47,7 @@ std::string target(const plan::Plan& plan, const Cones& cones, std::uint32_t m,
             restarts.push_back(other);
     return fmt::format("        {{{}, {}, {}, {}, {{{}}}, {{{}}}, {{{}}}}},\n", m, !monitor.sliding,
                        monitor.restarts == check::Restarts::when_final, freezes,
-                       fmt::join(parts, ", "),
-                       fmt::join(counts, ", "), fmt::join(restarts, ", "));
+                       fmt::join(parts, ", "), fmt::join(counts, ", "), fmt::join(restarts, ", "));
 }
 
 std::string text_of(Truths truths) {

@@ -1,7 +1,7 @@
 // What the verdict of a monitor depends on, by the text of its class. Takes: a header with
 // --values boolean, as etlc writes it. Gives: for each monitor the members of the state and the
-// atoms that its verdict depends on, at any later step. Keeps true: too much may be named, never too
-// little; a text that is not understood is refused.
+// atoms that its verdict depends on, at any later step. Keeps true: too much may be named, never
+// too little; a text that is not understood is refused.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,8 @@ class Cones {
 public:
     using Names = std::set<std::string>;
 
-    /// `atoms`: the names of its lazy values that are predicates and bool inputs. Throws Unreadable.
+    /// `atoms`: the names of its lazy values that are predicates and bool inputs. Throws
+    /// Unreadable.
     Cones(std::string_view header, const Names& atoms);
 
     /// Returns the names that a name of the class depends on, with itself. Throws Unreadable.

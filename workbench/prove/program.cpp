@@ -124,8 +124,7 @@ diag::Result<Program> Program::make(const std::string& header, const std::string
         return failure(fmt::format("cannot make a temporary folder like '{}'", pattern));
     Program program(pattern);
     const fs::path folder = pattern;
-    bool written =
-        write(folder / "class.hpp", header) && write(folder / "main.cpp", main);
+    bool written = write(folder / "class.hpp", header) && write(folder / "main.cpp", main);
     for (const auto* const group : {&stand_in_files(), &files})
         for (const RuntimeFile& file : *group)
             written = written && write(folder / "stand_in" / file.name, file.text);

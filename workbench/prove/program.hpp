@@ -57,7 +57,13 @@ private:
 
 /// How a program ended before its last entry.
 struct Ended {
-    enum class Why : std::uint8_t { branches, exhausted, too_many, leftovers, failed } why = Why::failed;
+    enum class Why : std::uint8_t {
+        branches,
+        exhausted,
+        too_many,
+        leftovers,
+        failed
+    } why = Why::failed;
     std::string how;  ///< "was stopped by signal 11 (Segmentation fault)"
 };
 

@@ -191,9 +191,10 @@ private:
             const bool frozen = target.freezes && (status & etlmon::BooleanVerdict::kFinal) != 0;
             std::string key = frozen ? "" : part(target, memory);
             key += static_cast<char>(status);
-            Outcome& outcome =
-                found.emplace(std::make_pair(key, restarted), Outcome{memory, status, restarted, step})
-                    .first->second;
+            Outcome& outcome = found
+                                   .emplace(std::make_pair(key, restarted),
+                                            Outcome{memory, status, restarted, step})
+                                   .first->second;
             outcome.when = diagrams().either(outcome.when, choices().condition());
         } while (choices().next());
         return found;
@@ -226,12 +227,15 @@ private:
         state.memory = now.to.memory;
         state.status = status;
         const Diagram when = choices().moved(now.to.when, now.to.step, now.step);
-        const Begun begun = now.to.restarted ? Begun{{now.step, now.from.condition}} : now.from.begun;
+        const Begun begun =
+            now.to.restarted ? Begun{{now.step, now.from.condition}} : now.from.begun;
         for (const auto& [at, within] : begun) {
             const Diagram here = all.both(when, within);
             if (here == kNever) continue;
             Answer& answer = answers[repeats_last ? 0 : at];
-            const auto count = [&](Diagram& of, bool yes) { if (yes) of = all.either(of, here); };
+            const auto count = [&](Diagram& of, bool yes) {
+                if (yes) of = all.either(of, here);
+            };
             const auto is = [&](uint8_t bit) { return !repeats_last && (status & bit) != 0; };
             count(answer.begun, true);
             count(answer.satisfied,

@@ -55,9 +55,10 @@ public:
     /// Returns whether the monitor is restarted before this step.
     bool is_restarted(uint32_t monitor) {
         return take([&] {
-            const Diagram yes = diagrams().variable(places_.restart(step_, monitor));
-            return Ways{{etlmon::kNo, diagrams().complement(yes)}, {etlmon::kYes, yes}};
-        }).low;
+                   const Diagram yes = diagrams().variable(places_.restart(step_, monitor));
+                   return Ways{{etlmon::kNo, diagrams().complement(yes)}, {etlmon::kYes, yes}};
+               })
+            .low;
     }
 
     uint32_t next_lazy() {
