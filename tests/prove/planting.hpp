@@ -1,6 +1,8 @@
 // Faults that are planted in a plan, and whether an input shows them.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <functional>
 #include <optional>

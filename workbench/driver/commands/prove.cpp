@@ -163,8 +163,8 @@ std::string said(const plan::Plan& plan, const prove::Fault& fault) {
         where += fmt::format(", '{}' restarted before step {}", plan.monitors[monitor].name, step);
     const std::string& name = plan.monitors[fault.monitor].name;
     if (plan.values == check::Values::boolean)
-        return fmt::format("'{}' {}: is {}{} in the class, and {}by the definition", name, where,
-                           fault.witness.first_reaches ? "" : "not ", fault.number,
+        return fmt::format("'{}' {}: {} {} in the class, but {}by the definition", name, where,
+                           fault.witness.first_reaches ? "is" : "is not", fault.number,
                            fault.witness.first_reaches ? "not " : "");
     if (fault.witness.values.empty())
         return fmt::format("'{}' {}: the class and the definition differ in {}", name, where,

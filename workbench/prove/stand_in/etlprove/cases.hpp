@@ -20,6 +20,8 @@
 
 namespace etlprove {
 
+/// Of the diagrams; more take too long.
+constexpr uint32_t kMostNodesOfCases = 16u << 20;
 /// States whose step is not taken again.
 constexpr size_t kMostKept = 10000;
 
@@ -62,8 +64,8 @@ public:
 
     void run() {
         for (const Target& target : about_.targets) {
-            const Memory first = reset(0);
-            if (target.freezes && part(target, first) != part(target, reset(0xff)))
+            const Memory first = reset(target, 0);
+            if (target.freezes && part(target, first) != part(target, reset(target, 0xff)))
                 stop(kLeftovers);
             runs_.push_back(begin(target, first));
         }
@@ -121,10 +123,11 @@ private:
         return bytes;
     }
 
-    /// Returns the state that reset() makes of one with these bytes.
-    static Memory reset(int byte) {
-        Memory memory;
-        memset(memory.bytes, byte, sizeof memory.bytes);
+    /// Returns the state that reset() makes of one in which the parts have these bytes.
+    static Memory reset(const Target& target, int byte) {
+        Memory memory{};
+        (*memory).reset();
+        for (const Part& part : target.parts) memset(memory.bytes + part.first, byte, part.bytes);
         (*memory).reset();
         return memory;
     }
@@ -149,6 +152,7 @@ private:
     }
 
     void advance(Run& run, uint32_t step) {
+        if (diagrams().size() > kMostNodesOfCases) stop(kExhausted);
         run.states = stepped(run, run.states, step, false);
         States ended = run.states;
         for (uint32_t call = 0; call < about_.finishes; ++call)
