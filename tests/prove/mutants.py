@@ -5,7 +5,7 @@ Each of COUNT mutants (times ETLC_EFFORT) differs from a header of specs/ in one
 temporal part: an index, a bound, min for max, one end for the other, a reset left out. One that is
 refuted has to give, on the input that is shown, other verdicts than the header, whose verdicts are
 those of `etlc run`; one that is proved has to give the same verdicts as the header on random
-inputs.
+inputs. With ETLC_EFFORT half of the headers are of classes of truth values.
 """
 import csv
 import os
@@ -18,12 +18,14 @@ import sys
 STEPS = 24
 SWAPS = [("min_of(", "max_of("), ("kTrue", "kFalse"), ("kTop", "kBottom"), (".low", ".high"),
          ("Greatest<", "Least<"), ("Since<", "Trigger<"), ("Until<", "Release<"), (">=", ">"),
-         ("<=", "<"), ("AtLeast<", "AllBut<"), ("now.p", "now.q"), ("now.q", "now.p")]
+         ("<=", "<"), ("kYes", "kNo"), (" && !", " || !"),
+         ("AtLeast<", "AllBut<"), ("now.p", "now.q"), ("now.q", "now.p")]
 
 
 def temporal_part(text):
     """Yields the begin and end of the lines whose changes the proof is about."""
-    judge = text.index("Monitor::judge(")
+    is_boolean = "Monitor::advance(" in text  # whose step measures before it judges
+    judge = text.rindex("etlmon::is_") if is_boolean else text.index("Monitor::judge(")
     reset = text.index("constexpr void reset() noexcept {")
     private = text.index(" private:")
     for begin, end in ((reset, text.index("\n  }\n", reset)),
@@ -38,7 +40,8 @@ def temporal_part(text):
 def changes(text):
     """Lists the changes of a header: begin, end, replacement."""
     found = []
-    measured = re.compile(r"float |Hold<|incomplete_|missing|finishes_ !=|_verdict_ =|UINT32_MAX")
+    measured = re.compile(r"float |Hold<|incomplete_|missing|finishes_ !=|_verdict_ =|UINT32_MAX|"
+                          r"count")
     for begin, end in temporal_part(text):
         line = text[begin:end]
         if measured.search(line):
@@ -68,8 +71,7 @@ using namespace %(name)s;
 static void show(int step, const Verdicts& all) {
   for (const auto& [name, v] : named(all))
     if (v.decided())
-      printf("%%d,%%s,%%.9g,%%.9g,%%.9g,%%d\n", step, name, v.lower, v.robustness, v.upper,
-             static_cast<int>(v.status));
+      printf("%%d,%%s,%(format)s%%d\n", step, name, %(numbers)s static_cast<int>(v.status));
     else
       printf("%%d,%%s,undecided\n", step, name);
 }
@@ -113,17 +115,21 @@ int main(int, char** words) {
 class Header:
     """A generated header, its mutants, and what they say."""
 
-    def __init__(self, etlc, runtime, spec, folder):
+    def __init__(self, etlc, runtime, spec, folder, values):
         self.etlc, self.runtime, self.spec, self.folder = etlc, runtime, spec, folder
         self.name = spec.stem
-        self.path = folder / (self.name + ".hpp")
-        subprocess.run([etlc, spec, "-o", self.path], check=True)
+        self.options = ["--values", values]
+        self.is_boolean = values == "boolean"
+        self.path = folder / f"{self.name}_{values}.hpp"
+        subprocess.run([etlc, spec, "-o", self.path] + self.options, check=True)
         self.text = self.path.read_text()
         self.program = self.build(self.path)
 
     def build(self, header):
         source = header.with_suffix(".cpp")
-        text = PROGRAM % {"header": header.name, "name": self.name}
+        numbers = "" if self.is_boolean else "v.lower, v.robustness, v.upper,"
+        text = PROGRAM % {"header": header.name, "name": self.name, "numbers": numbers,
+                          "format": "" if self.is_boolean else "%.9g,%.9g,%.9g,"}
         if "finish()" not in self.text:
             text = text.replace("show(step + n, copy.finish())", "continue")
         source.write_text(text)
@@ -134,8 +140,8 @@ class Header:
 
     def prove(self, header, stem):
         result = subprocess.run([self.etlc, "prove", self.spec, "--header", header, "--steps",
-                                 str(STEPS), "--counterexample", stem], capture_output=True,
-                                text=True, check=False)
+                                 str(8 if self.is_boolean else STEPS), "--counterexample", stem]
+                                + self.options, capture_output=True, text=True, check=False)
         if "[E1201]" in result.stderr:
             return "wrong", result.stderr
         if "[E1202]" in result.stderr:
@@ -172,22 +178,25 @@ def say(program, rows, finishes):
                           check=False, timeout=60).stdout
 
 
-def run_of(etlc, stem):
-    """Returns the robustness that `etlc run` gives for a counterexample, by step and monitor."""
-    result = subprocess.run([etlc, "run", f"{stem}.etl", "--trace", f"{stem}.csv", "--finish"],
+def run_of(header, stem):
+    """Returns the verdicts that `etlc run` gives for a counterexample, by step and monitor."""
+    result = subprocess.run([header.etlc, "run", f"{stem}.etl", "--trace", f"{stem}.csv",
+                             "--finish"] + header.options,
                             capture_output=True, text=True, check=True)
-    return {(row["step"], row["monitor"]): (row["lower"], row["robustness"], row["upper"])
+    statuses = {"satisfied": 1, "violated": 2, "unknown": 0}
+    return {(row["step"], row["monitor"]):
+            [statuses[row["status"]] + 4 + 8 * int(row["final"])] if header.is_boolean
+            else [float(row[name]) for name in ("lower", "robustness", "upper")]
             for row in csv.DictReader(result.stdout.splitlines())
             if row["status"] != "undecided"}
 
 
 def agrees(said, ran, finishes):
-    """Whether a program and `etlc run` give the same numbers at and after the last step."""
+    """Whether a program and `etlc run` say the same at and after the last step."""
     rows = [line.split(",") for line in said.splitlines()]
     monitors = len({row[1] for row in rows})
     rows = rows[-monitors * (1 + finishes):]
-    return all(ran.get((row[0], row[1])) is not None and
-               [float(x) for x in ran[(row[0], row[1])]] == [float(x) for x in row[2:5]]
+    return all(ran.get((row[0], row[1])) == [float(x) for x in row[2:5]]
                for row in rows if row[2] != "undecided")
 
 
@@ -221,17 +230,19 @@ def judge(header, change, number, folder):
     if all(say(mutant, given, finishes) == say(header.program, given, finishes)
            for given in (rows, later)):
         raise SystemExit(f"FAILED: {what}: the input shows no difference: {message}")
-    if not agrees(say(header.program, rows, finishes), run_of(header.etlc, stem), finishes):
+    if not agrees(say(header.program, rows, finishes), run_of(header, stem), finishes):
         raise SystemExit(f"FAILED: {what}: etlc run differs from the header")
     return "wrong", what
 
 
 def main():
     etlc, runtime, folder, count = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3]), sys.argv[4]
-    count = int(count) * max(1, int(os.environ.get("ETLC_EFFORT", "1")))
+    effort = max(1, int(os.environ.get("ETLC_EFFORT", "1")))
+    count = int(count) * effort
     folder.mkdir(parents=True, exist_ok=True)
     specs = sorted((pathlib.Path(__file__).parent / "specs").glob("*.etl"))
-    headers = [Header(etlc, runtime, spec, folder) for spec in specs]
+    headers = [Header(etlc, runtime, spec, folder, values) for spec in specs
+               for values in (["robustness"] if effort == 1 else ["robustness", "boolean"])]
     chosen = random.Random(1)
     candidates = [(header, change) for header in headers for change in changes(header.text)]
     chosen.shuffle(candidates)

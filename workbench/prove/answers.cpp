@@ -1,4 +1,6 @@
-// Reads what the program says; stand_in/etlprove/driver.hpp writes it.
+// Reads what the program says; stand_in/etlprove/output.hpp lists its entries.
+#include <fmt/format.h>
+
 #include <bit>
 #include <cstring>
 
@@ -8,11 +10,23 @@ namespace etlc::prove {
 
 namespace {
 
-enum Entry : std::uint32_t { kNumber = 1, kNode, kVerdict, kReset, kTogether, kWindow, kEnd };
+enum Entry : std::uint32_t {
+    kNumber = 1,
+    kNode,
+    kVerdict,
+    kReset,
+    kTogether,
+    kWindow,
+    kEnd,
+    kStatus,
+    kFinished
+};
 
-/// The exit statuses of the program, as stand_in/etlmon/temporal/value.hpp has them.
+/// The exit statuses of the program, as stand_in/etlprove/space.hpp has them.
 constexpr int kBranches = 10;
 constexpr int kExhausted = 11;
+constexpr int kTooMany = 13;
+constexpr int kLeftovers = 14;
 
 }  // namespace
 
@@ -20,6 +34,8 @@ void Answers::end() {
     const int status = child_.exit_status();
     if (status == kBranches) throw Ended{Ended::Why::branches, ""};
     if (status == kExhausted) throw Ended{Ended::Why::exhausted, ""};
+    if (status == kLeftovers) throw Ended{Ended::Why::leftovers, ""};
+    if (status == kTooMany) throw Ended{Ended::Why::too_many, ""};
     throw Ended{Ended::Why::failed, child_.ending()};
 }
 
@@ -73,6 +89,18 @@ Together Answers::together() {
     return {steps, word() == 1};
 }
 
+std::optional<Status> Answers::status() {
+    const std::uint32_t kind = next();
+    if (kind == kFinished) return std::nullopt;
+    if (kind != kStatus) end();
+    Status status;
+    status.begun = word();
+    Diagram* const fields[] = {&status.condition, &status.satisfied, &status.violated,
+                               &status.decided, &status.final};
+    for (Diagram* const field : fields) *field = known(word());
+    return status;
+}
+
 std::optional<Window> Answers::window() {
     const std::uint32_t kind = next();
     if (kind == kEnd) return std::nullopt;
@@ -83,6 +111,24 @@ std::optional<Window> Answers::window() {
     window.is_two_windows = answer == 1;
     window.is_too_long = answer == 2;
     return window;
+}
+
+std::string why(const Ended& ended) {
+    switch (ended.why) {
+        case Ended::Why::branches:
+            return "the class compares two values and branches on the result";
+        case Ended::Why::exhausted: return "the diagrams of the class are too large";
+        case Ended::Why::too_many: return "the class has too many states and cases of a step";
+        case Ended::Why::leftovers:
+        case Ended::Why::failed: break;
+    }
+    return fmt::format("the class, compiled for the proof, {}", ended.how);
+}
+
+std::string how_far(std::uint32_t steps) {
+    return steps == 0 ? ""
+                      : fmt::format("; it is right for all inputs of up to {}",
+                                    diag::counted(steps, "step"));
 }
 
 }  // namespace etlc::prove

@@ -112,25 +112,32 @@ Program::~Program() {
 
 diag::Result<Program> Program::make(const plan::Plan& plan, const Subject& subject,
                                     const std::vector<Atom>& atoms) {
+    return make(subject.header, main_text(plan, subject, atoms), "-Istand_in -Iruntime", {});
+}
+
+diag::Result<Program> Program::make(const std::string& header, const std::string& main,
+                                    const std::string& folders,
+                                    const std::vector<RuntimeFile>& files) {
     std::error_code error;
     std::string pattern = (fs::temp_directory_path(error) / "etlc-prove-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr)
         return failure(fmt::format("cannot make a temporary folder like '{}'", pattern));
     Program program(pattern);
     const fs::path folder = pattern;
-    bool written = write(folder / "class.hpp", subject.header) &&
-                   write(folder / "main.cpp", main_text(plan, subject, atoms));
-    for (const RuntimeFile& file : stand_in_files())
-        written = written && write(folder / "stand_in" / file.name, file.text);
+    bool written = write(folder / "class.hpp", header) && write(folder / "main.cpp", main);
+    for (const auto* const group : {&stand_in_files(), &files})
+        for (const RuntimeFile& file : *group)
+            written = written && write(folder / "stand_in" / file.name, file.text);
     for (const RuntimeFile& file : emit::runtime_files())
         written = written && write(folder / "runtime" / file.name, file.text);
     if (!written) return failure(fmt::format("cannot write to the temporary folder '{}'", pattern));
     const auto version = shell(pattern, "${CXX:-c++} --version");
     if (version) program.compiler_ = read_all(*version);
     program.compiler_.resize(std::min(program.compiler_.find('\n'), program.compiler_.size()));
-    const auto compiler = shell(pattern,
-                                "${CXX:-c++} -std=c++17 -O1 -w -DETLMON_NO_DISPATCH -Istand_in "
-                                "-Iruntime main.cpp -o program 2>&1");
+    const auto compiler =
+        shell(pattern, fmt::format("${{CXX:-c++}} -std=c++17 -O1 -w -DETLMON_NO_DISPATCH {} "
+                                   "main.cpp -o program 2>&1",
+                                   folders));
     if (!compiler) return failure("cannot run the shell, /bin/sh");
     const std::string said = read_all(*compiler);
     if (compiler->exit_status() == 0) return program;

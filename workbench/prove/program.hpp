@@ -34,12 +34,17 @@ public:
     /// Writes and compiles it.
     static diag::Result<Program> make(const plan::Plan& plan, const Subject& subject,
                                       const std::vector<Atom>& atoms);
+    /// `main`: its text; `folders`: where the compiler looks for headers; `files`: more of them, in
+    /// the folder of those that stand in.
+    static diag::Result<Program> make(const std::string& header, const std::string& main,
+                                      const std::string& folders,
+                                      const std::vector<RuntimeFile>& files);
     Program(Program&& other) noexcept;
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;
     ~Program();
 
-    std::unique_ptr<data::Child> start(const std::set<float>& numbers) const;
+    std::unique_ptr<data::Child> start(const std::set<float>& numbers = {}) const;
     /// Returns the first line of what the compiler says of its version.
     const std::string& compiler() const { return compiler_; }
 
@@ -52,9 +57,20 @@ private:
 
 /// How a program ended before its last entry.
 struct Ended {
-    enum class Why : std::uint8_t { branches, exhausted, failed } why = Why::failed;
+    enum class Why : std::uint8_t {
+        branches,
+        exhausted,
+        too_many,
+        leftovers,
+        failed
+    } why = Why::failed;
     std::string how;  ///< "was stopped by signal 11 (Segmentation fault)"
 };
+
+/// Returns why there is no proof.
+std::string why(const Ended& ended);
+/// Returns "; it is right for all inputs of up to 4 steps", or nothing.
+std::string how_far(std::uint32_t steps);
 
 /// A window over pairs: whether it is one window of the lows and one of the highs.
 struct Window {
@@ -70,6 +86,16 @@ struct Together {
     bool is_proved = false;
 };
 
+/// The conditions of a verdict of truth values, of a monitor that began at a step.
+struct Status {
+    std::uint32_t begun = 0;
+    Diagram condition = 0;  ///< that it began there; the others are within this one
+    Diagram satisfied = 0;
+    Diagram violated = 0;
+    Diagram decided = 0;
+    Diagram final = 0;
+};
+
 /// Reads what the program says, into the diagrams of this proof.
 class Answers {
 public:
@@ -80,6 +106,8 @@ public:
     /// Whether all later restarts were alike.
     bool forgotten();
     Together together();
+    /// The next of the conditions of a step, if there is one more.
+    std::optional<Status> status();
     /// The next window of the class, if there is one more.
     std::optional<Window> window();
 

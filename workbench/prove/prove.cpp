@@ -8,6 +8,7 @@
 #include <memory>
 #include <set>
 
+#include "prove/boolean.hpp"
 #include "prove/program.hpp"
 
 namespace etlc::prove {
@@ -188,12 +189,6 @@ diag::Failure no_proof(std::string why) {
     return {diag::Code::no_proof, std::move(why)};
 }
 
-std::string how_far(std::uint32_t steps) {
-    return steps == 0 ? ""
-                      : fmt::format("; it is right for all inputs of up to {}",
-                                    diag::counted(steps, "step"));
-}
-
 }  // namespace
 
 std::uint32_t usual_steps(const plan::Plan& plan) {
@@ -233,16 +228,6 @@ std::set<float> numbers_of(const std::vector<Atom>& atoms) {
     return numbers;
 }
 
-std::string why(const Ended& ended) {
-    switch (ended.why) {
-        case Ended::Why::branches:
-            return "the class compares two values and branches on the result";
-        case Ended::Why::exhausted: return "the diagrams of the class are too large";
-        case Ended::Why::failed: break;
-    }
-    return fmt::format("the class, compiled for the proof, {}", ended.how);
-}
-
 /// Makes the proof with these numbers. Throws NewNumber.
 diag::Result<Proof> prove_with(const std::set<float>& numbers, const plan::Plan& plan,
                                const Program& program, Proof proof) {
@@ -264,10 +249,7 @@ diag::Result<Proof> prove_with(const std::set<float>& numbers, const plan::Plan&
 }  // namespace
 
 diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
-    if (plan.values == check::Values::boolean)
-        return no_proof(
-            "a class with --values boolean branches on truth values, so its control flow "
-            "depends on the samples");
+    if (plan.values == check::Values::boolean) return prove_boolean(plan, request);
     Proof proof;
     proof.atoms = atoms_of(plan);
     proof.steps = request.steps > 0 ? request.steps : usual_steps(plan);

@@ -22,6 +22,8 @@ struct Request {
     std::string header;       ///< its text
     std::string name_space;   ///< of its class
     std::uint32_t steps = 0;  ///< 0: usual_steps()
+    /// Of truth values: states with the truths that a step asks for, of all steps together.
+    std::uint64_t most_cases = 4000000;
 };
 
 /// Twice the longest horizon and the longest buffer, at least 64.
@@ -36,6 +38,8 @@ struct Fault {
     std::optional<std::uint32_t> restarted;  ///< the monitor was restarted before that step
     std::string number;  ///< "robustness", "lower", "upper" or "whether it is decided"
     Witness witness;
+    /// Of truth values: the monitors that are restarted, and before which step.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> requests;
 };
 
 struct Proof {

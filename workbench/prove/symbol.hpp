@@ -52,6 +52,7 @@ public:
     Diagram diagram() const { return of_; }
 
     Symbol operator-() const { return of(space().diagrams.negation(of_)); }
+    Symbol operator!() const { return of(space().diagrams.complement(of_)); }
     friend Symbol min(Symbol a, Symbol b) { return of(space().diagrams.both(a.of_, b.of_)); }
     friend Symbol max(Symbol a, Symbol b) { return of(space().diagrams.either(a.of_, b.of_)); }
 

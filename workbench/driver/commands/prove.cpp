@@ -62,6 +62,7 @@ std::optional<std::string> header_text(const source::File& spec, const plan::Pla
 std::string options_of(const plan::Plan& plan, const Request& request) {
     std::vector<std::string> words;
     if (plan.values == check::Values::sourced) words.emplace_back("--explain");
+    if (plan.values == check::Values::boolean) words.emplace_back("--values boolean");
     if (plan.recorder)
         words.push_back(fmt::format("--recorder {},{},{}", plan.recorder->before,
                                     plan.recorder->after, plan.recorder->incidents));
@@ -158,7 +159,13 @@ std::string said(const plan::Plan& plan, const prove::Fault& fault) {
     if (fault.finishes > 0)
         where += fmt::format(" and {} of finish()", diag::counted(fault.finishes, "call"));
     if (fault.restarted) where += fmt::format(", restarted before step {}", *fault.restarted);
+    for (const auto& [monitor, step] : fault.requests)
+        where += fmt::format(", '{}' restarted before step {}", plan.monitors[monitor].name, step);
     const std::string& name = plan.monitors[fault.monitor].name;
+    if (plan.values == check::Values::boolean)
+        return fmt::format("'{}' {}: {} {} in the class, but {}by the definition", name, where,
+                           fault.witness.first_reaches ? "is" : "is not", fault.number,
+                           fault.witness.first_reaches ? "not " : "");
     if (fault.witness.values.empty())
         return fmt::format("'{}' {}: the class and the definition differ in {}", name, where,
                            fault.number);
@@ -177,7 +184,8 @@ bool write_counterexample(const source::File& spec, const plan::Plan& plan, cons
                               plan.model->monitors[plan.monitors[proof.fault->monitor].index].span,
                               said(plan, *proof.fault));
     if (proof.fault->witness.values.empty()) return false;
-    found.note(fmt::format("the definition's verdicts: etlc run {0}.etl --trace {0}.csv{1}", stem,
+    found.note(fmt::format("the definition's verdicts: etlc run {0}.etl --trace {0}.csv{1}{2}", stem,
+                           plan.values == check::Values::boolean ? " --values boolean" : "",
                            proof.fault->finishes > 0 ? " --finish" : ""));
     if (!check_outputs({stem + ".csv", stem + ".etl"}, files_read(*plan.model, spec, {}), sink))
         return false;

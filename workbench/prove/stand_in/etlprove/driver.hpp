@@ -5,7 +5,6 @@
 // first episode and in a later one, so that a member that reset() leaves out is noticed.
 #pragma once
 
-#include <stdio.h>
 #include <string.h>
 
 #include <memory>
@@ -13,24 +12,14 @@
 #include <utility>
 #include <vector>
 
+#include "etlprove/finish.hpp"
+#include "etlprove/output.hpp"
 #include "etlprove/together.hpp"
 #include "etlprove/windows.hpp"
 
 namespace etlprove {
 
 // ---- output -------------------------------------------------------------------------------------
-
-/// The words that begin an entry; prove/answers.cpp reads them.
-enum class Entry : uint32_t { number = 1, node, verdict, reset, together, window, end };
-
-inline void put(uint32_t word) {
-    if (fwrite(&word, sizeof word, 1, stdout) != 1) _Exit(1);
-}
-
-[[noreturn]] inline void stop(int status) {
-    fflush(stdout);
-    _Exit(status);
-}
 
 /// Ends the program: it needs another number.
 [[noreturn]] inline void ask_for(float number) {
@@ -54,27 +43,6 @@ inline void take_numbers(int count, char** words) {
     kept = Numbers(diagrams(), taken);
 }
 
-/// Writes diagrams before those that contain them.
-class Sent {
-public:
-    void send(Diagram of) {
-        if (sent_.size() < diagrams().size()) sent_.resize(diagrams().size(), false);
-        if (sent_[of]) return;
-        const Diagrams::Node node = diagrams()[of];
-        send(node.without);
-        send(node.with);
-        sent_[of] = true;
-        put(static_cast<uint32_t>(Entry::node));
-        put(of);
-        put(node.place);
-        put(node.without);
-        put(node.with);
-    }
-
-private:
-    std::vector<bool> sent_{true, true};
-};
-
 // ---- the class ----------------------------------------------------------------------------------
 
 /// A class, as the program knows it.
@@ -89,15 +57,6 @@ struct Class {
     uint32_t finishes;  ///< calls of finish() that report something
     std::vector<WindowOfClass> windows;
 };
-
-template <class Monitor, class Verdicts>
-auto finish(Monitor& monitor, int) -> decltype(monitor.finish()) {
-    return monitor.finish();
-}
-template <class Monitor, class Verdicts>
-Verdicts finish(Monitor&, long) {
-    return {};
-}
 
 template <class Monitor, class Verdicts>
 class Driver {

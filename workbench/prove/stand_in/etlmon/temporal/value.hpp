@@ -6,23 +6,12 @@
 #pragma once
 
 #include <stdint.h>
-#include <stdlib.h>
 
 #include "etlmon/bits.hpp"
-#include "etlprove/diagrams.hpp"
+#include "etlprove/space.hpp"
 
 namespace etlprove {
 
-/// Ends of the program besides success, as its exit status.
-constexpr int kBranches = 10, kExhausted = 11, kNewNumber = 12;
-constexpr uint32_t kMostNodes = 40u << 20;
-
-[[noreturn]] void stop(int status);
-
-inline Diagrams& diagrams() {
-    static Diagrams kept(kMostNodes, [] { stop(kExhausted); });
-    return kept;
-}
 inline Numbers& numbers() {
     static Numbers kept(diagrams(), {});
     return kept;
