@@ -12,6 +12,8 @@
 #include <set>
 #include <utility>
 
+#include "prove/members.hpp"
+
 namespace etlc::prove {
 namespace {
 
@@ -118,7 +120,7 @@ diag::Result<Program> Program::make(const plan::Plan& plan, const Subject& subje
         return failure(fmt::format("cannot make a temporary folder like '{}'", pattern));
     Program program(pattern);
     const fs::path folder = pattern;
-    bool written = write(folder / "class.hpp", subject.header) &&
+    bool written = write(folder / "class.hpp", with_counters(subject.header)) &&
                    write(folder / "main.cpp", main_text(plan, subject, atoms));
     for (const RuntimeFile& file : stand_in_files())
         written = written && write(folder / "stand_in" / file.name, file.text);

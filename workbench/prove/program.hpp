@@ -63,6 +63,18 @@ struct Window {
     bool is_too_long = false;  ///< for a proof of that
 };
 
+/// The state of a class after a step, and how the step used the one before.
+struct State {
+    enum class Kind : std::uint8_t { control, diagram, counter };
+    struct Word {
+        Kind kind = Kind::control;
+        std::uint32_t value = 0;  ///< of this proof, if it is a diagram
+    };
+    std::vector<Word> words;  ///< none where the class has other members than words
+    bool counted = false;      ///< a greater value of a counter would have another effect
+    Place oldest_negated = 0;  ///< of the samples in what was negated
+};
+
 /// Reads what the program says, into the diagrams of this proof.
 class Answers {
 public:
@@ -70,6 +82,7 @@ public:
 
     /// Return the next entry, which must be of this kind. Throw Ended and NewNumber.
     Numbers verdict();
+    State state();
     /// Whether all later restarts were alike.
     bool forgotten();
     /// The next window of the class, if there is one more.

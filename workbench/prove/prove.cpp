@@ -8,7 +8,9 @@
 #include <memory>
 #include <set>
 
+#include "prove/members.hpp"
 #include "prove/program.hpp"
+#include "prove/repetition.hpp"
 
 namespace etlc::prove {
 namespace {
@@ -27,22 +29,30 @@ public:
           answers_(child, space_),
           known_(plan, proof.atoms, proof.steps, false),
           all_(plan, proof.atoms, proof.steps, true),
+          repetition_(plan, all_, proof.steps, proof.atoms.size(), space_, proof.why_not_longer),
           done_(done) {}
 
     /// Throws Ended and Exhausted.
     void run() {
         for (; done_ < proof_.steps && !proof_.fault; ++done_) {
             compare_step(done_, Kind::known);
+            repetition_.begin_step();
             compare_step(done_, Kind::missing);
             compare_finishes(done_);
+            if (!proof_.fault) repetition_.end_step(answers_.state(), compared_later());
             known_.forget(done_);
         }
+        proof_.repeats = repetition_.found();
+        if (!proof_.repeats) proof_.why_not_longer = repetition_.why_not();
         for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m)
             if (restarts(m) != check::Restarts::never) compare_restarted(m);
         for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m)
             if (restarts(m) == check::Restarts::when_final) compare_restarted(m);
         if (proof_.fault) return;
         while (const auto window = answers_.window()) take(*window);
+        if (proof_.long_windows.empty()) return;
+        proof_.repeats.reset();
+        proof_.why_not_longer = "what is assumed of its windows was compared in these steps only";
     }
 
     bool forgets() const { return forgets_; }
@@ -61,6 +71,16 @@ private:
     };
 
     check::Restarts restarts(std::uint32_t m) const { return plan_.monitors[m].restarts; }
+
+    /// Returns what later verdicts are compared with, besides the definition.
+    std::vector<Diagram> compared_later() {
+        std::vector<Diagram> result;
+        for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m) {
+            const Bounds& promised = promised_[{m, Kind::missing}];
+            result.insert(result.end(), {promised.lower, promised.upper});
+        }
+        return result;
+    }
 
     void compare_step(std::uint32_t step, Kind kind) {
         for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m) compare(place(m, step), kind);
@@ -111,6 +131,8 @@ private:
         if (at.decided)
             expected =
                 (kind == Kind::known ? known_ : all_).verdict(at.monitor, at.step, at.position);
+        const bool repeats = kind == Kind::missing && !at.restarted;
+        if (repeats && at.decided) repetition_.check(at.monitor, at.position, expected);
         if (found.decided != expected.decided) return blame(at, "whether it is decided", Witness());
         if (!found.decided) return;
         check(at, kind, "robustness", found.low, expected.low);
@@ -148,7 +170,8 @@ private:
         if (proof_.fault || found == expected) return;
         const auto witness = difference(space_, found, expected, proof_.atoms, at.step + 1,
                                         proof_.steps, kind == Kind::missing, at_zero);
-        if (witness) blame(at, name, *witness);
+        if (witness) return blame(at, name, *witness);
+        if (kind == Kind::missing && !at.restarted) repetition_.is_inexact();
     }
 
     void take(const Window& window) {
@@ -171,6 +194,7 @@ private:
     Answers answers_;
     Definition known_;
     Definition all_;
+    Repetition repetition_;
     /// The tightest bounds that a monitor has given so far, of those that the definition lacks.
     struct Bounds {
         Diagram lower = etlprove::kNever;
@@ -273,6 +297,8 @@ diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
         Program::make(plan, {request.header, request.name_space, proof.steps}, proof.atoms);
     if (!program) return program.failure();
     proof.compiler = program->compiler();
+    if (may_hide_state(request.header))
+        proof.why_not_longer = "its header may have variables besides the members of the class";
     std::set<float> numbers = numbers_of(proof.atoms);
     constexpr std::size_t kMostNumbers = 10000;
     while (numbers.size() < kMostNumbers) {

@@ -38,6 +38,12 @@ struct Fault {
     Witness witness;
 };
 
+/// Steps after which the class and the definition have the same form.
+struct Repeats {
+    std::uint32_t first = 0;
+    std::uint32_t second = 0;
+};
+
 struct Proof {
     std::vector<Atom> atoms;
     std::uint32_t steps = 0;
@@ -46,6 +52,8 @@ struct Proof {
     bool restarts = false;                    ///< any sequence of restarts is covered
     std::vector<std::uint32_t> windows;       ///< lengths of those that were proved to be two
     std::vector<std::uint32_t> long_windows;  ///< and of those that are assumed to be
+    std::optional<Repeats> repeats;  ///< then the proof without restarts holds for all lengths
+    std::string why_not_longer;      ///< else why it does not
     std::optional<Fault> fault;
 };
 

@@ -20,7 +20,10 @@ namespace etlprove {
 // ---- output -------------------------------------------------------------------------------------
 
 /// The words that begin an entry; prove/answers.cpp reads them.
-enum class Entry : uint32_t { number = 1, node, verdict, reset, window, end };
+enum class Entry : uint32_t { number = 1, node, verdict, reset, window, end, state };
+
+/// What a word of a state is.
+enum class WordKind : uint32_t { control, diagram, counter };
 
 inline void put(uint32_t word) {
     if (fwrite(&word, sizeof word, 1, stdout) != 1) _Exit(1);
@@ -109,10 +112,12 @@ public:
         for (uint32_t step = 0; step < steps_; ++step) {
             states_.push_back(copy(state));
             report(advance(*known, step, false));
+            uses().reset();
             report(advance(*state, step, true));
             State ended = copy(state);
             for (uint32_t call = 0; call < about_.finishes; ++call)
                 report(finish<Monitor, Verdicts>(**ended, 0));
+            report_state(*state);
         }
         states_.push_back(copy(state));
         for (const uint32_t monitor : about_.restartable) {
@@ -213,6 +218,31 @@ private:
             put(decided ? 1 : 0);
             for (const Diagram number : numbers) put(number);
         }
+        fflush(stdout);
+    }
+
+    /// Reports the words of a state, and how the step used those before.
+    void report_state(const Memory& state) {
+        std::vector<WordKind> kinds(kWords, WordKind::control);
+        for (size_t at = 0; at < kWords; ++at) {
+            const uint32_t bits = word(state, at);
+            if (!is_marked(bits) || diagram_of(bits) >= diagrams().size()) continue;
+            sent_.send(diagram_of(bits));
+            kinds[at] = WordKind::diagram;
+        }
+        for (const void* const counter : uses().counters())
+            for (size_t at = 0; at < kWords; ++at)
+                if (counter == state.bytes + at * sizeof(uint32_t)) kinds[at] = WordKind::counter;
+        const bool is_whole = kWords * sizeof(uint32_t) == sizeof(Monitor);
+        put(static_cast<uint32_t>(Entry::state));
+        put(is_whole ? kWords : 0);
+        for (size_t at = 0; is_whole && at < kWords; ++at) {
+            const uint32_t bits = word(state, at);
+            put(static_cast<uint32_t>(kinds[at]));
+            put(kinds[at] == WordKind::diagram ? diagram_of(bits) : bits);
+        }
+        put(uses().counted() ? 1 : 0);
+        put(uses().oldest());
         fflush(stdout);
     }
 
