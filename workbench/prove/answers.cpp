@@ -89,7 +89,7 @@ State Answers::state() {
         State::Word& last = state.words.back();
         if (last.kind == State::Kind::diagram) last.value = known(value);
     }
-    state.counted = word() == 1;
+    state.counted = word();
     state.oldest_negated = word();
     return state;
 }

@@ -6,6 +6,9 @@
 namespace etlc::prove {
 
 using etlprove::kAlways;
+using etlprove::kFirstSample;
+using etlprove::kNoPlace;
+using etlprove::kPlacesPerSample;
 
 /// The ends of atoms that a function depends on at some step.
 const Images::Support& Images::support(Diagram of) {
@@ -14,18 +17,29 @@ const Images::Support& Images::support(Diagram of) {
     if (of > kAlways) {
         const etlprove::Diagrams::Node node = diagrams_[of];
         result = support(node.without) | support(node.with);
-        result.set((node.place - etlprove::kFirstSample) % places_ % result.size());
+        result.set((node.place - kFirstSample) % (atoms_ * kPlacesPerSample) % result.size());
     }
     return supports_.emplace(of, result).first->second;
 }
 
+/// The ends that two functions depend on; all ends of a sample, if they depend on one another.
+Images::Support Images::support_of(const Functions& first, const Functions& second,
+                                   std::size_t n) {
+    Support result = support(first[n]) | support(second[n]);
+    for (std::size_t at = 0; possible_ != nullptr && at < result.size(); at += kPlacesPerSample) {
+        bool any = false;
+        for (std::size_t end = at; end < at + kPlacesPerSample; ++end) any = any || result[end];
+        for (std::size_t end = at; end < at + kPlacesPerSample; ++end) result[end] = any;
+    }
+    return result;
+}
+
 /// Returns groups that depend on different ends of atoms, and so take their values independently.
-std::vector<std::vector<std::size_t>> Images::groups(const std::vector<Diagram>& first,
-                                                     const std::vector<Diagram>& second) {
+std::vector<std::vector<std::size_t>> Images::groups(const Functions& first,
+                                                     const Functions& second) {
     std::vector<std::pair<Support, std::vector<std::size_t>>> groups;
     for (std::size_t n = 0; n < first.size(); ++n) {
-        std::pair<Support, std::vector<std::size_t>> joined{support(first[n]) | support(second[n]),
-                                                            {n}};
+        std::pair<Support, std::vector<std::size_t>> joined{support_of(first, second, n), {n}};
         for (std::size_t g = groups.size(); g-- > 0;) {
             if ((groups[g].first & joined.first).none()) continue;
             joined.first |= groups[g].first;
@@ -40,24 +54,47 @@ std::vector<std::vector<std::size_t>> Images::groups(const std::vector<Diagram>&
     return result;
 }
 
+void Images::set(Functions& of, Place place, bool is_true) const {
+    for (Diagram& one : of)
+        if (const auto& node = diagrams_[one]; node.place == place)
+            one = is_true ? node.with : node.without;
+}
+
+/// Returns the functions for each value of the topmost variable, or of the topmost sample.
+std::vector<Images::Functions> Images::branches(const Functions& of, Place top) const {
+    std::vector<Functions> result;
+    if (possible_ == nullptr) {
+        result.assign(2, of);
+        set(result[0], top, false);
+        set(result[1], top, true);
+        return result;
+    }
+    const Place first = top - (top - kFirstSample) % kPlacesPerSample;
+    const std::size_t atom = (first - kFirstSample) / kPlacesPerSample % atoms_;
+    for (std::uint32_t ends = 0; ends < 1U << kPlacesPerSample; ++ends) {
+        if (((*possible_)[atom] >> ends & 1U) == 0) continue;
+        result.push_back(of);
+        for (Place end = 0; end < kPlacesPerSample; ++end)
+            set(result.back(), first + end, (ends >> end & 1U) != 0);
+    }
+    return result;
+}
+
 /// Null where there are too many.
-const Images::Values* Images::values(const std::vector<Diagram>& of) {
+const Images::Values* Images::values(const Functions& of) {
     if (const auto found = values_.find(of); found != values_.end()) return &found->second;
     if (values_.size() >= kMostLists) return nullptr;
-    Place top = etlprove::kNoPlace;
+    Place top = kNoPlace;
     for (const Diagram one : of) top = std::min(top, diagrams_[one].place);
     Values result;
-    if (top == etlprove::kNoPlace) {
+    if (top == kNoPlace) {
         std::vector<bool> all;
         for (const Diagram one : of) all.push_back(one == kAlways);
         result.insert(all);
+        return &values_.emplace(of, std::move(result)).first->second;
     }
-    for (const bool with : {false, true}) {
-        if (top == etlprove::kNoPlace) break;
-        std::vector<Diagram> part = of;
-        for (Diagram& one : part)
-            if (diagrams_[one].place == top) one = with ? diagrams_[one].with : diagrams_[one].without;
-        const Values* const found = values(part);
+    for (const Functions& branch : branches(of, top)) {
+        const Values* const found = values(branch);
         if (found == nullptr) return nullptr;
         result.insert(found->begin(), found->end());
         if (result.size() > kMostValues) return nullptr;
@@ -65,17 +102,20 @@ const Images::Values* Images::values(const std::vector<Diagram>& of) {
     return &values_.emplace(of, std::move(result)).first->second;
 }
 
-bool Images::are_equal(const std::vector<Diagram>& first, const std::vector<Diagram>& second) {
+bool Images::are_equal(const Functions& first, const Functions& second, const Possible* possible) {
     if (first.size() != second.size()) return false;
-    values_.clear();
+    possible_ = possible;
     for (const std::vector<std::size_t>& group : groups(first, second)) {
-        std::vector<Diagram> some, others;
+        Functions some, others;
         for (const std::size_t n : group) {
             some.push_back(first[n]);
             others.push_back(second[n]);
         }
+        if (some == others) continue;
+        values_.clear();
         const Values* const one = values(some);
         const Values* const other = one == nullptr ? nullptr : values(others);
+        if (other == nullptr) ++failures_;
         if (other == nullptr || *one != *other) return false;
     }
     return true;

@@ -1,10 +1,12 @@
 // The values that functions take together, over all samples.
+// Takes: two lists of functions. Gives: whether the values are the same. Keeps true: "yes" is said
+// only where all values of both were found.
 #pragma once
 
 #include <bitset>
 #include <cstddef>
+#include <cstdint>
 #include <map>
-#include <optional>
 #include <set>
 #include <unordered_map>
 #include <vector>
@@ -15,30 +17,40 @@ namespace etlc::prove {
 
 class Images {
 public:
-    /// `places`: of the samples of one step.
-    Images(const etlprove::Diagrams& diagrams, Place places)
-        : diagrams_(diagrams), places_(places) {}
+    using Functions = std::vector<Diagram>;
+    /// Per atom, a bit for each set of ends of a sample that can be true together.
+    using Possible = std::vector<std::uint16_t>;
 
-    /// Whether two lists of functions take the same values together; false where they are too many
-    /// to find out.
-    bool are_equal(const std::vector<Diagram>& first, const std::vector<Diagram>& second);
+    Images(const etlprove::Diagrams& diagrams, std::size_t atoms)
+        : diagrams_(diagrams), atoms_(atoms) {}
+
+    /// `possible`: of the samples; null: every end may be anything. False where there are too many
+    /// values to find out.
+    bool are_equal(const Functions& first, const Functions& second, const Possible* possible);
+    /// Whether it is no use to ask for more.
+    bool gives_up() const { return failures_ >= kMostFailures; }
 
 private:
     using Values = std::set<std::vector<bool>>;
     using Support = std::bitset<512>;
 
     static constexpr std::size_t kMostValues = 4096;
-    static constexpr std::size_t kMostLists = 50000;
+    static constexpr std::size_t kMostLists = 10000;
+    static constexpr int kMostFailures = 8;
 
     const Support& support(Diagram of);
-    std::vector<std::vector<std::size_t>> groups(const std::vector<Diagram>& first,
-                                                 const std::vector<Diagram>& second);
-    const Values* values(const std::vector<Diagram>& of);
+    Support support_of(const Functions& first, const Functions& second, std::size_t n);
+    std::vector<std::vector<std::size_t>> groups(const Functions& first, const Functions& second);
+    const Values* values(const Functions& of);
+    std::vector<Functions> branches(const Functions& of, Place top) const;
+    void set(Functions& of, Place place, bool is_true) const;
 
     const etlprove::Diagrams& diagrams_;
-    Place places_;
+    std::size_t atoms_;
+    const Possible* possible_ = nullptr;
+    int failures_ = 0;
     std::unordered_map<Diagram, Support> supports_;
-    std::map<std::vector<Diagram>, Values> values_;
+    std::map<Functions, Values> values_;
 };
 
 }  // namespace etlc::prove

@@ -21,7 +21,7 @@ bool may_hide_state(const std::string& header) {
     static const std::regex kComment(R"(//[^\n]*)");
     // What is constant, and functions, which a body follows.
     static const std::regex kHarmless(R"(\b(static|inline)\s+(constexpr\b|namespace\b|)"
-                                      R"([^;={}]*\)\s*(const\s*)?noexcept\s*\{))");
+                                      R"([^;={}(]*\([^;{}]*\)\s*(const\s*)?noexcept\s*\{))");
     static const std::regex kSuspect(R"(\b(static|inline|extern|thread_local|volatile|mutable)\b)");
     // Of what stands in no braces, what ends within its line.
     static const std::regex kVariable(R"(\n(?!using |static_assert\(|constexpr )\w[^\n]*;)");

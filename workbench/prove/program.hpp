@@ -21,11 +21,10 @@ namespace etlc::prove {
 
 using emit::RuntimeFile;
 
-/// A class, and how far it is stepped.
+/// A class.
 struct Subject {
     std::string header;      ///< text of the generated header
     std::string name_space;  ///< of its class
-    std::uint32_t steps = 0;
 };
 
 /// The compiled program, in a temporary folder of its own.
@@ -39,7 +38,7 @@ public:
     Program& operator=(const Program&) = delete;
     ~Program();
 
-    std::unique_ptr<data::Child> start(const std::set<float>& numbers) const;
+    std::unique_ptr<data::Child> start(const std::set<float>& numbers, std::uint32_t steps) const;
     /// Returns the first line of what the compiler says of its version.
     const std::string& compiler() const { return compiler_; }
 
@@ -71,7 +70,9 @@ struct State {
         std::uint32_t value = 0;  ///< of this proof, if it is a diagram
     };
     std::vector<Word> words;  ///< none where the class has other members than words
-    bool counted = false;      ///< a greater value of a counter would have another effect
+    /// A counter that reaches this would have another effect; 0 where none would.
+    std::uint32_t counted = 0;
+    static constexpr std::uint32_t kAll = 0xffffffffU;  ///< where each value may have one
     Place oldest_negated = 0;  ///< of the samples in what was negated
 };
 

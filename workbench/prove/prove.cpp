@@ -29,7 +29,7 @@ public:
           answers_(child, space_),
           known_(plan, proof.atoms, proof.steps, false),
           all_(plan, proof.atoms, proof.steps, true),
-          repetition_(plan, all_, proof.steps, proof.atoms.size(), space_, proof.why_not_longer),
+          repetition_(plan, all_, proof, space_),
           done_(done) {}
 
     /// Throws Ended and Exhausted.
@@ -44,6 +44,7 @@ public:
         }
         proof_.repeats = repetition_.found();
         if (!proof_.repeats) proof_.why_not_longer = repetition_.why_not();
+        if (!proof_.repeats) proof_.steps_needed = repetition_.steps_needed();
         for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m)
             if (restarts(m) != check::Restarts::never) compare_restarted(m);
         for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m)
@@ -268,7 +269,7 @@ std::string why(const Ended& ended) {
 /// Makes the proof with these numbers. Throws NewNumber.
 diag::Result<Proof> prove_with(const std::set<float>& numbers, const plan::Plan& plan,
                                const Program& program, Proof proof) {
-    const auto child = program.start(numbers);
+    const auto child = program.start(numbers, proof.steps);
     if (!child) return no_proof("cannot run the program that was compiled for the proof");
     std::uint32_t done = 0;
     try {
@@ -283,6 +284,23 @@ diag::Result<Proof> prove_with(const std::set<float>& numbers, const plan::Plan&
     }
 }
 
+/// Makes the proof, and adds to the numbers what it needs.
+diag::Result<Proof> prove_steps(std::set<float>& numbers, const plan::Plan& plan,
+                                const Program& program, const Proof& proof) {
+    constexpr std::size_t kMostNumbers = 10000;
+    while (numbers.size() < kMostNumbers) {
+        try {
+            return prove_with(numbers, plan, program, proof);
+        } catch (const NewNumber& unknown) {
+            add(numbers, unknown.number);
+        }
+    }
+    return no_proof("the class has too many numbers");
+}
+
+/// The most steps of a proof that goes on until the class repeats.
+constexpr std::uint32_t kMostToGoOn = 256;
+
 }  // namespace
 
 diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
@@ -294,21 +312,18 @@ diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
     proof.atoms = atoms_of(plan);
     proof.steps = request.steps > 0 ? request.steps : usual_steps(plan);
     const auto program =
-        Program::make(plan, {request.header, request.name_space, proof.steps}, proof.atoms);
+        Program::make(plan, {request.header, request.name_space}, proof.atoms);
     if (!program) return program.failure();
     proof.compiler = program->compiler();
     if (may_hide_state(request.header))
         proof.why_not_longer = "its header may have variables besides the members of the class";
     std::set<float> numbers = numbers_of(proof.atoms);
-    constexpr std::size_t kMostNumbers = 10000;
-    while (numbers.size() < kMostNumbers) {
-        try {
-            return prove_with(numbers, plan, *program, proof);
-        } catch (const NewNumber& unknown) {
-            add(numbers, unknown.number);
-        }
-    }
-    return no_proof("the class has too many numbers");
+    auto found = prove_steps(numbers, plan, *program, proof);
+    if (!found || found->fault || found->repeats || request.steps > 0) return found;
+    if (found->steps_needed <= proof.steps || found->steps_needed > kMostToGoOn) return found;
+    proof.steps = found->steps_needed;
+    auto longer = prove_steps(numbers, plan, *program, proof);
+    return longer && (longer->fault || longer->repeats) ? std::move(longer) : std::move(found);
 }
 
 }  // namespace etlc::prove

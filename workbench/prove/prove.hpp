@@ -54,6 +54,7 @@ struct Proof {
     std::vector<std::uint32_t> long_windows;  ///< and of those that are assumed to be
     std::optional<Repeats> repeats;  ///< then the proof without restarts holds for all lengths
     std::string why_not_longer;      ///< else why it does not
+    std::uint32_t steps_needed = 0;  ///< after which it may; 0: nothing is known
     std::optional<Fault> fault;
 };
 

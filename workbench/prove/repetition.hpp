@@ -22,9 +22,9 @@ namespace etlc::prove {
 
 class Repetition {
 public:
-    /// `why_not`: why there can be none, if that is known.
-    Repetition(const plan::Plan& plan, const Definition& definition, std::uint32_t steps,
-               std::size_t atoms, Space& space, std::string why_not);
+    /// The proof may say why there are none.
+    Repetition(const plan::Plan& plan, const Definition& definition, const Proof& proof,
+               Space& space);
 
     /// Takes the sample of the next step, for the definition.
     void begin_step();
@@ -38,6 +38,8 @@ public:
     const std::optional<Repeats>& found() const { return found_; }
     /// Returns why nothing was found.
     std::string why_not() const;
+    /// Returns after how many steps something may be found; 0 if that is not known.
+    std::uint32_t steps_needed() const;
 
 private:
     /// A state after a step.
@@ -47,27 +49,34 @@ private:
         std::vector<std::uint32_t> counters;
     };
 
+    /// The forms for one number of last steps.
+    struct Forms {
+        std::uint32_t recent;  ///< older samples are in functions
+        std::map<std::vector<std::uint32_t>, std::vector<Seen>> seen{};
+    };
+
     bool is_over() const { return found_ || !why_not_.empty(); }
-    void spoil(const char* why);
     void note(const State& state);
-    Form form(const State& state, const std::vector<Diagram>& compared_later);
-    bool leads_to(const Seen& before, const Seen& now);
+    void look(Forms& forms, const State& state, const std::vector<Diagram>& diagrams);
+    bool leads_to(const Forms& forms, const Seen& before, const Seen& now);
+    bool take_equal_values(const Seen& before, const Seen& now);
+    std::uint32_t period() const;
     Place first_place(std::uint32_t step) const;
 
     std::uint32_t steps_;
-    Place places_;  ///< of the samples of one step
+    const std::vector<Atom>& atoms_;
     Space& space_;
     Unfolded unfolded_;
     Images images_;
-    std::uint32_t recent_ = 0;  ///< steps whose samples a form has
+    std::vector<Forms> forms_;
     std::string why_not_;
     std::optional<Repeats> found_;
     std::uint32_t step_ = 0;
-    std::optional<std::uint32_t> spoilt_;  ///< the last step that no repetition may contain
-    const char* why_spoilt_ = "";
+    std::vector<std::uint32_t> counted_;  ///< [step] as State has it
+    std::optional<std::uint32_t> inexact_;  ///< the last such step
     std::vector<std::uint32_t> negated_;  ///< [step] the oldest step in what was negated
-    std::map<std::vector<std::uint32_t>, std::vector<Seen>> seen_;  ///< by their form
-    std::size_t kept_ = 0;                                          ///< numbers of forms
+    std::vector<std::vector<std::uint32_t>> controls_;  ///< [step] control words
+    std::size_t kept_ = 0;                              ///< numbers in all forms
 };
 
 }  // namespace etlc::prove

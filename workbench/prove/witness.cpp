@@ -126,6 +126,30 @@ float number_of(float threshold, bool reached, bool negated_reached, const Atom&
 
 }  // namespace
 
+std::set<std::vector<std::uint16_t>> possible_samples(Space& space,
+                                                      const std::vector<Atom>& atoms) {
+    Inputs inputs(space, atoms, true);
+    std::vector<Diagram> conditions;
+    for (std::size_t a = 0; a < atoms.size(); ++a)
+        conditions.push_back(inputs.sample(kFirstSample, a));
+    std::set<std::vector<std::uint16_t>> result;
+    // The first number that reaches the threshold, or none.
+    const auto numbers = static_cast<Place>(space.numbers.all().size());
+    for (Place n = 0; n <= numbers; ++n) {
+        std::vector<std::uint16_t> possible(atoms.size(), 0);
+        for (std::uint32_t ends = 0; ends < 1U << kPlacesPerSample; ++ends) {
+            std::map<Place, bool> variables;
+            if (n < numbers) variables[etlprove::kFirstNumber + n] = true;
+            for (Place end = 0; end < kPlacesPerSample; ++end)
+                variables[kFirstSample + end] = (ends >> end & 1U) != 0;
+            for (std::size_t a = 0; a < atoms.size(); ++a)
+                if (holds(space.diagrams, conditions[a], variables)) possible[a] |= 1U << ends;
+        }
+        result.insert(possible);
+    }
+    return result;
+}
+
 std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
                                   const std::vector<Atom>& atoms, std::uint32_t steps,
                                   std::uint32_t most_steps, bool may_be_missing, bool at_zero) {

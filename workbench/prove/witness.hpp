@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "prove/definition.hpp"
@@ -25,5 +26,9 @@ std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
                                   const std::vector<Atom>& atoms, std::uint32_t steps,
                                   std::uint32_t most_steps, bool may_be_missing,
                                   bool at_zero = false);
+
+/// Returns which ends of a sample can reach a threshold together, for every threshold: a bit for
+/// each set of ends, [atom]. Some samples may be missing.
+std::set<std::vector<std::uint16_t>> possible_samples(Space& space, const std::vector<Atom>& atoms);
 
 }  // namespace etlc::prove

@@ -241,7 +241,7 @@ private:
             put(static_cast<uint32_t>(kinds[at]));
             put(kinds[at] == WordKind::diagram ? diagram_of(bits) : bits);
         }
-        put(uses().counted() ? 1 : 0);
+        put(uses().counted());
         put(uses().oldest());
         fflush(stdout);
     }

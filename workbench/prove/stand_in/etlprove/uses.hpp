@@ -13,16 +13,21 @@ namespace etlprove {
 /// What was used since the last reset().
 class Uses {
 public:
+    static constexpr uint32_t kAll = 0xffffffffu;
+
     void reset() {
         counters_.clear();
-        counted_ = false;
+        counted_ = 0;
         oldest_ = 0;
     }
 
     /// A counter has advanced.
     void advances(const void* counter) { counters_.push_back(counter); }
-    /// A greater value of a counter would have had another effect.
-    void counts() { counted_ = true; }
+    /// A counter that reaches a constant would have had another effect.
+    void counts_to(uint64_t constant) {
+        const uint32_t least = constant < kAll ? static_cast<uint32_t>(constant) : kAll;
+        if (least > counted_) counted_ = least;
+    }
     /// A value is negated. The negation is a function of its samples, not of the value alone.
     void negates(const Diagrams& diagrams, Diagram of) {
         const Place deepest = deepest_in(diagrams, of);
@@ -30,7 +35,8 @@ public:
     }
 
     const std::vector<const void*>& counters() const { return counters_; }
-    bool counted() const { return counted_; }
+    /// The greatest such constant, or kAll where each value may have an effect of its own.
+    uint32_t counted() const { return counted_; }
     /// The place of the oldest sample in what was negated.
     Place oldest() const { return oldest_; }
 
@@ -50,7 +56,7 @@ private:
     }
 
     std::vector<const void*> counters_;
-    bool counted_ = false;
+    uint32_t counted_ = 0;
     Place oldest_ = 0;
     std::vector<Place> deepest_;  ///< [diagram] 0: not yet found
 };
@@ -100,11 +106,11 @@ public:
     /// Returns the lesser of the value and a constant, for what treats all values from there alike.
     uint64_t up_to(uint64_t constant) const noexcept {
         if (value_ >= constant) return constant;
-        uses().counts();
+        uses().counts_to(constant);
         return value_;
     }
     operator uint32_t() const noexcept {
-        uses().counts();
+        uses().counts_to(Uses::kAll);
         return value_;
     }
 
