@@ -22,24 +22,13 @@ const Images::Support& Images::support(Diagram of) {
     return supports_.emplace(of, result).first->second;
 }
 
-/// The ends that two functions depend on; all ends of a sample, if they depend on one another.
-Images::Support Images::support_of(const Functions& first, const Functions& second,
-                                   std::size_t n) {
-    Support result = support(first[n]) | support(second[n]);
-    for (std::size_t at = 0; possible_ != nullptr && at < result.size(); at += kPlacesPerSample) {
-        bool any = false;
-        for (std::size_t end = at; end < at + kPlacesPerSample; ++end) any = any || result[end];
-        for (std::size_t end = at; end < at + kPlacesPerSample; ++end) result[end] = any;
-    }
-    return result;
-}
-
 /// Returns groups that depend on different ends of atoms, and so take their values independently.
 std::vector<std::vector<std::size_t>> Images::groups(const Functions& first,
                                                      const Functions& second) {
     std::vector<std::pair<Support, std::vector<std::size_t>>> groups;
     for (std::size_t n = 0; n < first.size(); ++n) {
-        std::pair<Support, std::vector<std::size_t>> joined{support_of(first, second, n), {n}};
+        std::pair<Support, std::vector<std::size_t>> joined{support(first[n]) | support(second[n]),
+                                                            {n}};
         for (std::size_t g = groups.size(); g-- > 0;) {
             if ((groups[g].first & joined.first).none()) continue;
             joined.first |= groups[g].first;
@@ -54,30 +43,14 @@ std::vector<std::vector<std::size_t>> Images::groups(const Functions& first,
     return result;
 }
 
-void Images::set(Functions& of, Place place, bool is_true) const {
-    for (Diagram& one : of)
-        if (const auto& node = diagrams_[one]; node.place == place)
-            one = is_true ? node.with : node.without;
-}
-
-/// Returns the functions for each value of the topmost variable, or of the topmost sample.
-std::vector<Images::Functions> Images::branches(const Functions& of, Place top) const {
-    std::vector<Functions> result;
-    if (possible_ == nullptr) {
-        result.assign(2, of);
-        set(result[0], top, false);
-        set(result[1], top, true);
-        return result;
-    }
-    const Place first = top - (top - kFirstSample) % kPlacesPerSample;
-    const std::size_t atom = (first - kFirstSample) / kPlacesPerSample % atoms_;
-    for (std::uint32_t ends = 0; ends < 1U << kPlacesPerSample; ++ends) {
-        if (((*possible_)[atom] >> ends & 1U) == 0) continue;
-        result.push_back(of);
-        for (Place end = 0; end < kPlacesPerSample; ++end)
-            set(result.back(), first + end, (ends >> end & 1U) != 0);
-    }
-    return result;
+bool Images::may_be(Place place, bool is_true) const {
+    if (possible_ == nullptr) return true;
+    const Place at = place - kFirstSample;
+    for (std::uint32_t ends = 0; ends < 1U << kPlacesPerSample; ++ends)
+        if (((*possible_)[at / kPlacesPerSample % atoms_] >> ends & 1U) != 0 &&
+            ((ends >> at % kPlacesPerSample & 1U) != 0) == is_true)
+            return true;
+    return false;
 }
 
 /// Null where there are too many.
@@ -93,7 +66,12 @@ const Images::Values* Images::values(const Functions& of) {
         result.insert(all);
         return &values_.emplace(of, std::move(result)).first->second;
     }
-    for (const Functions& branch : branches(of, top)) {
+    for (const bool is_true : {false, true}) {
+        if (!may_be(top, is_true)) continue;
+        Functions branch = of;
+        for (Diagram& one : branch)
+            if (const auto& node = diagrams_[one]; node.place == top)
+                one = is_true ? node.with : node.without;
         const Values* const found = values(branch);
         if (found == nullptr) return nullptr;
         result.insert(found->begin(), found->end());

@@ -18,7 +18,7 @@ namespace etlc::prove {
 class Images {
 public:
     using Functions = std::vector<Diagram>;
-    /// Per atom, a bit for each set of ends of a sample that can be true together.
+    /// Per atom, a bit for each set of ends of a sample that can be true, each end by itself.
     using Possible = std::vector<std::uint16_t>;
 
     Images(const etlprove::Diagrams& diagrams, std::size_t atoms)
@@ -39,11 +39,9 @@ private:
     static constexpr int kMostFailures = 8;
 
     const Support& support(Diagram of);
-    Support support_of(const Functions& first, const Functions& second, std::size_t n);
     std::vector<std::vector<std::size_t>> groups(const Functions& first, const Functions& second);
     const Values* values(const Functions& of);
-    std::vector<Functions> branches(const Functions& of, Place top) const;
-    void set(Functions& of, Place place, bool is_true) const;
+    bool may_be(Place place, bool is_true) const;
 
     const etlprove::Diagrams& diagrams_;
     std::size_t atoms_;

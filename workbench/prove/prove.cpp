@@ -172,7 +172,9 @@ private:
         const auto witness = difference(space_, found, expected, proof_.atoms, at.step + 1,
                                         proof_.steps, kind == Kind::missing, at_zero);
         if (witness) return blame(at, name, *witness);
-        if (kind == Kind::missing && !at.restarted) repetition_.is_inexact();
+        if (kind == Kind::missing && !at.restarted) 
+            repetition_.is_inexact(
+                !at_zero && are_equal_in_ranges(space_, found, expected, proof_.atoms));
     }
 
     void take(const Window& window) {
@@ -323,7 +325,9 @@ diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
     if (found->steps_needed <= proof.steps || found->steps_needed > kMostToGoOn) return found;
     proof.steps = found->steps_needed;
     auto longer = prove_steps(numbers, plan, *program, proof);
-    return longer && (longer->fault || longer->repeats) ? std::move(longer) : std::move(found);
+    if (longer && (longer->fault || longer->repeats)) return longer;
+    if (longer) found->why_not_longer = longer->why_not_longer;
+    return found;
 }
 
 }  // namespace etlc::prove

@@ -38,8 +38,11 @@ void Repetition::check(std::uint32_t monitor, std::uint32_t position, const Numb
         why_not_ = "the definition, one step at a time, gives another verdict";
 }
 
-void Repetition::is_inexact() {
-    inexact_ = step_;
+void Repetition::is_inexact(bool in_ranges) {
+    if (in_ranges)
+        needs_ranges_ = step_;
+    else
+        inexact_ = step_;
 }
 
 void Repetition::note(const State& state) {
@@ -52,7 +55,7 @@ void Repetition::note(const State& state) {
     negated_.push_back(oldest);
     controls_.emplace_back();
     for (const State::Word& word : state.words)
-        if (word.kind == State::Kind::control) controls_.back().push_back(word.value);
+        controls_.back().push_back(word.kind == State::Kind::control ? word.value : 0);
 }
 
 void Repetition::look(Forms& forms, const State& state, const std::vector<Diagram>& diagrams) {
@@ -80,7 +83,7 @@ void Repetition::look(Forms& forms, const State& state, const std::vector<Diagra
 
 /// Whether all after `now` goes on as all after `before`, which has the same form.
 bool Repetition::leads_to(const Forms& forms, const Seen& before, const Seen& now) {
-    if (before.step < unfolded_.reach()) return false;
+    if (before.step < unfolded_.reach() || (inexact_ && *inexact_ > before.step)) return false;
     for (std::size_t n = 0; n < before.counters.size(); ++n)
         if (now.counters[n] < before.counters[n]) return false;
     for (std::uint32_t step = before.step + 1; step <= now.step; ++step) {
@@ -91,13 +94,13 @@ bool Repetition::leads_to(const Forms& forms, const Seen& before, const Seen& no
     return take_equal_values(before, now);
 }
 
-/// Whether the functions of older samples do. They decide where the class branches, of all values;
-/// and where verdicts are equal for the samples that there can be, those of such samples count too.
+/// Whether the functions of older samples do. Where verdicts are equal for samples in their ranges
+/// only, those of such samples count too.
 bool Repetition::take_equal_values(const Seen& before, const Seen& now) {
     if (images_.gives_up()) why_not_ = "its values of long ago have too many relations";
     if (!images_.are_equal(before.leaves, now.leaves, nullptr)) return false;
-    if (!inexact_ || *inexact_ <= before.step) return true;
-    for (const Images::Possible& possible : possible_samples(space_, atoms_))
+    if (!needs_ranges_ || *needs_ranges_ <= before.step) return true;
+    for (const Images::Possible& possible : ends_in_ranges(space_, atoms_))
         if (!images_.are_equal(before.leaves, now.leaves, &possible)) return false;
     return true;
 }
@@ -116,25 +119,24 @@ void Repetition::end_step(const State& state, const std::vector<Diagram>& compar
 
 std::string Repetition::why_not() const {
     if (!why_not_.empty()) return why_not_;
-    return !counted_.empty() && counted_.back() > 0
-               ? "what it does depends on the number of the step"
-               : "its state did not come back to a form that was seen";
+    if (!counted_.empty() && counted_.back() > 0)
+        return "what it does depends on the number of the step";
+    if (inexact_ && *inexact_ + 1 == step_)
+        return "some verdicts are equal only for the samples that there can be";
+    return "its state did not come back to a form that was seen";
 }
 
-/// Returns the period of the control words; 0 if they have none.
+/// Returns the period of the control words, as far as they show it.
 std::uint32_t Repetition::period() const {
     std::uint32_t all = 1;
     for (std::size_t word = 0; word < controls_.back().size(); ++word) {
         std::uint32_t period = 1;
         const auto repeats = [&] {
-            for (std::uint32_t step = step_ / 2; step < step_; ++step)
-                if (controls_[step].size() <= word || controls_[step - period].size() <= word ||
-                    controls_[step][word] != controls_[step - period][word])
-                    return false;
+            for (std::uint32_t step = std::max(period, step_ / 2); step < step_; ++step)
+                if (controls_[step][word] != controls_[step - period][word]) return false;
             return true;
         };
-        while (period <= step_ / 2 && !repeats()) ++period;
-        if (period > step_ / 2) return 0;
+        while (period < step_ && !repeats()) ++period;
         all = std::lcm(all, period);
     }
     return all;
@@ -146,7 +148,7 @@ std::uint32_t Repetition::steps_needed() const {
     const std::uint64_t begin =
         std::max(std::uint64_t{2} * recent, std::uint64_t{counted_.back()} + recent);
     const std::uint64_t needed = begin + period() + 2;
-    return period() == 0 || needed > State::kAll ? 0 : static_cast<std::uint32_t>(needed);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(needed, State::kAll));
 }
 
 }  // namespace etlc::prove

@@ -30,8 +30,9 @@ public:
     void begin_step();
     /// Compares the definition as a machine with its clauses.
     void check(std::uint32_t monitor, std::uint32_t position, const Numbers& expected);
-    /// Some verdict of this step is equal only for the samples that there can be.
-    void is_inexact();
+    /// Some verdict of this step is equal only for the samples that there can be, or already for
+    /// those whose ends are in their ranges.
+    void is_inexact(bool in_ranges);
     /// Takes the state of the class after the step, and what later comparisons read.
     void end_step(const State& state, const std::vector<Diagram>& compared_later);
 
@@ -73,7 +74,7 @@ private:
     std::optional<Repeats> found_;
     std::uint32_t step_ = 0;
     std::vector<std::uint32_t> counted_;  ///< [step] as State has it
-    std::optional<std::uint32_t> inexact_;  ///< the last such step
+    std::optional<std::uint32_t> inexact_, needs_ranges_;  ///< the last such steps
     std::vector<std::uint32_t> negated_;  ///< [step] the oldest step in what was negated
     std::vector<std::vector<std::uint32_t>> controls_;  ///< [step] control words
     std::size_t kept_ = 0;                              ///< numbers in all forms

@@ -27,8 +27,11 @@ std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
                                   std::uint32_t most_steps, bool may_be_missing,
                                   bool at_zero = false);
 
-/// Returns which ends of a sample can reach a threshold together, for every threshold: a bit for
-/// each set of ends, [atom]. Some samples may be missing.
-std::set<std::vector<std::uint16_t>> possible_samples(Space& space, const std::vector<Atom>& atoms);
+/// Whether two functions are equal where every end of a sample, by itself, is in its range.
+bool are_equal_in_ranges(Space& space, Diagram first, Diagram second,
+                         const std::vector<Atom>& atoms);
+/// Returns which ends of a sample can reach a threshold, for every threshold: a bit for each set of
+/// ends, [atom], where every end is in its range.
+std::set<std::vector<std::uint16_t>> ends_in_ranges(Space& space, const std::vector<Atom>& atoms);
 
 }  // namespace etlc::prove
