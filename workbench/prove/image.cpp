@@ -7,7 +7,7 @@ namespace etlc::prove {
 
 using etlprove::kAlways;
 using etlprove::kFirstSample;
-using etlprove::kNoPlace;
+using etlprove::kNever;
 using etlprove::kPlacesPerSample;
 
 /// The ends of atoms that a function depends on at some step.
@@ -43,58 +43,65 @@ std::vector<std::vector<std::size_t>> Images::groups(const Functions& first,
     return result;
 }
 
-bool Images::may_be(Place place, bool is_true) const {
-    if (possible_ == nullptr) return true;
+bool Images::may_be(const Possible& possible, Place place, bool is_true) const {
     const Place at = place - kFirstSample;
     for (std::uint32_t ends = 0; ends < 1U << kPlacesPerSample; ++ends)
-        if (((*possible_)[at / kPlacesPerSample % atoms_] >> ends & 1U) != 0 &&
+        if ((possible[at / kPlacesPerSample % atoms_] >> ends & 1U) != 0 &&
             ((ends >> at % kPlacesPerSample & 1U) != 0) == is_true)
             return true;
     return false;
 }
 
-/// Null where there are too many.
-const Images::Values* Images::values(const Functions& of) {
-    if (const auto found = values_.find(of); found != values_.end()) return &found->second;
-    if (values_.size() >= kMostLists) return nullptr;
-    Place top = kNoPlace;
-    for (const Diagram one : of) top = std::min(top, diagrams_[one].place);
-    Values result;
-    if (top == kNoPlace) {
-        std::vector<bool> all;
-        for (const Diagram one : of) all.push_back(one == kAlways);
-        result.insert(all);
-        return &values_.emplace(of, std::move(result)).first->second;
+/// The function, where each end is what it may be.
+Diagram Images::in_ranges(Diagram of, const Possible& possible, Known& known) {
+    if (of <= kAlways) return of;
+    if (const auto found = known.find(of); found != known.end()) return found->second;
+    const etlprove::Diagrams::Node node = diagrams_[of];
+    const bool may_be_false = may_be(possible, node.place, false);
+    const bool may_be_true = may_be(possible, node.place, true);
+    const Diagram without = may_be_false ? in_ranges(node.without, possible, known) : kNever;
+    const Diagram with = may_be_true ? in_ranges(node.with, possible, known) : kNever;
+    const Diagram result = !may_be_false  ? with
+                           : !may_be_true ? without
+                                          : diagrams_.choose(node.place, without, with);
+    return known.emplace(of, result).first->second;
+}
+
+/// Whether both lists from n on take the same values together, where these conditions hold.
+bool Images::agree(std::size_t n, Diagram one, Diagram other) {
+    if (n == first_.size() || agreed_.contains({n, one, other})) return true;
+    if (agreed_.size() >= kMostBranches || diagrams_.size() > most_diagrams_) {
+        is_too_large_ = true;
+        return false;
     }
-    for (const bool is_true : {false, true}) {
-        if (!may_be(top, is_true)) continue;
-        Functions branch = of;
-        for (Diagram& one : branch)
-            if (const auto& node = diagrams_[one]; node.place == top)
-                one = is_true ? node.with : node.without;
-        const Values* const found = values(branch);
-        if (found == nullptr) return nullptr;
-        result.insert(found->begin(), found->end());
-        if (result.size() > kMostValues) return nullptr;
+    const Diagram ones[] = {first_[n], diagrams_.complement(first_[n])};
+    const Diagram others[] = {second_[n], diagrams_.complement(second_[n])};
+    for (const std::size_t value : {0, 1}) {
+        const Diagram here = diagrams_.both(one, ones[value]);
+        const Diagram there = diagrams_.both(other, others[value]);
+        if ((here == kNever) != (there == kNever)) return false;
+        if (here != kNever && !agree(n + 1, here, there)) return false;
     }
-    return &values_.emplace(of, std::move(result)).first->second;
+    agreed_.insert({n, one, other});
+    return true;
 }
 
 bool Images::are_equal(const Functions& first, const Functions& second, const Possible* possible) {
     if (first.size() != second.size()) return false;
-    possible_ = possible;
+    Known known;
+    most_diagrams_ = diagrams_.size() + kMostDiagrams;
+    is_too_large_ = false;
     for (const std::vector<std::size_t>& group : groups(first, second)) {
-        Functions some, others;
+        first_.clear();
+        second_.clear();
+        agreed_.clear();
         for (const std::size_t n : group) {
-            some.push_back(first[n]);
-            others.push_back(second[n]);
+            first_.push_back(possible ? in_ranges(first[n], *possible, known) : first[n]);
+            second_.push_back(possible ? in_ranges(second[n], *possible, known) : second[n]);
         }
-        if (some == others) continue;
-        values_.clear();
-        const Values* const one = values(some);
-        const Values* const other = one == nullptr ? nullptr : values(others);
-        if (other == nullptr) ++failures_;
-        if (other == nullptr || *one != *other) return false;
+        if (first_ == second_ || agree(0, kAlways, kAlways)) continue;
+        failures_ += is_too_large_ ? 1 : 0;
+        return false;
     }
     return true;
 }

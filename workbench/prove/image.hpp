@@ -6,8 +6,8 @@
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <set>
+#include <tuple>
 #include <unordered_map>
 #include <vector>
 
@@ -21,7 +21,7 @@ public:
     /// Per atom, a bit for each set of ends of a sample that can be true, each end by itself.
     using Possible = std::vector<std::uint16_t>;
 
-    Images(const etlprove::Diagrams& diagrams, std::size_t atoms)
+    Images(etlprove::Diagrams& diagrams, std::size_t atoms)
         : diagrams_(diagrams), atoms_(atoms) {}
 
     /// `possible`: of the samples; null: every end may be anything. False where there are too many
@@ -31,24 +31,28 @@ public:
     bool gives_up() const { return failures_ >= kMostFailures; }
 
 private:
-    using Values = std::set<std::vector<bool>>;
+    using Known = std::unordered_map<Diagram, Diagram>;
     using Support = std::bitset<512>;
 
-    static constexpr std::size_t kMostValues = 4096;
-    static constexpr std::size_t kMostLists = 10000;
+    static constexpr std::uint32_t kMostBranches = 50000;
+    static constexpr std::uint32_t kMostDiagrams = 1U << 20U;
     static constexpr int kMostFailures = 8;
 
     const Support& support(Diagram of);
     std::vector<std::vector<std::size_t>> groups(const Functions& first, const Functions& second);
-    const Values* values(const Functions& of);
-    bool may_be(Place place, bool is_true) const;
+    Diagram in_ranges(Diagram of, const Possible& possible, Known& known);
+    bool may_be(const Possible& possible, Place place, bool is_true) const;
+    bool agree(std::size_t n, Diagram one, Diagram other);
 
-    const etlprove::Diagrams& diagrams_;
+    etlprove::Diagrams& diagrams_;
     std::size_t atoms_;
-    const Possible* possible_ = nullptr;
     int failures_ = 0;
     std::unordered_map<Diagram, Support> supports_;
-    std::map<Functions, Values> values_;
+    // The two lists that are compared, what was compared, and the limit for it.
+    Functions first_, second_;
+    std::set<std::tuple<std::size_t, Diagram, Diagram>> agreed_;
+    std::uint32_t most_diagrams_ = 0;
+    bool is_too_large_ = false;
 };
 
 }  // namespace etlc::prove

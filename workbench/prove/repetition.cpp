@@ -132,7 +132,7 @@ std::uint32_t Repetition::period() const {
     for (std::size_t word = 0; word < controls_.back().size(); ++word) {
         std::uint32_t period = 1;
         const auto repeats = [&] {
-            for (std::uint32_t step = std::max(period, step_ / 2); step < step_; ++step)
+            for (std::uint32_t step = std::max(period, step_ - step_ / 4); step < step_; ++step)
                 if (controls_[step][word] != controls_[step - period][word]) return false;
             return true;
         };
