@@ -34,9 +34,9 @@ private:
     using Known = std::unordered_map<Diagram, Diagram>;
     using Support = std::bitset<512>;
 
-    static constexpr std::uint32_t kMostBranches = 50000;
-    static constexpr std::uint32_t kMostDiagrams = 1U << 20U;
-    static constexpr int kMostFailures = 8;
+    static constexpr std::uint32_t kMostBranches = 20000;
+    static constexpr std::uint32_t kMostDiagrams = 1U << 19U;
+    static constexpr int kMostFailures = 2;
 
     const Support& support(Diagram of);
     std::vector<std::vector<std::size_t>> groups(const Functions& first, const Functions& second);

@@ -146,7 +146,7 @@ std::uint32_t Repetition::steps_needed() const {
     if (is_over() || controls_.empty() || counted_.back() == State::kAll) return 0;
     const std::uint32_t recent = forms_.back().recent;
     const std::uint64_t begin =
-        std::max(std::uint64_t{2} * recent, std::uint64_t{counted_.back()} + recent);
+        std::max(std::uint64_t{5} * recent / 2, std::uint64_t{counted_.back()} + recent);
     const std::uint64_t needed = begin + period() + 2;
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(needed, State::kAll));
 }
