@@ -19,7 +19,8 @@ enum Entry : std::uint32_t {
     kWindow,
     kEnd,
     kStatus,
-    kFinished
+    kFinished,
+    kState
 };
 
 /// The exit statuses of the program, as stand_in/etlprove/space.hpp has them.
@@ -111,6 +112,21 @@ std::optional<Window> Answers::window() {
     window.is_two_windows = answer == 1;
     window.is_too_long = answer == 2;
     return window;
+}
+
+State Answers::state() {
+    if (next() != kState) end();
+    State state;
+    for (std::uint32_t count = word(); count > 0; --count) {
+        const std::uint32_t kind = word(), value = word();
+        if (kind > static_cast<std::uint32_t>(State::Kind::counter)) end();
+        state.words.push_back({static_cast<State::Kind>(kind), value});
+        State::Word& last = state.words.back();
+        if (last.kind == State::Kind::diagram) last.value = known(value);
+    }
+    state.counted = word();
+    state.oldest_negated = word();
+    return state;
 }
 
 std::string why(const Ended& ended) {

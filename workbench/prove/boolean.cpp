@@ -172,7 +172,7 @@ diag::Failure no_boolean_proof(std::string why) {
 /// Returns nothing where reset() leaves something of an earlier episode.
 std::optional<diag::Result<Proof>> compare(const plan::Plan& plan, const Program& program,
                                            Proof proof, const std::vector<Truths>& truths) {
-    const auto child = program.start();
+    const auto child = program.start({}, proof.steps);
     if (!child) return no_boolean_proof("cannot run the program that was compiled for the proof");
     std::uint32_t done = 0;
     try {

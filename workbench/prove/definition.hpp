@@ -53,6 +53,8 @@ public:
     Numbers verdict(std::uint32_t monitor, std::uint32_t end, std::uint32_t position);
     /// Forgets what was computed for the verdicts after a step.
     void forget(std::uint32_t end) { prefixes_[end].reset(); }
+    const reference::NormalForm& form() const { return form_; }
+    const reference::LiteralsOf<Symbol>& literals() const { return literals_; }
 
 private:
     using Literal = reference::ValueOf<Symbol>;

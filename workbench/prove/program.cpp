@@ -12,6 +12,8 @@
 #include <set>
 #include <utility>
 
+#include "prove/members.hpp"
+
 namespace etlc::prove {
 namespace {
 
@@ -74,12 +76,12 @@ std::string main_text(const plan::Plan& plan, const Subject& subject,
         "static void restart({0}::Monitor& monitor, uint32_t m) {{\n"
         "    (void)monitor, (void)m;\n{1}}}\n\n"
         "int main(int count, char** words) {{\n"
-        "    etlprove::take_numbers(count - 1, words + 1);\n"
+        "    etlprove::take_numbers(count - 2, words + 2);\n"
         "    etlprove::Class<{0}::Monitor> about{{{2}, {3}, {4}, {{{5}}}, {{{6}}}, restart, "
-        "{7},\n        {{{9}}}}};\n"
-        "    etlprove::Driver<{0}::Monitor, {0}::Verdicts>(about, {8}).run();\n}}\n",
+        "{7},\n        {{{8}}}}};\n"
+        "    etlprove::Driver<{0}::Monitor, {0}::Verdicts>(about, atoi(words[1])).run();\n}}\n",
         subject.name_space, restarts, read, atoms.size(), plan.monitors.size(),
-        indices(plan, false), indices(plan, true), plan.has_sliding ? horizon : 0, subject.steps,
+        indices(plan, false), indices(plan, true), plan.has_sliding ? horizon : 0,
         windows(subject.header, subject.name_space));
 }
 
@@ -112,7 +114,7 @@ Program::~Program() {
 
 diag::Result<Program> Program::make(const plan::Plan& plan, const Subject& subject,
                                     const std::vector<Atom>& atoms) {
-    return make(subject.header, main_text(plan, subject, atoms), "-Istand_in -Iruntime", {});
+    return make(with_counters(subject.header), main_text(plan, subject, atoms), "-Istand_in -Iruntime", {});
 }
 
 diag::Result<Program> Program::make(const std::string& header, const std::string& main,
@@ -148,8 +150,9 @@ diag::Result<Program> Program::make(const std::string& header, const std::string
                     said.substr(at, std::min(said.find('\n', at), said.size()) - at)));
 }
 
-std::unique_ptr<data::Child> Program::start(const std::set<float>& numbers) const {
-    std::vector<std::string> words;
+std::unique_ptr<data::Child> Program::start(const std::set<float>& numbers,
+                                            std::uint32_t steps) const {
+    std::vector<std::string> words{fmt::format("{}", steps)};
     for (const float number : numbers)
         words.push_back(fmt::format("{:08x}", std::bit_cast<std::uint32_t>(number)));
     return data::Child::start(folder_ + "/program", words,

@@ -21,11 +21,10 @@ namespace etlc::prove {
 
 using emit::RuntimeFile;
 
-/// A class, and how far it is stepped.
+/// A class.
 struct Subject {
     std::string header;      ///< text of the generated header
     std::string name_space;  ///< of its class
-    std::uint32_t steps = 0;
 };
 
 /// The compiled program, in a temporary folder of its own.
@@ -44,7 +43,7 @@ public:
     Program& operator=(const Program&) = delete;
     ~Program();
 
-    std::unique_ptr<data::Child> start(const std::set<float>& numbers = {}) const;
+    std::unique_ptr<data::Child> start(const std::set<float>& numbers, std::uint32_t steps) const;
     /// Returns the first line of what the compiler says of its version.
     const std::string& compiler() const { return compiler_; }
 
@@ -96,6 +95,20 @@ struct Status {
     Diagram final = 0;
 };
 
+/// The state of a class after a step, and how the step used the one before.
+struct State {
+    enum class Kind : std::uint8_t { control, diagram, counter };
+    struct Word {
+        Kind kind = Kind::control;
+        std::uint32_t value = 0;  ///< of this proof, if it is a diagram
+    };
+    std::vector<Word> words;  ///< none where the class has other members than words
+    /// A counter that reaches this would have another effect; 0 where none would.
+    std::uint32_t counted = 0;
+    static constexpr std::uint32_t kAll = 0xffffffffU;  ///< where each value may have one
+    Place oldest_negated = 0;  ///< of the samples in what was negated
+};
+
 /// Reads what the program says, into the diagrams of this proof.
 class Answers {
 public:
@@ -103,6 +116,7 @@ public:
 
     /// Return the next entry, which must be of this kind. Throw Ended and NewNumber.
     Numbers verdict();
+    State state();
     /// Whether all later restarts were alike.
     bool forgotten();
     Together together();

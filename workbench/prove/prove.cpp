@@ -9,7 +9,9 @@
 #include <set>
 
 #include "prove/boolean.hpp"
+#include "prove/members.hpp"
 #include "prove/program.hpp"
+#include "prove/repetition.hpp"
 
 namespace etlc::prove {
 namespace {
@@ -28,16 +30,22 @@ public:
           answers_(child, space_),
           known_(plan, proof.atoms, proof.steps, false),
           all_(plan, proof.atoms, proof.steps, true),
+          repetition_(plan, all_, proof, space_),
           done_(done) {}
 
     /// Throws Ended and Exhausted.
     void run() {
         for (; done_ < proof_.steps && !proof_.fault; ++done_) {
             compare_step(done_, Kind::known);
+            repetition_.begin_step();
             compare_step(done_, Kind::missing);
             compare_finishes(done_);
+            if (!proof_.fault) repetition_.end_step(answers_.state(), compared_later());
             known_.forget(done_);
         }
+        proof_.repeats = repetition_.found();
+        if (!proof_.repeats) proof_.why_not_longer = repetition_.why_not();
+        if (!proof_.repeats) proof_.steps_needed = repetition_.steps_needed();
         for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m)
             if (restarts(m) != check::Restarts::never) compare_restarted(m);
         for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m)
@@ -46,6 +54,9 @@ public:
         const Together together = answers_.together();
         proof_.together = together.is_proved ? together.steps : 0;
         while (const auto window = answers_.window()) take(*window);
+        if (proof_.long_windows.empty()) return;
+        proof_.repeats.reset();
+        proof_.why_not_longer = "what is assumed of its windows was compared in these steps only";
     }
 
     bool forgets() const { return forgets_; }
@@ -64,6 +75,16 @@ private:
     };
 
     check::Restarts restarts(std::uint32_t m) const { return plan_.monitors[m].restarts; }
+
+    /// Returns what later verdicts are compared with, besides the definition.
+    std::vector<Diagram> compared_later() {
+        std::vector<Diagram> result;
+        for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m) {
+            const Bounds& promised = promised_[{m, Kind::missing}];
+            result.insert(result.end(), {promised.lower, promised.upper});
+        }
+        return result;
+    }
 
     void compare_step(std::uint32_t step, Kind kind) {
         for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m) compare(place(m, step), kind);
@@ -114,6 +135,8 @@ private:
         if (at.decided)
             expected =
                 (kind == Kind::known ? known_ : all_).verdict(at.monitor, at.step, at.position);
+        const bool repeats = kind == Kind::missing && !at.restarted;
+        if (repeats && at.decided) repetition_.check(at.monitor, at.position, expected);
         if (found.decided != expected.decided) return blame(at, "whether it is decided", Witness());
         if (!found.decided) return;
         check(at, kind, "robustness", found.low, expected.low);
@@ -151,7 +174,10 @@ private:
         if (proof_.fault || found == expected) return;
         const auto witness = difference(space_, found, expected, proof_.atoms, at.step + 1,
                                         proof_.steps, kind == Kind::missing, at_zero);
-        if (witness) blame(at, name, *witness);
+        if (witness) return blame(at, name, *witness);
+        if (kind == Kind::missing && !at.restarted) 
+            repetition_.is_inexact(
+                !at_zero && are_equal_in_ranges(space_, found, expected, proof_.atoms));
     }
 
     void take(const Window& window) {
@@ -174,6 +200,7 @@ private:
     Answers answers_;
     Definition known_;
     Definition all_;
+    Repetition repetition_;
     /// The tightest bounds that a monitor has given so far, of those that the definition lacks.
     struct Bounds {
         Diagram lower = etlprove::kNever;
@@ -231,7 +258,7 @@ std::set<float> numbers_of(const std::vector<Atom>& atoms) {
 /// Makes the proof with these numbers. Throws NewNumber.
 diag::Result<Proof> prove_with(const std::set<float>& numbers, const plan::Plan& plan,
                                const Program& program, Proof proof) {
-    const auto child = program.start(numbers);
+    const auto child = program.start(numbers, proof.steps);
     if (!child) return no_proof("cannot run the program that was compiled for the proof");
     std::uint32_t done = 0;
     try {
@@ -246,6 +273,23 @@ diag::Result<Proof> prove_with(const std::set<float>& numbers, const plan::Plan&
     }
 }
 
+/// Makes the proof, and adds to the numbers what it needs.
+diag::Result<Proof> prove_steps(std::set<float>& numbers, const plan::Plan& plan,
+                                const Program& program, const Proof& proof) {
+    constexpr std::size_t kMostNumbers = 10000;
+    while (numbers.size() < kMostNumbers) {
+        try {
+            return prove_with(numbers, plan, program, proof);
+        } catch (const NewNumber& unknown) {
+            add(numbers, unknown.number);
+        }
+    }
+    return no_proof("the class has too many numbers");
+}
+
+/// The most steps of a proof that goes on until the class repeats.
+constexpr std::uint32_t kMostToGoOn = 256;
+
 }  // namespace
 
 diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
@@ -254,19 +298,20 @@ diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
     proof.atoms = atoms_of(plan);
     proof.steps = request.steps > 0 ? request.steps : usual_steps(plan);
     const auto program =
-        Program::make(plan, {request.header, request.name_space, proof.steps}, proof.atoms);
+        Program::make(plan, {request.header, request.name_space}, proof.atoms);
     if (!program) return program.failure();
     proof.compiler = program->compiler();
+    if (may_hide_state(request.header))
+        proof.why_not_longer = "its header may have variables besides the members of the class";
     std::set<float> numbers = numbers_of(proof.atoms);
-    constexpr std::size_t kMostNumbers = 10000;
-    while (numbers.size() < kMostNumbers) {
-        try {
-            return prove_with(numbers, plan, *program, proof);
-        } catch (const NewNumber& unknown) {
-            add(numbers, unknown.number);
-        }
-    }
-    return no_proof("the class has too many numbers");
+    auto found = prove_steps(numbers, plan, *program, proof);
+    if (!found || found->fault || found->repeats || request.steps > 0) return found;
+    if (found->steps_needed <= proof.steps || found->steps_needed > kMostToGoOn) return found;
+    proof.steps = found->steps_needed;
+    auto longer = prove_steps(numbers, plan, *program, proof);
+    if (longer && (longer->fault || longer->repeats)) return longer;
+    if (longer) found->why_not_longer = longer->why_not_longer;
+    return found;
 }
 
 }  // namespace etlc::prove

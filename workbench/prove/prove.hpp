@@ -42,6 +42,12 @@ struct Fault {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> requests;
 };
 
+/// Steps after which the class and the definition have the same form.
+struct Repeats {
+    std::uint32_t first = 0;
+    std::uint32_t second = 0;
+};
+
 struct Proof {
     std::vector<Atom> atoms;
     std::uint32_t steps = 0;
@@ -51,6 +57,9 @@ struct Proof {
     std::uint32_t together = 0;          ///< first steps in which those of several monitors are
     std::vector<std::uint32_t> windows;  ///< lengths of those that were proved to be two
     std::vector<std::uint32_t> long_windows;  ///< and of those that are assumed to be
+    std::optional<Repeats> repeats;  ///< then the proof without restarts holds for all lengths
+    std::string why_not_longer;      ///< else why it does not
+    std::uint32_t steps_needed = 0;  ///< after which it may; 0: nothing is known
     std::optional<Fault> fault;
 };
 

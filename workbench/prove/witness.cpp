@@ -30,6 +30,19 @@ std::set<Place> support(const Diagrams& diagrams, Diagram of) {
     return places;
 }
 
+/// Returns the first place of each sample.
+std::set<Place> samples_of(const std::set<Place>& places) {
+    std::set<Place> samples;
+    for (const Place place : places)
+        if (place >= kFirstSample)
+            samples.insert(place - (place - kFirstSample) % kPlacesPerSample);
+    return samples;
+}
+
+std::size_t atom_of(Place sample, const std::vector<Atom>& atoms) {
+    return (sample - kFirstSample) / kPlacesPerSample % atoms.size();
+}
+
 /// The conditions that inputs meet, as functions.
 class Inputs {
 public:
@@ -58,7 +71,22 @@ public:
         return either(both(same, known), missing);
     }
 
+    /// Each end is in the range of numbers and of what a missing sample may be.
+    Diagram ends(Place first, std::size_t atom) {
+        const Atom& of = atoms_[atom];
+        const double lowest = std::min(of.range.lowest, of.missing.lowest);
+        const double highest = std::max(of.range.highest, of.missing.highest);
+        Diagram result = etlprove::kAlways;
+        for (const Place end : {etlprove::kLow, etlprove::kHigh})
+            result = both(result, both(within(variable(first + end), lowest, highest),
+                                       within(variable(first + end + 1), -highest, -lowest)));
+        return result;
+    }
+
 private:
+    Diagram within(Diagram value, double lowest, double highest) {
+        return both(implies(value, number(highest)), implies(number(lowest), value));
+    }
     Diagram variable(Place place) { return space_.diagrams.variable(place); }
     Diagram number(double x) { return space_.at_least(static_cast<float>(x)); }
     Diagram both(Diagram a, Diagram b) { return space_.diagrams.both(a, b); }
@@ -73,10 +101,8 @@ private:
         if (atom.is_truth) return equal(value, no(negated));
         const Diagram sign = either(both(no(number(0)), no(both(value, negated))),
                                     both(number(0), either(value, negated)));
-        return both(both(sign, both(implies(value, number(atom.range.highest)),
-                                    implies(number(atom.range.lowest), value))),
-                    both(implies(negated, number(-atom.range.lowest)),
-                         implies(number(-atom.range.highest), negated)));
+        return both(both(sign, within(value, atom.range.lowest, atom.range.highest)),
+                    within(negated, -atom.range.highest, -atom.range.lowest));
     }
 
     Space& space_;
@@ -126,6 +152,41 @@ float number_of(float threshold, bool reached, bool negated_reached, const Atom&
 
 }  // namespace
 
+bool are_equal_in_ranges(Space& space, Diagram first, Diagram second,
+                         const std::vector<Atom>& atoms) {
+    Diagrams& diagrams = space.diagrams;
+    Inputs inputs(space, atoms, true);
+    Diagram differ = diagrams.differ(first, second);
+    const std::set<Place> places = support(diagrams, differ);
+    for (const Place first_end : samples_of(places))
+        differ = diagrams.both(differ, inputs.ends(first_end, atom_of(first_end, atoms)));
+    return differ == kNever;
+}
+
+std::set<std::vector<std::uint16_t>> ends_in_ranges(Space& space, const std::vector<Atom>& atoms) {
+    Inputs inputs(space, atoms, true);
+    std::vector<Diagram> conditions;
+    for (std::size_t a = 0; a < atoms.size(); ++a)
+        conditions.push_back(inputs.ends(kFirstSample, a));
+    std::set<std::vector<std::uint16_t>> result;
+    // The first number that reaches the threshold, or none.
+    const auto numbers = static_cast<Place>(space.numbers.all().size());
+    for (Place n = 0; n <= numbers; ++n) {
+        std::vector<std::uint16_t> possible(atoms.size(), 0);
+        for (std::uint32_t ends = 0; ends < 1U << kPlacesPerSample; ++ends) {
+            std::map<Place, bool> variables;
+            if (n < numbers) variables[etlprove::kFirstNumber + n] = true;
+            for (Place end = 0; end < kPlacesPerSample; ++end)
+                variables[kFirstSample + end] = (ends >> end & 1U) != 0;
+            for (std::size_t a = 0; a < atoms.size(); ++a)
+                if (holds(space.diagrams, conditions[a], variables))
+                    possible[a] = static_cast<std::uint16_t>(possible[a] | 1U << ends);
+        }
+        result.insert(possible);
+    }
+    return result;
+}
+
 std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
                                   const std::vector<Atom>& atoms, std::uint32_t steps,
                                   std::uint32_t most_steps, bool may_be_missing, bool at_zero) {
@@ -133,14 +194,10 @@ std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
     Diagram differ = diagrams.differ(first, second);
     if (differ == kNever) return std::nullopt;
     Inputs inputs(space, atoms, may_be_missing);
-    std::set<Place> samples;
-    for (const Place place : support(diagrams, differ))
-        if (place >= kFirstSample)
-            samples.insert(place - (place - kFirstSample) % kPlacesPerSample);
+    const std::set<Place> samples = samples_of(support(diagrams, differ));
     Diagram conditions = kAlways;
     for (auto sample = samples.rbegin(); sample != samples.rend(); ++sample) {
-        const std::size_t atom = (*sample - kFirstSample) / kPlacesPerSample % atoms.size();
-        conditions = diagrams.both(inputs.sample(*sample, atom), conditions);
+        conditions = diagrams.both(inputs.sample(*sample, atom_of(*sample, atoms)), conditions);
     }
     if (at_zero) conditions = diagrams.both(conditions, inputs.threshold_is_zero());
     differ = diagrams.both(differ, conditions);

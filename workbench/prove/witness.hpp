@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "prove/definition.hpp"
@@ -25,5 +26,12 @@ std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
                                   const std::vector<Atom>& atoms, std::uint32_t steps,
                                   std::uint32_t most_steps, bool may_be_missing,
                                   bool at_zero = false);
+
+/// Whether two functions are equal where every end of a sample, by itself, is in its range.
+bool are_equal_in_ranges(Space& space, Diagram first, Diagram second,
+                         const std::vector<Atom>& atoms);
+/// Returns which ends of a sample can reach a threshold, for every threshold: a bit for each set of
+/// ends, [atom], where every end is in its range.
+std::set<std::vector<std::uint16_t>> ends_in_ranges(Space& space, const std::vector<Atom>& atoms);
 
 }  // namespace etlc::prove

@@ -103,6 +103,13 @@ std::string certificate(const source::File& spec, const plan::Plan& plan, const 
         options_of(plan, request), library::kVersion, hash_of(emit::runtime_files()),
         hash_of(prove::stand_in_files()), proof.compiler, fmt::join(monitors, ", "), proof.steps,
         diag::counted(proof.steps, "step"), diag::counted(proof.verdicts, "verdict"));
+    if (proof.repeats)
+        text += fmt::format(
+            "proved for all lengths: after step {} the class and the definition have the form that "
+            "they had after step {}\n",
+            proof.repeats->second, proof.repeats->first);
+    else
+        text += fmt::format("not proved for longer inputs: {}\n", proof.why_not_longer);
     const auto lengths = [](const std::vector<std::uint32_t>& windows) {
         const std::set<std::uint32_t> each(windows.begin(), windows.end());
         return fmt::format("{}", fmt::join(each, ", "));

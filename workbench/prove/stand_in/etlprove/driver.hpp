@@ -21,6 +21,9 @@ namespace etlprove {
 
 // ---- output -------------------------------------------------------------------------------------
 
+/// What a word of a state is.
+enum class WordKind : uint32_t { control, diagram, counter };
+
 /// Ends the program: it needs another number.
 [[noreturn]] inline void ask_for(float number) {
     uint32_t bits = 0;
@@ -69,10 +72,12 @@ public:
         for (uint32_t step = 0; step < steps_; ++step) {
             states_.push_back(copy_of<Monitor>(state));
             report(advance(*known, step, false));
+            uses().reset();
             report(advance(*state, step, true));
             State ended = copy_of<Monitor>(state);
             for (uint32_t call = 0; call < about_.finishes; ++call)
                 report(finish<Monitor, Verdicts>(**ended, 0));
+            report_state(*state);
         }
         states_.push_back(copy_of<Monitor>(state));
         for (const uint32_t monitor : about_.restartable) {
@@ -158,6 +163,31 @@ private:
             put(decided ? 1 : 0);
             for (const Diagram number : numbers) put(number);
         }
+        fflush(stdout);
+    }
+
+    /// Reports the words of a state, and how the step used those before.
+    void report_state(const Memory<Monitor>& state) {
+        std::vector<WordKind> kinds(kWords<Monitor>, WordKind::control);
+        for (size_t at = 0; at < kWords<Monitor>; ++at) {
+            const uint32_t bits = word(state, at);
+            if (!is_marked(bits) || diagram_of(bits) >= diagrams().size()) continue;
+            sent_.send(diagram_of(bits));
+            kinds[at] = WordKind::diagram;
+        }
+        for (const void* const counter : uses().counters())
+            for (size_t at = 0; at < kWords<Monitor>; ++at)
+                if (counter == state.bytes + at * sizeof(uint32_t)) kinds[at] = WordKind::counter;
+        const bool is_whole = kWords<Monitor> * sizeof(uint32_t) == sizeof(Monitor);
+        put(static_cast<uint32_t>(Entry::state));
+        put(is_whole ? kWords<Monitor> : 0);
+        for (size_t at = 0; is_whole && at < kWords<Monitor>; ++at) {
+            const uint32_t bits = word(state, at);
+            put(static_cast<uint32_t>(kinds[at]));
+            put(kinds[at] == WordKind::diagram ? diagram_of(bits) : bits);
+        }
+        put(uses().counted());
+        put(uses().oldest());
         fflush(stdout);
     }
 

@@ -17,7 +17,8 @@ enum class Entry : uint32_t {
     window,
     end,
     status,
-    finished
+    finished,
+    state
 };
 
 inline void put(uint32_t word) {

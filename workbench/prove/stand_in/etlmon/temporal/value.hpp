@@ -9,6 +9,7 @@
 
 #include "etlmon/bits.hpp"
 #include "etlprove/space.hpp"
+#include "etlprove/uses.hpp"
 
 namespace etlprove {
 
@@ -77,6 +78,7 @@ inline Key max_of(Key a, Key b) noexcept {
     return Key::of(etlprove::diagrams().either(a.diagram(), b.diagram()));
 }
 inline Key operator-(Key a) noexcept {
+    etlprove::uses().negates(etlprove::diagrams(), a.diagram());
     return Key::of(etlprove::diagrams().negation(a.diagram()));
 }
 /// Windows ask whether both ends of a value are equal. Where the diagrams differ they take the way
