@@ -114,7 +114,8 @@ Program::~Program() {
 
 diag::Result<Program> Program::make(const plan::Plan& plan, const Subject& subject,
                                     const std::vector<Atom>& atoms) {
-    return make(with_counters(subject.header), main_text(plan, subject, atoms), "-Istand_in -Iruntime", {});
+    return make(with_counters(subject.header), main_text(plan, subject, atoms),
+                "-Istand_in -Iruntime", {});
 }
 
 diag::Result<Program> Program::make(const std::string& header, const std::string& main,

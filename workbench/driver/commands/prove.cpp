@@ -191,8 +191,8 @@ bool write_counterexample(const source::File& spec, const plan::Plan& plan, cons
                               plan.model->monitors[plan.monitors[proof.fault->monitor].index].span,
                               said(plan, *proof.fault));
     if (proof.fault->witness.values.empty()) return false;
-    found.note(fmt::format("the definition's verdicts: etlc run {0}.etl --trace {0}.csv{1}{2}", stem,
-                           plan.values == check::Values::boolean ? " --values boolean" : "",
+    found.note(fmt::format("the definition's verdicts: etlc run {0}.etl --trace {0}.csv{1}{2}",
+                           stem, plan.values == check::Values::boolean ? " --values boolean" : "",
                            proof.fault->finishes > 0 ? " --finish" : ""));
     if (!check_outputs({stem + ".csv", stem + ".etl"}, files_read(*plan.model, spec, {}), sink))
         return false;
