@@ -203,7 +203,7 @@ def judge(header, change, number, folder):
     line = header.text.count("\n", 0, begin) + 1
     path = folder / f"mutant{number}.hpp"
     path.write_text(text)
-    what = f"{header.name}:{line}: '{header.text[begin:end].strip()}' becomes '{new}'"
+    what = f"{header.path.stem}:{line}: '{header.text[begin:end].strip()}' becomes '{new}'"
     stem = folder / f"mutant{number}"
     verdict, message = header.prove(path, stem)
     if verdict == "refused" and "does not compile" in message:
