@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""mutants.py ETLC RUNTIME FOLDER COUNT: changes generated headers and has `etlc prove` judge them.
+"""mutants.py ETLC RUNTIME FOLDER COUNT [VALUES]: changes headers; `etlc prove` judges them.
 
 Each of COUNT mutants (times ETLC_EFFORT) differs from a header of specs/ in one place of its
 temporal part: an index, a bound, min for max, one end for the other, a reset left out. One that is
 refuted has to give, on the input that is shown, other verdicts than the header, whose verdicts are
 those of `etlc run`; one that is proved has to give the same verdicts as the header on random
-inputs. With ETLC_EFFORT half of the headers are of classes of truth values.
+inputs. VALUES: robustness or boolean.
 """
 import csv
 import os
@@ -206,7 +206,7 @@ def judge(header, change, number, folder):
     line = header.text.count("\n", 0, begin) + 1
     path = folder / f"mutant{number}.hpp"
     path.write_text(text)
-    what = f"{header.name}:{line}: '{header.text[begin:end].strip()}' becomes '{new}'"
+    what = f"{header.path.stem}:{line}: '{header.text[begin:end].strip()}' becomes '{new}'"
     stem = folder / f"mutant{number}"
     verdict, message = header.prove(path, stem)
     if verdict == "refused" and "does not compile" in message:
@@ -237,12 +237,11 @@ def judge(header, change, number, folder):
 
 def main():
     etlc, runtime, folder, count = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3]), sys.argv[4]
-    effort = max(1, int(os.environ.get("ETLC_EFFORT", "1")))
-    count = int(count) * effort
+    count = int(count) * max(1, int(os.environ.get("ETLC_EFFORT", "1")))
     folder.mkdir(parents=True, exist_ok=True)
     specs = sorted((pathlib.Path(__file__).parent / "specs").glob("*.etl"))
     headers = [Header(etlc, runtime, spec, folder, values) for spec in specs
-               for values in (["robustness"] if effort == 1 else ["robustness", "boolean"])]
+               for values in sys.argv[5:] or ["robustness"]]
     chosen = random.Random(1)
     candidates = [(header, change) for header in headers for change in changes(header.text)]
     chosen.shuffle(candidates)

@@ -43,7 +43,7 @@ TEST(Prove, FaultsOfThePlanAreFound) {
     EXPECT_GE(faults_found(check::Values::robustness, 8 * effort(), 16), 2);
 }
 TEST(ProveBoolean, FaultsOfThePlanAreFound) {
-    EXPECT_GE(faults_found(check::Values::boolean, 2 * effort(), 8), 1);
+    EXPECT_GE(faults_found(check::Values::boolean, effort(), 8), 1);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "emit/names.hpp"
 #include "prove/boolean.hpp"
@@ -50,8 +51,24 @@ std::string target(const plan::Plan& plan, const Cones& cones, std::uint32_t m,
                        fmt::join(parts, ", "), fmt::join(counts, ", "), fmt::join(restarts, ", "));
 }
 
-std::string text_of(Truths truths) {
-    return fmt::format("etlprove::Truths({})", static_cast<std::uint32_t>(truths));
+/// Whether an atom is missing at a step without samples: nothing of earlier steps stands in.
+bool vanishes(const plan::Plan& plan, const emit::Names& names, const Atom& atom) {
+    const check::Model& model = *plan.model;
+    if (!atom.is_predicate) return model.inputs[atom.index].hold == 0;
+    const auto& inputs = model.predicates[atom.index].inputs;
+    return names.past_member.empty() && names.earlier_member.empty() && !inputs.empty() &&
+           std::all_of(inputs.begin(), inputs.end(),
+                       [&](const check::Index i) { return model.inputs[i].hold == 0; });
+}
+
+/// Returns an atom of the program, as its initialiser.
+std::string atom_text(const plan::Plan& plan, const Atom& atom, Truths truths, std::uint32_t lazy) {
+    const std::optional<bool> missing = atom.is_predicate
+                                            ? plan.model->predicates[atom.index].missing
+                                            : plan.model->inputs[atom.index].missing;
+    return fmt::format("{{{}u, etlprove::Truths({}), {}, {}}}, ", lazy,
+                       static_cast<std::uint32_t>(truths),
+                       vanishes(plan, emit::make_names(plan), atom), missing.value_or(false));
 }
 
 }  // namespace
@@ -87,8 +104,8 @@ std::string boolean_main(const plan::Plan& plan, const Request& request,
     const Cones cones(request.header, {names.begin(), names.end()});
     std::string lazies;
     for (std::size_t a = 0; a < atoms.size(); ++a)
-        lazies += fmt::format("{{{}u, {}}}, ", names[a].empty() ? kNoLazy : cones.lazy(names[a]),
-                              text_of(truths[a]));
+        lazies +=
+            atom_text(plan, atoms[a], truths[a], names[a].empty() ? kNoLazy : cones.lazy(names[a]));
     std::string restarts;
     std::string targets;
     for (std::uint32_t m = 0; m < plan.monitors.size(); ++m) {

@@ -39,7 +39,7 @@ public:
     std::uint32_t lazy(const std::string& atom) const;
 
 private:
-    /// What is written depends on all that is named, and on the conditions around it.
+    /// Each name that is written depends on all that are named, and on the conditions around it.
     struct Statement {
         Names written;
         Names named;
@@ -50,8 +50,8 @@ private:
     using Statements = std::vector<Statement>;
     class Reader;
 
-    /// What a function writes depends on what its calls depend on, and what a call gives on what
-    /// the function names. Return whether that adds something.
+    /// A function writes under the conditions of its calls, and a call gives a value that depends
+    /// on all that the function names. Returns whether that adds something.
     bool join_calls(bool conditions);
 
     std::map<std::string, Statements, std::less<>> functions_;

@@ -22,7 +22,7 @@ struct Request {
     std::string header;       ///< its text
     std::string name_space;   ///< of its class
     std::uint32_t steps = 0;  ///< 0: usual_steps()
-    /// Of truth values: states with the truths that a step asks for, of all steps together.
+    /// Most steps from a state with a sequence of truths, for a class of truth values.
     std::uint64_t most_cases = 4000000;
 };
 
@@ -38,7 +38,7 @@ struct Fault {
     std::optional<std::uint32_t> restarted;  ///< the monitor was restarted before that step
     std::string number;  ///< "robustness", "lower", "upper" or "whether it is decided"
     Witness witness;
-    /// Of truth values: the monitors that are restarted, and before which step.
+    /// In a class of truth values: the monitors that are restarted, and before which step.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> requests;
 };
 

@@ -20,7 +20,7 @@
 
 namespace etlprove {
 
-/// Of the diagrams; more take too long.
+/// More nodes of diagrams take too long.
 constexpr uint32_t kMostNodesOfCases = 16u << 20;
 /// States whose step is not taken again.
 constexpr size_t kMostKept = 10000;
@@ -183,7 +183,7 @@ private:
     /// Steps from one state with every sequence of choices.
     Outcomes outcomes(const Target& target, const Memory& from, uint32_t step, bool finishing) {
         Outcomes found;
-        choices().begin(step, target.atoms);
+        choices().begin(step, target.atoms, finishing);
         do {
             if (++cases_ > about_.most_cases) stop(kTooMany);
             Memory memory = from;

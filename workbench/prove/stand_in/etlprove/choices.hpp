@@ -20,6 +20,8 @@ namespace etlprove {
 struct Atom {
     uint32_t lazy;  ///< its place among the lazy values of a step; kNoAtom: none
     Truths truths;
+    bool vanishes;  ///< it is missing where its inputs are: finish() has none
+    bool missing;   ///< what it counts as then, if it is declared
 };
 
 class Choices {
@@ -36,7 +38,8 @@ public:
     }
 
     /// Begins a step in which these atoms count; others are not known.
-    void begin(uint32_t step, const std::vector<bool>& counting) {
+    void begin(uint32_t step, const std::vector<bool>& counting, bool finishing) {
+        finishing_ = finishing;
         step_ = step;
         counting_ = &counting;
         made_.clear();
@@ -67,14 +70,15 @@ public:
     }
 
     etlmon::Truth truth(uint32_t atom) {
-        if ((*counting_)[atom]) {
+        if ((*counting_)[atom] && !(finishing_ && atoms_[atom].vanishes)) {
             if (!answers_[atom].first) answers_[atom] = {true, take([&] { return ways_of(atom); })};
             return answers_[atom].second;
         }
         const Truths truths = atoms_[atom].truths;
         return truths == Truths::any   ? etlmon::kPerhaps
                : truths == Truths::yes ? etlmon::kYes
-                                       : etlmon::kNo;
+               : truths == Truths::no  ? etlmon::kNo
+                                       : etlmon::truth_of(atoms_[atom].missing);
     }
 
     /// Returns when the step makes the choices that it made.
@@ -104,6 +108,7 @@ private:
     TruthPlaces places_{};
     std::vector<uint32_t> of_lazy_;
     const std::vector<bool>* counting_ = nullptr;
+    bool finishing_ = false;
     uint32_t step_ = 0, lazies_ = 0;
     size_t asked_ = 0;
     std::vector<Choice> made_;

@@ -7,7 +7,8 @@
 
 namespace etlprove {
 
-/// What an atom may be at a step: any of three truths, one of the two that are known, or one.
+/// The truths that an atom may have at a step: any of three truths, one of the two that are known,
+/// or one.
 enum class Truths : std::uint32_t { any, known, yes, no };
 
 /// The variables of a step: two for each atom, and for each monitor whether it is restarted before
