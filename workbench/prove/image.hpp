@@ -21,8 +21,7 @@ public:
     /// Per atom, a bit for each set of ends of a sample that can be true, each end by itself.
     using Possible = std::vector<std::uint16_t>;
 
-    Images(etlprove::Diagrams& diagrams, std::size_t atoms)
-        : diagrams_(diagrams), atoms_(atoms) {}
+    Images(etlprove::Diagrams& diagrams, std::size_t atoms) : diagrams_(diagrams), atoms_(atoms) {}
 
     /// `possible`: of the samples; null: every end may be anything. False where there are too many
     /// values to find out.

@@ -35,8 +35,7 @@ private:
         part.high = node.high;
         part.count = node.index;
         const bool counts = node.kind == Node::Kind::at_least;
-        part.looks_back =
-            counts || node.kind == Node::Kind::once || node.kind == Node::Kind::since;
+        part.looks_back = counts || node.kind == Node::Kind::once || node.kind == Node::Kind::since;
         const bool unbounded = node.high == check::kUnbounded;
         part.may_be_empty = node.low > 0 || counts;
         part.never_forgets = node.kind == Node::Kind::once && node.low == 0 && unbounded;

@@ -73,7 +73,7 @@ struct State {
     /// A counter that reaches this would have another effect; 0 where none would.
     std::uint32_t counted = 0;
     static constexpr std::uint32_t kAll = 0xffffffffU;  ///< where each value may have one
-    Place oldest_negated = 0;  ///< of the samples in what was negated
+    Place oldest_negated = 0;                           ///< of the samples in what was negated
 };
 
 /// Reads what the program says, into the diagrams of this proof.

@@ -172,9 +172,9 @@ private:
         const auto witness = difference(space_, found, expected, proof_.atoms, at.step + 1,
                                         proof_.steps, kind == Kind::missing, at_zero);
         if (witness) return blame(at, name, *witness);
-        if (kind == Kind::missing && !at.restarted) 
-            repetition_.is_inexact(
-                !at_zero && are_equal_in_ranges(space_, found, expected, proof_.atoms));
+        if (kind == Kind::missing && !at.restarted)
+            repetition_.is_inexact(!at_zero &&
+                                   are_equal_in_ranges(space_, found, expected, proof_.atoms));
     }
 
     void take(const Window& window) {
@@ -313,8 +313,7 @@ diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
     Proof proof;
     proof.atoms = atoms_of(plan);
     proof.steps = request.steps > 0 ? request.steps : usual_steps(plan);
-    const auto program =
-        Program::make(plan, {request.header, request.name_space}, proof.atoms);
+    const auto program = Program::make(plan, {request.header, request.name_space}, proof.atoms);
     if (!program) return program.failure();
     proof.compiler = program->compiler();
     if (may_hide_state(request.header))

@@ -73,7 +73,7 @@ private:
     std::string why_not_;
     std::optional<Repeats> found_;
     std::uint32_t step_ = 0;
-    std::vector<std::uint32_t> counted_;  ///< [step] as State has it
+    std::vector<std::uint32_t> counted_;                   ///< [step] as State has it
     std::optional<std::uint32_t> inexact_, needs_ranges_;  ///< the last such steps
     std::vector<std::uint32_t> negated_;  ///< [step] the oldest step in what was negated
     std::vector<std::vector<std::uint32_t>> controls_;  ///< [step] control words

@@ -9,7 +9,7 @@ using Kind = Part::Kind;
 using etlprove::kAlways;
 using etlprove::kNever;
 
-/// What an operator says where it has no position.
+/// The value of an operator that has no position.
 Diagram nothing(bool dual) {
     return dual ? kAlways : kNever;
 }
@@ -89,8 +89,8 @@ void Unfolded::step(Side& side, bool high) {
         before.insert(before.begin(), side.now[p]);
         if (before.size() > memories_[p]) before.pop_back();
         if (part.looks_back)
-            side.known[p] = gain(part.dual, moved(side, side.known[p]),
-                                 side.now[part.operands.back()]);
+            side.known[p] =
+                gain(part.dual, moved(side, side.known[p]), side.now[part.operands.back()]);
     }
     for (std::size_t m = 0; m < plan_.monitors.size(); ++m) {
         const std::size_t root = parts_.of_node[definition_.form().roots[plan_.monitors[m].index]];
@@ -133,15 +133,15 @@ Diagram Unfolded::literal(const Part& part, bool high) const {
 }
 
 Diagram Unfolded::at(const Side& side, std::size_t part, std::uint32_t ahead, bool dual) const {
-    return ahead == 0 ? side.now[part] : space_.diagrams.variable(later_.place({part, dual, ahead}));
+    return ahead == 0 ? side.now[part]
+                      : space_.diagrams.variable(later_.place({part, dual, ahead}));
 }
 
 Diagram Unfolded::ahead(const Side& side, const Part& part) const {
     Diagram result = nothing(part.dual);
     const bool is_until = part.operands.size() > 1;
     for (std::uint32_t j = part.high + 1; j-- > (is_until ? 0 : part.low);) {
-        if (is_until)
-            result = gain(!part.dual, result, at(side, part.operands[0], j, !part.dual));
+        if (is_until) result = gain(!part.dual, result, at(side, part.operands[0], j, !part.dual));
         if (j >= part.low)
             result = gain(part.dual, result, at(side, part.operands.back(), j, part.dual));
     }
@@ -155,10 +155,8 @@ Diagram Unfolded::behind(const Side& side, const Part& part) const {
     };
     for (std::uint32_t j = 0; j <= std::min(part.high, steps_); ++j) {
         if (j >= part.low)
-            result = gain(part.dual, result,
-                          gain(!part.dual, held, back(part.operands.back(), j)));
-        if (part.operands.size() > 1)
-            held = gain(!part.dual, held, back(part.operands[0], j));
+            result = gain(part.dual, result, gain(!part.dual, held, back(part.operands.back(), j)));
+        if (part.operands.size() > 1) held = gain(!part.dual, held, back(part.operands[0], j));
     }
     return result;
 }
@@ -194,8 +192,7 @@ Diagram Unfolded::moved(Side& side, Diagram of) {
         Later::Variable variable = later_[place];
         if (--variable.ahead > 0)
             return space_.diagrams.choose(later_.place(variable), without, with);
-        return space_.diagrams.either(without,
-                                      space_.diagrams.both(side.now[variable.part], with));
+        return space_.diagrams.either(without, space_.diagrams.both(side.now[variable.part], with));
     });
 }
 
@@ -208,14 +205,14 @@ Diagram Unfolded::cut(Diagram of) {
 
 /// Where a window reaches past the end: only one bound of an operator counts what is not seen.
 Diagram Unfolded::with_ranges(Diagram of, bool upper) {
-    return substituted(
-        of, upper ? upper_ : lower_, [&](Place place, Diagram without, Diagram with) {
-            const Later::Variable variable = later_[place];
-            if (variable.dual == upper) return upper ? with : without;
-            const Range& unseen = range(variable.part);
-            const Diagram end = upper ? unseen.highest : unseen.lowest;
-            return space_.diagrams.either(without, space_.diagrams.both(end, with));
-        });
+    return substituted(of, upper ? upper_ : lower_,
+                       [&](Place place, Diagram without, Diagram with) {
+                           const Later::Variable variable = later_[place];
+                           if (variable.dual == upper) return upper ? with : without;
+                           const Range& unseen = range(variable.part);
+                           const Diagram end = upper ? unseen.highest : unseen.lowest;
+                           return space_.diagrams.either(without, space_.diagrams.both(end, with));
+                       });
 }
 
 const Unfolded::Range& Unfolded::range(std::size_t p) {
@@ -240,8 +237,7 @@ const Unfolded::Range& Unfolded::range(std::size_t p) {
         result = range(part.operands.back());
         if (part.may_be_empty) (part.dual ? result.highest : result.lowest) = none;
         if (part.looks_back && (!part.dual || part.never_forgets))
-            result.highest =
-                gain(part.dual, result.highest, with_ranges(high_.known[p], true));
+            result.highest = gain(part.dual, result.highest, with_ranges(high_.known[p], true));
         if (part.looks_back && (part.dual || part.never_forgets))
             result.lowest = gain(part.dual, result.lowest, with_ranges(low_.known[p], false));
     }

@@ -25,7 +25,7 @@ public:
 
     struct Variable {
         std::size_t part;
-        bool dual;  ///< the operator that looks there takes the min
+        bool dual;            ///< the operator that looks there takes the min
         std::uint32_t ahead;  ///< at least 1
     };
     Place place(const Variable& of) const {

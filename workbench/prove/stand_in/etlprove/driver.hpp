@@ -22,7 +22,7 @@ namespace etlprove {
 /// The words that begin an entry; prove/answers.cpp reads them.
 enum class Entry : uint32_t { number = 1, node, verdict, reset, window, end, state };
 
-/// What a word of a state is.
+/// The kinds of words of a state.
 enum class WordKind : uint32_t { control, diagram, counter };
 
 inline void put(uint32_t word) {
