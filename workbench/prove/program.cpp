@@ -72,7 +72,7 @@ std::string main_text(const plan::Plan& plan, const Subject& subject,
     std::size_t read = 0;
     for (const Atom& atom : atoms) read += atom.is_read ? 1 : 0;
     return fmt::format(
-        "#include \"etlprove/driver.hpp\"\n#include \"class.hpp\"\n\n"
+        "#include \"etlprove/driver.hpp\"\n#include <class.hpp>\n\n"
         "static void restart({0}::Monitor& monitor, uint32_t m) {{\n"
         "    (void)monitor, (void)m;\n{1}}}\n\n"
         "int main(int count, char** words) {{\n"
@@ -120,7 +120,8 @@ diag::Result<Program> Program::make(const plan::Plan& plan, const Subject& subje
         return failure(fmt::format("cannot make a temporary folder like '{}'", pattern));
     Program program(pattern);
     const fs::path folder = pattern;
-    bool written = write(folder / "class.hpp", with_counters(subject.header)) &&
+    bool written = write(folder / "counting" / "class.hpp", with_counters(subject.header)) &&
+                   write(folder / "plain" / "class.hpp", subject.header) &&
                    write(folder / "main.cpp", main_text(plan, subject, atoms));
     for (const RuntimeFile& file : stand_in_files())
         written = written && write(folder / "stand_in" / file.name, file.text);
@@ -130,12 +131,17 @@ diag::Result<Program> Program::make(const plan::Plan& plan, const Subject& subje
     const auto version = shell(pattern, "${CXX:-c++} --version");
     if (version) program.compiler_ = read_all(*version);
     program.compiler_.resize(std::min(program.compiler_.find('\n'), program.compiler_.size()));
-    const auto compiler = shell(pattern,
-                                "${CXX:-c++} -std=c++17 -O1 -w -DETLMON_NO_DISPATCH -Istand_in "
-                                "-Iruntime main.cpp -o program 2>&1");
-    if (!compiler) return failure("cannot run the shell, /bin/sh");
-    const std::string said = read_all(*compiler);
-    if (compiler->exit_status() == 0) return program;
+    std::string said;
+    // A header that was edited may use a counter as only numbers can be used.
+    for (const char* const header : {"counting", "plain"}) {
+        const auto compiler = shell(
+            pattern, fmt::format("${{CXX:-c++}} -std=c++17 -O1 -w -DETLMON_NO_DISPATCH -Istand_in "
+                                 "-Iruntime -I{} main.cpp -o program 2>&1",
+                                 header));
+        if (!compiler) return failure("cannot run the shell, /bin/sh");
+        said = read_all(*compiler);
+        if (compiler->exit_status() == 0) return program;
+    }
     const std::size_t at = std::min(said.find("error:"), said.size());
     return failure(
         fmt::format("the C++ compiler $CXX, or c++, does not compile the header for a proof{}{}",
