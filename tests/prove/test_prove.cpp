@@ -38,6 +38,7 @@ TEST(Prove, RandomClassesAreRight) {
             << proof->fault->number << " of " << spec->plan.monitors[proof->fault->monitor].name
             << " after step " << proof->fault->step << "\n"
             << text;
+        EXPECT_EQ(proof->why_not_longer.find("one step at a time"), std::string::npos) << text;
         formulas += static_cast<int>(spec->plan.monitors.size());
     }
     RecordProperty("formulas", formulas);

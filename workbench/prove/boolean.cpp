@@ -241,7 +241,7 @@ diag::Result<Proof> prove_boolean(const plan::Plan& plan, const Request& request
         const std::string truths_text = text_of_truths();
         for (const bool may_freeze : {true, false}) {
             const auto program = Program::make(
-                request.header,
+                {request.header},
                 boolean_main(plan, request, proof.atoms, truths, proof.steps, may_freeze),
                 "-Istand_in/boolean -Iruntime -Istand_in",
                 {{"boolean/etlmon/temporal/truth.hpp", truths_text}});

@@ -72,7 +72,7 @@ std::string main_text(const plan::Plan& plan, const Subject& subject,
     std::size_t read = 0;
     for (const Atom& atom : atoms) read += atom.is_read ? 1 : 0;
     return fmt::format(
-        "#include \"etlprove/driver.hpp\"\n#include \"class.hpp\"\n\n"
+        "#include \"etlprove/driver.hpp\"\n#include <class.hpp>\n\n"
         "static void restart({0}::Monitor& monitor, uint32_t m) {{\n"
         "    (void)monitor, (void)m;\n{1}}}\n\n"
         "int main(int count, char** words) {{\n"
@@ -114,11 +114,12 @@ Program::~Program() {
 
 diag::Result<Program> Program::make(const plan::Plan& plan, const Subject& subject,
                                     const std::vector<Atom>& atoms) {
-    return make(with_counters(subject.header), main_text(plan, subject, atoms),
-                "-Istand_in -Iruntime", {});
+    // A header that was edited may use a counter as only numbers can be used.
+    return make({with_counters(subject.header), subject.header},
+                main_text(plan, subject, atoms), "-Istand_in -Iruntime", {});
 }
 
-diag::Result<Program> Program::make(const std::string& header, const std::string& main,
+diag::Result<Program> Program::make(const std::vector<std::string>& headers, const std::string& main,
                                     const std::string& folders,
                                     const std::vector<RuntimeFile>& files) {
     std::error_code error;
@@ -127,7 +128,9 @@ diag::Result<Program> Program::make(const std::string& header, const std::string
         return failure(fmt::format("cannot make a temporary folder like '{}'", pattern));
     Program program(pattern);
     const fs::path folder = pattern;
-    bool written = write(folder / "class.hpp", header) && write(folder / "main.cpp", main);
+    bool written = write(folder / "main.cpp", main);
+    for (std::size_t h = 0; h < headers.size(); ++h)
+        written = written && write(folder / fmt::format("header{}", h) / "class.hpp", headers[h]);
     for (const auto* const group : {&stand_in_files(), &files})
         for (const RuntimeFile& file : *group)
             written = written && write(folder / "stand_in" / file.name, file.text);
@@ -137,13 +140,16 @@ diag::Result<Program> Program::make(const std::string& header, const std::string
     const auto version = shell(pattern, "${CXX:-c++} --version");
     if (version) program.compiler_ = read_all(*version);
     program.compiler_.resize(std::min(program.compiler_.find('\n'), program.compiler_.size()));
-    const auto compiler =
-        shell(pattern, fmt::format("${{CXX:-c++}} -std=c++17 -O1 -w -DETLMON_NO_DISPATCH {} "
-                                   "main.cpp -o program 2>&1",
-                                   folders));
-    if (!compiler) return failure("cannot run the shell, /bin/sh");
-    const std::string said = read_all(*compiler);
-    if (compiler->exit_status() == 0) return program;
+    std::string said;
+    for (std::size_t h = 0; h < headers.size(); ++h) {
+        const auto compiler =
+            shell(pattern, fmt::format("${{CXX:-c++}} -std=c++17 -O1 -w -DETLMON_NO_DISPATCH {} "
+                                       "-Iheader{} main.cpp -o program 2>&1",
+                                       folders, h));
+        if (!compiler) return failure("cannot run the shell, /bin/sh");
+        said = read_all(*compiler);
+        if (compiler->exit_status() == 0) return program;
+    }
     const std::size_t at = std::min(said.find("error:"), said.size());
     return failure(
         fmt::format("the C++ compiler $CXX, or c++, does not compile the header for a proof{}{}",

@@ -33,9 +33,9 @@ public:
     /// Writes and compiles it.
     static diag::Result<Program> make(const plan::Plan& plan, const Subject& subject,
                                       const std::vector<Atom>& atoms);
-    /// `main`: its text; `folders`: where the compiler looks for headers; `files`: more of them, in
+    /// `headers`: the first that compiles is taken; `main`: the text of the program; `folders`: where the compiler looks for headers; `files`: more of them, in
     /// the folder of those that stand in.
-    static diag::Result<Program> make(const std::string& header, const std::string& main,
+    static diag::Result<Program> make(const std::vector<std::string>& headers, const std::string& main,
                                       const std::string& folders,
                                       const std::vector<RuntimeFile>& files);
     Program(Program&& other) noexcept;

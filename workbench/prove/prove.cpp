@@ -288,7 +288,7 @@ diag::Result<Proof> prove_steps(std::set<float>& numbers, const plan::Plan& plan
 }
 
 /// The most steps of a proof that goes on until the class repeats.
-constexpr std::uint32_t kMostToGoOn = 256;
+constexpr std::uint32_t kMostStepsToGoOn = 256;
 
 }  // namespace
 
@@ -305,7 +305,7 @@ diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
     std::set<float> numbers = numbers_of(proof.atoms);
     auto found = prove_steps(numbers, plan, *program, proof);
     if (!found || found->fault || found->repeats || request.steps > 0) return found;
-    if (found->steps_needed <= proof.steps || found->steps_needed > kMostToGoOn) return found;
+    if (found->steps_needed <= proof.steps || found->steps_needed > kMostStepsToGoOn) return found;
     proof.steps = found->steps_needed;
     auto longer = prove_steps(numbers, plan, *program, proof);
     if (longer && (longer->fault || longer->repeats)) return longer;

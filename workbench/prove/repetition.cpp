@@ -9,6 +9,7 @@ namespace {
 
 /// Limits of what is kept: diagrams, and numbers in forms.
 constexpr std::uint32_t kMostDiagrams = 10U << 20U;
+constexpr std::uint32_t kMostToGoOn = 1U << 19U;  // more steps take too long
 constexpr std::size_t kMostKept = 64U << 20U;
 
 }  // namespace
@@ -137,13 +138,15 @@ std::uint32_t Repetition::period() const {
             return true;
         };
         while (period < step_ && !repeats()) ++period;
-        all = std::lcm(all, period);
+        // What has not repeated yet may be in its first round.
+        if (period < step_) all = std::lcm(all, period);
     }
     return all;
 }
 
 std::uint32_t Repetition::steps_needed() const {
     if (is_over() || controls_.empty() || counted_.back() == State::kAll) return 0;
+    if (space_.diagrams.size() > kMostToGoOn) return 0;
     const std::uint32_t recent = forms_.back().recent;
     const std::uint64_t begin =
         std::max(std::uint64_t{5} * recent / 2, std::uint64_t{counted_.back()} + recent);

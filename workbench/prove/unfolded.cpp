@@ -9,7 +9,7 @@ using Kind = Part::Kind;
 using etlprove::kAlways;
 using etlprove::kNever;
 
-/// What an operator says where it has no position.
+/// The value of an operator that has no position.
 Diagram nothing(bool dual) {
     return dual ? kAlways : kNever;
 }

@@ -105,8 +105,8 @@ std::string certificate(const source::File& spec, const plan::Plan& plan, const 
         diag::counted(proof.steps, "step"), diag::counted(proof.verdicts, "verdict"));
     if (proof.repeats)
         text += fmt::format(
-            "proved for all lengths: after step {} the class and the definition have the form that "
-            "they had after step {}\n",
+            "proved for all lengths: step {} leaves the class and the definition in the form of "
+            "step {}\n",
             proof.repeats->second, proof.repeats->first);
     else
         text += fmt::format("not proved for longer inputs: {}\n", proof.why_not_longer);

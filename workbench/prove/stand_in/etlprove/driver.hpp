@@ -21,7 +21,7 @@ namespace etlprove {
 
 // ---- output -------------------------------------------------------------------------------------
 
-/// What a word of a state is.
+/// The kinds of words of a state.
 enum class WordKind : uint32_t { control, diagram, counter };
 
 /// Ends the program: it needs another number.

@@ -10,7 +10,7 @@
 
 namespace etlprove {
 
-/// What was used since the last reset().
+/// All uses since the last reset().
 class Uses {
 public:
     static constexpr uint32_t kAll = 0xffffffffu;

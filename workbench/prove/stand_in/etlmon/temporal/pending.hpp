@@ -21,9 +21,8 @@ BasicReading<Value> pending_from_start(Value& best, Value& held,
                                        typename Lattice<Value>::End unseen) noexcept {
     const uint64_t last = high == kWithoutEnd ? low : uint64_t{high} + 1;
     const uint64_t alike = last + n > horizon ? last + n : horizon;
-    return pending_from_start<Sense, Value>(best, held, f, g, n,
-                                            static_cast<uint32_t>(step.up_to(alike)), horizon, low,
-                                            high, unseen);
+    return pending_from_start<Sense, Value>(
+        best, held, f, g, n, static_cast<uint32_t>(step.up_to(alike)), horizon, low, high, unseen);
 }
 
 }  // namespace ETLMON_BUILD
