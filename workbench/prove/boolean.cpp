@@ -10,8 +10,8 @@
 #include <set>
 #include <utility>
 
-#include "prove/cones.hpp"
 #include "prove/program.hpp"
+#include "prove/text/cones.hpp"
 
 namespace etlc::prove {
 namespace {
@@ -236,6 +236,7 @@ diag::Result<Proof> prove_boolean(const plan::Plan& plan, const Request& request
     Proof proof;
     proof.atoms = atoms_of(plan);
     proof.steps = request.steps > 0 ? request.steps : usual_steps(plan);
+    proof.why_not_longer = "a class of truth values is proved step by step";
     const std::vector<Truths> truths = truths_of(plan, proof.atoms);
     try {
         const std::string truths_text = text_of_truths();

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "prove/definition.hpp"
 #include "prove/stand_in/etlprove/truths.hpp"
+#include "prove/symbols/definition.hpp"
 
 namespace etlc::prove {
 

@@ -6,8 +6,8 @@
 
 #include "emit/names.hpp"
 #include "prove/boolean.hpp"
-#include "prove/cones.hpp"
 #include "prove/program.hpp"
+#include "prove/text/cones.hpp"
 
 namespace etlc::prove {
 namespace {
@@ -119,7 +119,7 @@ std::string boolean_main(const plan::Plan& plan, const Request& request,
         "#include \"etlprove/cases.hpp\"\n#define private public\n#include \"class.hpp\"\n"
         "#undef private\n\nusing {0}::Monitor;\nusing {0}::Verdicts;\n\n"
         "static void restart(Monitor& monitor, uint32_t m) {{\n    (void)monitor, (void)m;\n{1}}}\n"
-        "int main() {{\n    static Monitor monitor;\n"
+        "int main() {{\n    etlprove::end_with_etlc();\n    static Monitor monitor;\n"
         "    static_assert(sizeof(Verdicts) == {2}, \"a byte for each monitor\");\n"
         "    etlprove::choices().describe({{{3}}}, {{{4}, {5}, {6}}});\n"
         "    etlprove::CasesOf<Monitor> cases{{{7}, {8}, {10}, restart, {{\n{9}    }}}};\n"

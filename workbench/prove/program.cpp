@@ -12,7 +12,7 @@
 #include <set>
 #include <utility>
 
-#include "prove/members.hpp"
+#include "prove/text/members.hpp"
 
 namespace etlc::prove {
 namespace {
@@ -75,7 +75,7 @@ std::string main_text(const plan::Plan& plan, const Subject& subject,
         "#include \"etlprove/driver.hpp\"\n#include <class.hpp>\n\n"
         "static void restart({0}::Monitor& monitor, uint32_t m) {{\n"
         "    (void)monitor, (void)m;\n{1}}}\n\n"
-        "int main(int count, char** words) {{\n"
+        "int main(int count, char** words) {{\n    etlprove::end_with_etlc();\n"
         "    etlprove::take_numbers(count - 2, words + 2);\n"
         "    etlprove::Class<{0}::Monitor> about{{{2}, {3}, {4}, {{{5}}}, {{{6}}}, restart, "
         "{7},\n        {{{8}}}}};\n"
@@ -115,12 +115,12 @@ Program::~Program() {
 diag::Result<Program> Program::make(const plan::Plan& plan, const Subject& subject,
                                     const std::vector<Atom>& atoms) {
     // A header that was edited may use a counter as only numbers can be used.
-    return make({with_counters(subject.header), subject.header},
-                main_text(plan, subject, atoms), "-Istand_in -Iruntime", {});
+    return make({with_counters(subject.header), subject.header}, main_text(plan, subject, atoms),
+                "-Istand_in -Iruntime", {});
 }
 
-diag::Result<Program> Program::make(const std::vector<std::string>& headers, const std::string& main,
-                                    const std::string& folders,
+diag::Result<Program> Program::make(const std::vector<std::string>& headers,
+                                    const std::string& main, const std::string& folders,
                                     const std::vector<RuntimeFile>& files) {
     std::error_code error;
     std::string pattern = (fs::temp_directory_path(error) / "etlc-prove-XXXXXX").string();

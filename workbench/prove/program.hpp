@@ -13,9 +13,9 @@
 #include "diag/diag.hpp"
 #include "emit/standalone.hpp"
 #include "plan/plan.hpp"
-#include "prove/definition.hpp"
 #include "prove/prove.hpp"
-#include "prove/symbol.hpp"
+#include "prove/symbols/definition.hpp"
+#include "prove/symbols/symbol.hpp"
 
 namespace etlc::prove {
 
@@ -33,10 +33,11 @@ public:
     /// Writes and compiles it.
     static diag::Result<Program> make(const plan::Plan& plan, const Subject& subject,
                                       const std::vector<Atom>& atoms);
-    /// `headers`: the first that compiles is taken; `main`: the text of the program; `folders`: where the compiler looks for headers; `files`: more of them, in
-    /// the folder of those that stand in.
-    static diag::Result<Program> make(const std::vector<std::string>& headers, const std::string& main,
-                                      const std::string& folders,
+    /// `headers`: the first that compiles is taken; `main`: the text of the program; `folders`:
+    /// where the compiler looks for headers; `files`: more of them, in the folder of those that
+    /// stand in.
+    static diag::Result<Program> make(const std::vector<std::string>& headers,
+                                      const std::string& main, const std::string& folders,
                                       const std::vector<RuntimeFile>& files);
     Program(Program&& other) noexcept;
     Program(const Program&) = delete;

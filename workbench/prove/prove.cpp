@@ -9,9 +9,9 @@
 #include <set>
 
 #include "prove/boolean.hpp"
-#include "prove/members.hpp"
 #include "prove/program.hpp"
 #include "prove/repetition.hpp"
+#include "prove/text/members.hpp"
 
 namespace etlc::prove {
 namespace {

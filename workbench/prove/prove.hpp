@@ -13,8 +13,8 @@
 #include "diag/diag.hpp"
 #include "emit/standalone.hpp"
 #include "plan/plan.hpp"
-#include "prove/definition.hpp"
-#include "prove/witness.hpp"
+#include "prove/symbols/definition.hpp"
+#include "prove/symbols/witness.hpp"
 
 namespace etlc::prove {
 

@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "prove/form.hpp"
-#include "prove/image.hpp"
+#include "prove/lengths/form.hpp"
+#include "prove/lengths/image.hpp"
+#include "prove/lengths/unfolded.hpp"
 #include "prove/program.hpp"
 #include "prove/prove.hpp"
-#include "prove/unfolded.hpp"
 
 namespace etlc::prove {
 

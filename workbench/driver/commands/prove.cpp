@@ -71,13 +71,18 @@ std::string options_of(const plan::Plan& plan, const Request& request) {
     return words.empty() ? "none" : fmt::format("{}", fmt::join(words, " "));
 }
 
-std::string restarts_of(const plan::Plan& plan, const prove::Proof& proof) {
-    const auto count = std::count_if(
+std::size_t restarting(const plan::Plan& plan) {
+    return static_cast<std::size_t>(std::count_if(
         plan.monitors.begin(), plan.monitors.end(),
-        [](const plan::Monitor& monitor) { return monitor.restarts != check::Restarts::never; });
+        [](const plan::Monitor& monitor) { return monitor.restarts != check::Restarts::never; }));
+}
+
+std::string restarts_of(const plan::Plan& plan, const prove::Proof& proof) {
+    const std::size_t count = restarting(plan);
     if (count == 0) return "";
     if (!proof.restarts) return "proved for one restart of one monitor\n";
-    if (count == 1) return "proved for all sequences of restarts\n";
+    if (count == 1 || plan.values == check::Values::boolean)
+        return "proved for all sequences of restarts\n";
     const std::string one = "proved for all sequences of restarts of one monitor";
     if (proof.together == 0)
         return one + "\nnot proved: that restarts of several monitors do not disturb each other\n";
@@ -105,9 +110,10 @@ std::string certificate(const source::File& spec, const plan::Plan& plan, const 
         diag::counted(proof.steps, "step"), diag::counted(proof.verdicts, "verdict"));
     if (proof.repeats)
         text += fmt::format(
-            "proved for all lengths: step {} leaves the class and the definition in the form of "
+            "proved for all lengths{}: step {} leaves the class and the definition in the form of "
             "step {}\n",
-            proof.repeats->second, proof.repeats->first);
+            restarting(plan) > 0 ? " without restarts" : "", proof.repeats->second,
+            proof.repeats->first);
     else
         text += fmt::format("not proved for longer inputs: {}\n", proof.why_not_longer);
     const auto lengths = [](const std::vector<std::uint32_t>& windows) {

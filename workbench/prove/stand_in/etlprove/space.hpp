@@ -4,6 +4,10 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#ifdef __linux__
+#include <signal.h>
+#include <sys/prctl.h>
+#endif
 
 #include "etlprove/diagrams.hpp"
 
@@ -17,6 +21,13 @@ constexpr uint32_t kMostNodes = 40u << 20;
 [[noreturn]] inline void stop(int status) {
     fflush(stdout);
     _Exit(status);
+}
+
+/// Ends the program when etlc ends, even if that is killed.
+inline void end_with_etlc() {
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
 }
 
 inline Diagrams& diagrams() {

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "prove/symbol.hpp"
+#include "prove/symbols/symbol.hpp"
 
 namespace etlc::prove {
 

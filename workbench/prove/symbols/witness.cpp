@@ -1,4 +1,4 @@
-#include "prove/witness.hpp"
+#include "prove/symbols/witness.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "prove/code.hpp"
+#include "prove/text/code.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <regex>
 #include <set>
 
-#include "prove/cones.hpp"
+#include "prove/text/cones.hpp"
 
 namespace etlc::prove::code {
 namespace {

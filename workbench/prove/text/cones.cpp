@@ -1,4 +1,4 @@
-#include "prove/cones.hpp"
+#include "prove/text/cones.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <regex>
 #include <utility>
 
-#include "prove/code.hpp"
+#include "prove/text/code.hpp"
 
 namespace etlc::prove {
 namespace {

@@ -1,4 +1,4 @@
-#include "prove/definition.hpp"
+#include "prove/symbols/definition.hpp"
 
 #include <algorithm>
 #include <optional>

@@ -11,7 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "prove/symbol.hpp"
+#include "prove/symbols/symbol.hpp"
 
 namespace etlc::prove {
 

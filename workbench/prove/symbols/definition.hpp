@@ -9,7 +9,7 @@
 
 #include "check/model/model.hpp"
 #include "plan/plan.hpp"
-#include "prove/symbol.hpp"
+#include "prove/symbols/symbol.hpp"
 #include "reference/prefix.hpp"
 
 namespace etlc::prove {

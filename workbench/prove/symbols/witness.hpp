@@ -6,8 +6,8 @@
 #include <set>
 #include <vector>
 
-#include "prove/definition.hpp"
-#include "prove/symbol.hpp"
+#include "prove/symbols/definition.hpp"
+#include "prove/symbols/symbol.hpp"
 
 namespace etlc::prove {
 

@@ -1,4 +1,4 @@
-#include "prove/parts.hpp"
+#include "prove/lengths/parts.hpp"
 
 #include <utility>
 

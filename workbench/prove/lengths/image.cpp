@@ -1,4 +1,4 @@
-#include "prove/image.hpp"
+#include "prove/lengths/image.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "plan/plan.hpp"
-#include "prove/definition.hpp"
-#include "prove/parts.hpp"
+#include "prove/lengths/parts.hpp"
+#include "prove/symbols/definition.hpp"
 
 namespace etlc::prove {
 

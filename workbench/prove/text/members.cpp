@@ -1,4 +1,4 @@
-#include "prove/members.hpp"
+#include "prove/text/members.hpp"
 
 #include <regex>
 

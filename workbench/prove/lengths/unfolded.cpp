@@ -1,4 +1,4 @@
-#include "prove/unfolded.hpp"
+#include "prove/lengths/unfolded.hpp"
 
 #include <algorithm>
 
