@@ -111,7 +111,7 @@ private:
         Operation operation = Operation::none;
         Diagram a = 0, b = 0, result = 0;
     };
-    static constexpr std::uint32_t kResults = 1u << 20;
+    static constexpr std::uint32_t kResults = 1u << 22;
 
     static std::uint32_t hash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         std::uint64_t mixed = (std::uint64_t{a} << 32 | b) * 0x9e3779b97f4a7c15u;
