@@ -1,8 +1,8 @@
 // Binary decision diagrams of monotone functions, for etlc and for the programs that it compiles.
 // Takes: variables, by their place in the order. Gives: min, max and negation of robustness as
 // functions of "this is at least the threshold". Keeps true: equal functions are the same number,
-// since every node exists once (Bryant 1986). Nothing is ever freed; the number of nodes is
-// limited.
+// since every node exists once (Bryant 1986). Nothing is ever freed; the numbers of nodes and
+// of operations are limited.
 #pragma once
 
 #include <cstddef>
@@ -112,6 +112,8 @@ private:
         Diagram a = 0, b = 0, result = 0;
     };
     static constexpr std::uint32_t kResults = 1u << 22;
+    /// So many take some minutes.
+    static constexpr std::uint64_t kMostOperations = std::uint64_t{1} << 31;
 
     static std::uint32_t hash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         std::uint64_t mixed = (std::uint64_t{a} << 32 | b) * 0x9e3779b97f4a7c15u;
@@ -146,6 +148,7 @@ private:
         const std::uint32_t at = hash(a, b, static_cast<std::uint32_t>(operation)) & (kResults - 1);
         const Result known = results_[at];
         if (known.operation == operation && known.a == a && known.b == b) return known.result;
+        if (++operations_ > kMostOperations) exhausted_();
         const Diagram result = find();
         results_[at] = {operation, a, b, result};
         return result;
@@ -200,6 +203,7 @@ private:
 
     std::uint32_t most_;
     std::uint32_t numbers_ = 0;
+    std::uint64_t operations_ = 0;  ///< whose result was not remembered
     void (*exhausted_)();
     std::vector<Node> nodes_;
     std::vector<Diagram> slots_;  ///< 0: free
