@@ -111,7 +111,7 @@ private:
         Operation operation = Operation::none;
         Diagram a = 0, b = 0, result = 0;
     };
-    static constexpr std::uint32_t kResults = 1u << 22;
+    static constexpr std::uint32_t kMostResults = 1u << 22;
     /// So many take some minutes.
     static constexpr std::uint64_t kMostOperations = std::uint64_t{1} << 31;
 
@@ -145,7 +145,8 @@ private:
 
     template <class Find>
     Diagram remembered(Operation operation, Diagram a, Diagram b, const Find& find) {
-        const std::uint32_t at = hash(a, b, static_cast<std::uint32_t>(operation)) & (kResults - 1);
+        const std::uint32_t at = hash(a, b, static_cast<std::uint32_t>(operation)) &
+                                 (static_cast<std::uint32_t>(results_.size()) - 1);
         const Result known = results_[at];
         if (known.operation == operation && known.a == a && known.b == b) return known.result;
         if (++operations_ > kMostOperations) exhausted_();
@@ -199,6 +200,8 @@ private:
             slots[at] = n;
         }
         slots_ = std::move(slots);
+        if (results_.size() < slots_.size() && results_.size() < kMostResults)
+            results_.assign(slots_.size(), {});
     }
 
     std::uint32_t most_;
@@ -207,7 +210,7 @@ private:
     void (*exhausted_)();
     std::vector<Node> nodes_;
     std::vector<Diagram> slots_;  ///< 0: free
-    std::vector<Result> results_ = std::vector<Result>(kResults);
+    std::vector<Result> results_;
 };
 
 /// The numbers of a proof. A number is at least the threshold if some number that is not greater
