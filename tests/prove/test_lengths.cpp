@@ -105,4 +105,17 @@ TEST(Lengths, LateFaultsAreNotProved) {
     }
 }
 
+/// The machine once gave verdicts about runs with restarts, which it had not taken.
+TEST(Lengths, RestartsComeAfterTheMachine) {
+    const auto spec = compiled(
+        "spec restarts;\ninput a : bool;\nrestartable monitor one = F[2, 3] a;\n"
+        "sliding monitor other = F[0, 9] a;\n",
+        check::Values::robustness);
+    ASSERT_TRUE(spec);
+    const auto proof = proof_of(spec->plan, 16);
+    ASSERT_TRUE(proof && !proof->fault);
+    EXPECT_FALSE(proof->repeats);
+    EXPECT_TRUE(proof->restarts);
+}
+
 }  // namespace
