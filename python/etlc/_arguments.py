@@ -16,10 +16,13 @@ def choice(name: str, value: str, choices: tuple[str, ...]) -> int:
     return choices.index(value)
 
 
-def recorder_text(given: str | tuple[int | str, int | str, int] | None) -> bytes | None:
-    if given is None:
-        return None
-    return encoded("recorder", given if isinstance(given, str) else ",".join(map(str, given)))
+def recorder_text(given: Any) -> bytes | None:
+    if given is None or isinstance(given, str):
+        return None if given is None else encoded("recorder", given)
+    try:
+        return encoded("recorder", ",".join(map(str, given)))
+    except TypeError:
+        raise InputError(f"recorder is {given!r}, expected (before, after, alarms)") from None
 
 
 def is_whole(value: Any) -> bool:
@@ -37,13 +40,11 @@ def flag(name: str, value: Any) -> bool:
     return value
 
 
-def size(name: str, value: Any) -> int:
-    if not is_whole(value) or not 0 <= value < 1 << 63:
-        raise InputError(f"{name} is {value!r}, expected a whole number from 0 on")
+def size(name: str, value: Any, least: int = 0, most: int = (1 << 63) - 1) -> int:
+    if not is_whole(value) or not least <= value <= most:
+        raise InputError(f"{name} is {value!r}, expected a whole number from {least} on")
     return int(value)
 
 
 def count(name: str, value: Any) -> int:
-    if size(name, value) == 0 or value > 0xFFFFFFFF:
-        raise InputError(f"{name} is {value!r}, expected a whole number from 1 on")
-    return int(value)
+    return size(name, value, 1, 0xFFFFFFFF)

@@ -9,6 +9,8 @@ import os
 from pathlib import Path
 from typing import Any, Callable, Iterable, Mapping, ParamSpec, TypeVar, Union
 
+import numpy as np
+
 from ._arguments import flag, is_mapping
 from ._library import encoded, encoded_path
 from ._options import OPTIONS, Option
@@ -22,6 +24,8 @@ _RENAMED = {
     "W": "warnings_are_errors", "set": "settings", "map": "names", "episodes": "groups",
     "encoder-cmd": "encoder_command", "format": "form",
 }  # fmt: skip
+#: The values of options that are numbers.
+_NUMBERS = ("N", "SECONDS", "MB")
 #: Options of all commands that the package itself sets.
 _OWN = ("--diagnostics",)
 
@@ -71,7 +75,10 @@ def words_of(command: str, given: Mapping[str, Any]) -> list[bytes]:
     ordered = sorted(options.items(), key=lambda one: one[1].manner != "positional")
     for keyword, option in ordered:
         value = given.get(keyword)
-        if value is not None and value is not False:
+        is_off = value is False and (
+            option.manner in ("flag", "word", "any") or option.name == "-W"
+        )
+        if value is not None and not is_off:
             words += _words(keyword, option, value)
     is_heard = any(option.name == "--diagnostics" for option in OPTIONS[command])
     return [*words, b"--diagnostics", b"json"] if is_heard else words
@@ -81,9 +88,9 @@ def _words(keyword: str, option: Option, value: Any) -> list[bytes]:
     name = option.name.encode()
     if option.manner == "flag" or option.name == "-W":
         return [b"-Werror" if flag(keyword, value) and name == b"-W" else name]
-    if value is True:
+    if isinstance(value, bool):
         if option.manner not in ("word", "any"):
-            raise InputError(f"{keyword} is True, expected {option.value or 'a word'}")
+            raise InputError(f"{keyword} is {value}, expected {option.value or 'a word'}")
         return [name]
     if "=" in option.value and not isinstance(value, str):
         return [
@@ -92,9 +99,15 @@ def _words(keyword: str, option: Option, value: Any) -> list[bytes]:
     if option.manner == "word":
         return [name + b"=" + encoded(keyword, value)]
     if option.manner in ("positional", "several", "any"):
-        values = [encoded_path(keyword, one) for one in listed(value)]
+        values = [_file_word(keyword, one) for one in _listed(keyword, option, value)]
         return values if option.manner == "positional" else [name, *values]
-    return [name, encoded_path(keyword, _joined(option, value))]
+    return [name, encoded_path(keyword, _joined(keyword, option, value))]
+
+
+def _file_word(keyword: str, value: Any) -> bytes:
+    """Encodes one of several words, which must not be read as the name of an option."""
+    word = encoded_path(keyword, value)
+    return b"./" + word if word.startswith(b"-") else word
 
 
 def _pairs(keyword: str, value: Any) -> Iterable[tuple[object, object]]:
@@ -104,7 +117,7 @@ def _pairs(keyword: str, value: Any) -> Iterable[tuple[object, object]]:
     return pairs
 
 
-def _joined(option: Option, value: Any) -> str | bytes | os.PathLike[str]:
+def _joined(keyword: str, option: Option, value: Any) -> str | bytes | os.PathLike[str]:
     """Returns a value as one word: (40, 20, 4) is "40,20,4", and a shard (1, 3) is "1/3"."""
     if is_path(value):
         path: FilePath = value
@@ -112,18 +125,33 @@ def _joined(option: Option, value: Any) -> str | bytes | os.PathLike[str]:
     between = next((sign for sign in "/," if sign in option.value), None)
     if between is not None and hasattr(value, "__iter__"):
         return between.join(map(str, value))
-    return str(value)
+    if option.value in _NUMBERS and np.ndim(value) == 0 and np.asarray(value).dtype.kind in "iuf":
+        return str(value)
+    raise InputError(f"{keyword} is {value!r}, expected {option.value or 'a word'}")
+
+
+def path_of(keyword: str, value: Any) -> Path:
+    """Returns a path of the caller."""
+    return Path(os.fsdecode(encoded_path(keyword, value)))
 
 
 def output_of(spec: FilePath, output: FilePath | None, ending: str) -> Path:
     """Returns where a command writes: by default to a file beside the spec."""
-    return Path(spec).with_suffix(ending) if output is None else Path(output)
+    if output is not None:
+        return path_of("output", output)
+    return path_of("spec", spec).with_suffix(ending)
 
 
-def listed(paths: FilePaths) -> list[FilePath]:
+def _listed(keyword: str, option: Option, value: Any) -> list[FilePath]:
     """Returns one path, or several, as a list."""
-    several: Any = paths
-    return [several] if is_path(paths) else list(several)
+    if is_path(value):
+        return [value]
+    if is_mapping(value) or not hasattr(value, "__iter__"):
+        raise InputError(f"{keyword} is {value!r}, expected {option.value}")
+    several: list[FilePath] = list(value)
+    if not several:
+        raise InputError(f"{keyword} is empty, expected {option.value}")
+    return several
 
 
 def is_path(value: Any) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import importlib
 import os
+import re
 from ctypes import POINTER, c_char_p, c_double, c_float, c_int32, c_int64, c_size_t, c_uint32
 from ctypes import c_uint64, c_void_p
 from pathlib import Path
@@ -12,6 +13,7 @@ from typing import Any, Callable
 
 from .errors import BusyError, ClosedError, Error, InputError, NotKeptError, SpecError
 from .errors import UndecidedError, diagnostics_of
+from .names import is_text
 
 API_VERSION = 4
 
@@ -198,6 +200,10 @@ _EXCEPTIONS: dict[int, type[Error]] = {
 }  # fmt: skip
 
 
+#: What messages call options and functions in C: options.history, etlc_finish_batch().
+_C_WORDS = re.compile(r"\boptions\.(?=\w)|\betlc_(finish|reset)(?:_batch)?(?=\(\))")
+
+
 def raise_for(status: int) -> None:
     """Raises the exception for the status of this thread's last call."""
     message = decoded(library.etlc_message())
@@ -205,6 +211,7 @@ def raise_for(status: int) -> None:
         raise ClosedError("the monitor is closed")
     if status == 1:
         raise SpecError(message, diagnostics_of(library.etlc_message_json()))
+    message = _C_WORDS.sub(r"\1", message)
     if status == 13:
         raise MemoryError(message)
     raise _EXCEPTIONS.get(status, Error)(message)
@@ -212,12 +219,17 @@ def raise_for(status: int) -> None:
 
 def encoded(what: str, text: str) -> bytes:
     """Encodes a text for C. Refuses a NUL, which would cut it off."""
+    if not is_text(text):
+        raise InputError(f"{what} is {text!r}, expected a str")
     return _checked(what, text, str.encode)
 
 
 def encoded_path(what: str, path: str | bytes | os.PathLike[str]) -> bytes:
     """Encodes the name of a file, which may contain any bytes of the file system."""
-    return _checked(what, path, os.fsencode)
+    raw = _checked(what, path, os.fsencode)
+    if not raw:
+        raise InputError(f"{what} is {path!r}, expected a path")
+    return raw
 
 
 def _checked(what: str, text: Any, encode: Callable[[Any], bytes]) -> bytes:

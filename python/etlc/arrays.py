@@ -12,6 +12,7 @@ from ._ambiguous import Ambiguous
 from ._library import ALARM, DECIDED, FINAL, FULFILLED, SATISFIED, VIOLATED
 from ._types import Array, untyped
 from .errors import InputError
+from .names import is_text, no_such
 from .verdicts import contains
 
 VERDICT_DTYPE = np.dtype(
@@ -221,8 +222,8 @@ class Tables(Ambiguous, Generic[Arrays]):
         self.table = table
 
     def __getitem__(self, name: str) -> Arrays:
-        if name not in self.monitors:
-            raise InputError(f"there is no monitor {name!r}, only {', '.join(self.monitors)}")
+        if not is_text(name) or name not in self.monitors:
+            raise InputError(no_such("monitor", name, self.monitors))
         return self._arrays(name, self.table[..., self.monitors.index(name)])
 
     def __getattr__(self, name: str) -> Arrays:

@@ -4,22 +4,23 @@
 from __future__ import annotations
 
 from ctypes import byref, c_uint64
-from typing import TYPE_CHECKING, Any, Iterable, Mapping, Union
+from typing import TYPE_CHECKING, Any, Iterable, Mapping, NoReturn, Union
 
 import numpy as np
 
 from ._arguments import is_whole
 from ._library import call, library
-from ._types import Array, untyped
+from ._types import Array
 from .description import Described, Measurements
 from .errors import InputError
+from .conversion import chosen_of
 from .grids import Grids, joined, warn_of_absent
 from .arrays import VERDICT_DTYPE, BatchEpisode, BatchVerdicts
 
 if TYPE_CHECKING:
     from .monitor import Monitor
 
-#: Some environments: a bool for each, or the numbers of some; None: all.
+#: Some environments: a bool for each, or the numbers of some, each once; None: all.
 Which = Union[None, int, Iterable[int], Array]
 
 _MEASURED = np.dtype([("distance", "f4"), ("threshold", "f4"), ("nearest", "u4")])
@@ -52,8 +53,8 @@ class Batch(Described):
     def __len__(self) -> int:
         return self._size
 
-    def step(self, /, **samples: Any) -> BatchVerdicts:
-        """Takes one step in all environments.
+    def step(self, /, *unnamed: NoReturn, **samples: Any) -> BatchVerdicts:
+        """Takes one step in all environments. The samples are arguments, as in `Monitor.step`.
 
         Args:
             **samples: by the name of the input: an array of shape (n,) for a scalar or bool, (n, D)
@@ -69,6 +70,8 @@ class Batch(Described):
             InputError: the spec does not have this name, shape or type; no step was taken.
             ClosedError: the batch is closed, or `finish` was called for some environment.
         """
+        if unnamed:
+            raise self._without_names()
         grids = Grids(self, samples, (self._size,))
         table = np.empty((self._size, len(self.monitors)), VERDICT_DTYPE)
         self._run(grids, 1, table)
@@ -134,7 +137,11 @@ class Batch(Described):
         """Begins a new episode in some environments: adaptive thresholds keep their values.
 
         Args:
-            which: a bool for each environment, or the numbers of some; None: all of them.
+            which: a bool for each environment, or the numbers of some; None: all of them. Integers
+                are always numbers of environments; what may be a mask of integers is refused.
+
+        Raises:
+            InputError: there is no such environment, or a number is repeated.
         """
         call(library.etlc_reset_batch, self._session, *self._chosen(which)[1:])
 
@@ -222,28 +229,8 @@ class Batch(Described):
         """Returns a byte for each environment (None: all), its place and size."""
         if which is None:
             return None, None, self._size
-        array: Array = np.asarray(_listed(which))
-        if array.dtype == np.bool_:
-            if array.shape != (self._size,):
-                raise InputError(
-                    f"which has {array.size} bools of the shape {array.shape}, expected one for "
-                    f"each of the {self._size} environments"
-                )
-            chosen = np.ascontiguousarray(array).view("u1")
-        else:
-            chosen = np.zeros(self._size, "u1")
-            for one in array.ravel().tolist():
-                chosen[self._number(one)] = 1
+        chosen = chosen_of(which, self._size)
         return chosen, chosen.ctypes.data, self._size
-
-
-def _listed(which: Any) -> Any:
-    if isinstance(which, np.ndarray):
-        return untyped.asarray(which)
-    try:
-        return list(which)
-    except TypeError:
-        return [which]
 
 
 def _reopened(opened_with: dict[str, Any], environments: int, state: bytes) -> Batch:

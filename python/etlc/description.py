@@ -15,7 +15,7 @@ from ._ambiguous import Ambiguous
 from ._library import BOOL, F16, F32, I8, call, decoded, library
 from ._types import Array
 from .errors import Error, InputError
-from .names import Names, no_such
+from .names import Names, is_text, no_such
 
 _DTYPES: dict[int, np.dtype[Any]] = {
     F32: np.dtype("f4"), BOOL: np.dtype("u1"), F16: np.dtype("f2"), I8: np.dtype("i1")
@@ -182,8 +182,17 @@ class Described(Names):
         except (Error, AttributeError, TypeError):  # in use, or the interpreter is exiting
             pass
 
+    def _without_names(self) -> TypeError:
+        """Returns the error of a step whose samples were not given by name."""
+        names = [f"{name}=..." for name in self.inputs]
+        named = ", ".join(names if len(names) <= 3 else [*names[:3], "..."])
+        return TypeError(
+            f"step takes samples by the name of their input: step({named}), or of a dict "
+            "step(**samples)"
+        )
+
     def _at(self, places: Mapping[str, int], kind: str, name: str) -> int:
-        if name not in places:
+        if not is_text(name) or name not in places:
             raise InputError(no_such(kind, name, tuple(places)))
         return places[name]
 

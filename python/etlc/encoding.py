@@ -13,7 +13,7 @@ from typing import Any, Mapping
 import numpy as np
 
 from ._arguments import is_mapping
-from ._keywords import FilePath, words_of
+from ._keywords import FilePath, path_of, words_of
 from ._models import Encode, identity_of
 from ._process import Ran, concluded, run, started
 from ._serving import COMMAND, Server, write_frame
@@ -179,7 +179,7 @@ class Encoder:
 def encoders_of(spec: FilePath) -> dict[str, Path]:
     """Returns the paths of the files that stand for the encoders of a spec, by name."""
     text = run(words_of("compile", {"spec": spec, "emit": "ast"}), quiet=True).report
-    return {name: Path(spec).parent / file for name, file in _ENCODER.findall(text)}
+    return {name: path_of("spec", spec).parent / file for name, file in _ENCODER.findall(text)}
 
 
 def expect_identity(file: Path, identity: str, may_write: bool) -> bool:

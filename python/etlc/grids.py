@@ -34,10 +34,11 @@ class Grids:
             value = given.get(one.name)
             if value is None:
                 continue
-            rows = conversion.as_rows(one.name, value, spec._elements_of[at], one.shape, *leads)
+            what = f"input {one.name!r}"
+            rows = conversion.as_rows(what, value, spec._elements_of[at], one.shape, *leads)
             if lead is not None and rows.lead != lead:
                 raise InputError(
-                    f"input {one.name!r} has {_counts(rows.lead)}, others have {_counts(lead)}"
+                    f"{what} has {_counts(rows.lead)}, others have {_counts(lead)}"
                 )
             lead = rows.lead
             grid = self._columns[at]
@@ -82,7 +83,7 @@ class Grids:
 
 
 def joined(arrays: Mapping[str, Any] | None, more: dict[str, Any]) -> dict[str, Any]:
-    """Joins the two ways of giving samples."""
+    """Joins the two ways of giving samples. Arguments replace those of the dict."""
     if arrays is not None and not is_mapping(arrays):
         raise InputError(f"arrays is of {type(arrays).__name__}, expected a dict by input")
     return {**(arrays or {}), **more}

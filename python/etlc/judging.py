@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 from typing import Any, Iterable, Mapping
 
-from ._keywords import FilePath, FilePaths, checks_names, words_of
+from ._keywords import FilePath, FilePaths, checks_names, path_of, words_of
 from ._process import run
 from .results import Evaluation, Written
 
@@ -150,7 +150,7 @@ def report(
         InputError: an argument is invalid.
     """
     ran = run(words_of("report", locals()))
-    return Written(Path(output), ran.report, ran.diagnostics)
+    return Written(path_of("output", output), ran.report, ran.diagnostics)
 
 
 def _judged(command: str, given: dict[str, Any]) -> Evaluation:

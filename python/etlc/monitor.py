@@ -12,7 +12,7 @@ from typing import Any, Mapping
 import numpy as np
 
 from . import _library
-from ._arguments import choice, count, flag, recorder_text, size
+from ._arguments import choice, count, flag, is_mapping, recorder_text, size
 from ._library import call, encoded, encoded_path, library
 from .arrays import VERDICT_DTYPE, BatchEpisode, Episode
 from .batch import Batch
@@ -81,6 +81,10 @@ class Monitor(Stepping, Keeping, Referring):
                 raise InputError(
                     "spec is the path of a spec, and this is the text of one: did you mean text=?"
                 )
+        if spec is None and text is None:
+            raise InputError("there is no spec: pass its path, or text=")
+        if settings is not None and not is_mapping(settings):
+            raise InputError(f"settings is {settings!r}, expected a dict of constants")
         words = [
             encoded("a setting", f"{name}={value}") for name, value in (settings or {}).items()
         ]
@@ -95,7 +99,7 @@ class Monitor(Stepping, Keeping, Referring):
             setting_count=len(words),
             values=choice("values", values, ("robustness", "boolean")),
             targets_as=choice("targets_as", targets_as, ("f32", "f16", "i8")),
-            lets=bool(lets),
+            lets=flag("lets", lets),
             max_state=size("max_state", max_state),
             max_code=size("max_code", max_code),
             max_work=size("max_work", max_work),

@@ -28,6 +28,11 @@ def names_of(monitors: tuple[str, ...]) -> Names:
     return names
 
 
+def is_text(value: object) -> bool:
+    """Whether it can be a name; the caller may have passed anything."""
+    return isinstance(value, str)
+
+
 def no_such(kind: str, name: object, names: tuple[str, ...]) -> str:
     """Says that the spec has no such name, and which is near it."""
     near = difflib.get_close_matches(str(name), names, 1)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from . import conversion
+from ._arguments import is_whole
 from ._library import call, encoded, library
 from .description import REFERENCE_FRAMES, Described
 from .errors import InputError
@@ -36,8 +37,8 @@ class Referring(Described):
             "embedding", embedding, np.dtype("f4"), (np.size(embedding),)
         )  # fmt: skip
         values = np.ascontiguousarray(array)
-        if not 0 <= frame < REFERENCE_FRAMES:
-            raise InputError(f"frame is {frame}, expected 0 to {REFERENCE_FRAMES - 1}")
+        if not is_whole(frame) or not 0 <= frame < REFERENCE_FRAMES:
+            raise InputError(f"frame is {frame!r}, expected 0 to {REFERENCE_FRAMES - 1}")
         name = None if encoder is None else encoded("encoder", encoder)
         difference = c_double()
         call(

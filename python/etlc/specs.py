@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Mapping
 
-from ._keywords import FilePath, checks_names, words_of
+from ._keywords import FilePath, checks_names, path_of, words_of
 from ._process import run
 from .results import Checked, Written
 
@@ -104,4 +103,4 @@ def compile(
         InputError: an argument is invalid.
     """
     ran = run(words_of("compile", locals()))
-    return Written(Path(output), ran.report, ran.diagnostics)
+    return Written(path_of("output", output), ran.report, ran.diagnostics)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ctypes import byref, c_size_t, c_uint64
-from typing import Any, Callable
+from typing import Any, Callable, NoReturn
 
 import numpy as np
 
@@ -47,6 +47,7 @@ class Stepping(Described):
         self, one: Input, elements: Array, sample: Any, place: int
     ) -> Callable[[Any], None]:
         name, missing = one.name, self._missing
+        what = f"input {name!r}"
         is_bool = one.dtype == np.bool_
         as_element = conversion.as_bool if is_bool else conversion.as_number
         fast = (bool, np.bool_) if is_bool else (float, np.float32, np.float64)
@@ -59,7 +60,7 @@ class Stepping(Described):
                 self._mark_missing(name, sample)
                 return
             else:
-                view[0] = as_element(name, value)
+                view[0] = as_element(what, value)
             if name in missing:
                 missing.discard(name)
                 sample.data = place
@@ -70,7 +71,7 @@ class Stepping(Described):
         self, one: Input, elements: Array, sample: Any, place: int
     ) -> Callable[[Any], None]:
         name, missing = one.name, self._missing
-        shape, dtype = one.shape, elements.dtype
+        what, shape, dtype = f"input {name!r}", one.shape, elements.dtype
         view: Any = memoryview(elements)  # type: ignore[arg-type]
 
         def put(value: Any) -> None:
@@ -83,7 +84,7 @@ class Stepping(Described):
                 self._mark_missing(name, sample)
                 return
             else:
-                elements[:] = conversion.as_elements(name, value, dtype, shape)
+                elements[:] = conversion.as_elements(what, value, dtype, shape)
             if name in missing:
                 missing.discard(name)
                 sample.data = place
@@ -94,8 +95,8 @@ class Stepping(Described):
         self._missing.add(name)
         sample.data = None
 
-    def step(self, /, **samples: Any) -> Verdicts:
-        """Takes one step.
+    def step(self, /, *unnamed: NoReturn, **samples: Any) -> Verdicts:
+        """Takes one step. The samples are arguments: `step(**samples)` takes a dict.
 
         Args:
             **samples: by the name of the input: a number for a scalar, a bool, or an array of shape
@@ -110,6 +111,8 @@ class Stepping(Described):
             InputError: the spec does not have this name, shape or type; no step was taken.
             ClosedError: the monitor is closed, or `finish` was called.
         """
+        if unnamed:
+            raise self._without_names()
         put, name = self._put, ""
         try:
             for name, value in samples.items():

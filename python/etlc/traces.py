@@ -10,7 +10,7 @@ from typing import Mapping
 
 import numpy as np
 
-from ._keywords import FilePath, checks_names, words_of
+from ._keywords import FilePath, checks_names, path_of, words_of
 from ._library import DECIDED, FINAL, SATISFIED, VIOLATED
 from ._process import run as run_command
 from ._types import Array
@@ -69,7 +69,7 @@ def run(
     """
     given = locals()
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "verdicts.csv" if output is None else Path(output)
+        path = Path(folder) / "verdicts.csv" if output is None else path_of("output", output)
         ran = run_command(words_of("run", {**given, "output": path, "summary": True}))
         with open(path, encoding="utf-8", newline="") as file:
             rows = csv.reader(file)
@@ -145,7 +145,7 @@ def explain(
     ran = run_command(words_of("explain", {**given, "form": "json"}))
     text = run_command(words_of("explain", given), quiet=True).report
     if output is not None:
-        Path(output).write_text(text, encoding="utf-8")
+        path_of("output", output).write_text(text, encoding="utf-8")
     return Explanation(text, json.loads(ran.report))
 
 
@@ -190,5 +190,5 @@ def incident(
         file = path if isinstance(data, bytes) else data
         text = run_command(words_of("incident", {**given, "file": file})).report
     if output is not None:
-        Path(output).write_text(text, encoding="utf-8")
+        path_of("output", output).write_text(text, encoding="utf-8")
     return text

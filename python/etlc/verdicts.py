@@ -11,7 +11,7 @@ from . import _frames, _html
 from ._ambiguous import Ambiguous
 from ._library import ALARM, DECIDED, FINAL, FULFILLED, SATISFIED, VIOLATED
 from .errors import AmbiguousError, InputError, NotKeptError
-from .names import Names, names_of, no_such
+from .names import Names, is_text, names_of, no_such
 
 _VERDICT = Struct("=3fI")
 _HEAD = ("monitor", "status", "robustness", "lower", "upper")
@@ -163,7 +163,7 @@ class Verdicts(Ambiguous):
         self._said = said
 
     def __getitem__(self, name: str) -> Verdict:
-        at = self._monitor._offsets.get(name)
+        at = self._monitor._offsets.get(name) if is_text(name) else None
         if at is None:
             raise InputError(no_such("monitor", name, self._monitor.monitors))
         return Verdict(self._monitor, self._said, name, self._raw, at)

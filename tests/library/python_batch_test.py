@@ -319,6 +319,16 @@ class Copies(unittest.TestCase):
                 pickle.loads(kept)
 
 
+class Tensor:
+    """Stands for a tensor in the memory of this process."""
+
+    def __init__(self, array):
+        self._array = array
+
+    def __array__(self, dtype=None):
+        return self._array if dtype is None else self._array.astype(dtype)
+
+
 class OnDevice:
     """Stands for a tensor of a GPU."""
 
@@ -374,22 +384,85 @@ class Refusing(unittest.TestCase):
         with self.assertRaisesRegex(etlc.InputError, "threads is 9999, expected at most 1024"):
             etlc.Monitor(text=SPEC, threads=9999).batch(4).step(**samples(4))
 
+    def chosen(self, which, environments=4):
+        """Returns the environments that `reset` takes `which` for; restart and finish take them
+        too."""
+        given = which if callable(which) else lambda: which
+        batch = etlc.Monitor(text=SPEC).batch(environments)
+        batch.step(**samples(environments))
+        batch.restart("visits", given())
+        found = np.flatnonzero(copy.copy(batch).finish(given()).visits.decided).tolist()
+        batch.reset(given())
+        self.assertEqual(np.flatnonzero(batch.steps == 0).tolist(), found)
+        return found
+
     def test_which_environments(self):
+        mask = np.array([False, True, False, True])
+        for which, found in (
+            (mask, [1, 3]), (mask.tolist(), [1, 3]), (list(mask), [1, 3]), (Tensor(mask), [1, 3]),
+            (np.repeat(mask, 2)[::2], [1, 3]), ([1, 3], [1, 3]), ((3, 1), [1, 3]), ({1, 3}, [1, 3]),
+            (range(1, 3), [1, 2]), (lambda: iter([1, 3]), [1, 3]),
+            (Tensor(np.array([3, 1])), [1, 3]),
+            (np.array([1, 3], "u1"), [1, 3]), (np.array([1, 3], ">i8"), [1, 3]),
+            (np.flatnonzero(mask), [1, 3]), (np.argwhere(mask), [1, 3]),
+            (np.nonzero(mask), [1, 3]), (Tensor(np.argwhere(mask)), [1, 3]),
+            (np.arange(4), [0, 1, 2, 3]), ([2, 3, 0, 1], [0, 1, 2, 3]), (None, [0, 1, 2, 3]),
+            ([], []), (np.array([], int), []), (Tensor(np.array([], "f4")), []), (2, [2]),
+            (np.int64(2), [2]), (np.array(2), [2]),
+        ):  # fmt: skip
+            self.assertEqual(self.chosen(which), found, which)
+        for which in ([1], [0], np.array([True, False]), 1, None):  # two environments
+            self.chosen(which, 2)
+        self.assertEqual(self.chosen(0, 1), [0])
+        self.assertEqual(self.chosen(np.array([False]), 1), [])
+
+    def test_what_may_be_a_mask_or_numbers(self):
+        for mask in np.ndindex(2, 2, 2, 2):
+            for which in (np.array(mask), np.array(mask, "u1"), list(mask), Tensor(np.array(mask)),
+                          np.array(mask)[:, np.newaxis]):  # fmt: skip
+                with self.assertRaisesRegex(etlc.InputError, r"more than once: .* pass a mask as "):
+                    self.chosen(which)
+        for environments, which in (
+            (2, [0, 1]), (2, np.array([1, 0])), (1, [0]), (1, np.array([0], "u1")),
+            (2, Tensor(np.array([0, 1]))), (2, np.array([[0], [1]])),
+        ):  # fmt: skip
+            with self.assertRaisesRegex(etlc.InputError, "may be the numbers of all .* or a mask"):
+                self.chosen(which, environments)
+        for which in ([0, 0], [1, 1]):
+            with self.assertRaisesRegex(etlc.InputError, "more than once"):
+                self.chosen(which, 2)
+
+    def test_environments_that_are_none(self):
+        mask = np.array([True, False, True, False])
         for which, words in (
-            ([True, False], "2 bools .*, expected one for each of the 4"),
+            ([True, False], r"shape \(2,\), expected a bool for each .*: the shape \(4,\)"),
+            (mask[:, np.newaxis], r"shape \(4, 1\), expected a bool for each"),
+            (np.array([], bool), "expected a bool for each"), (True, "which is True, expected a b"),
             ([4], "no environment 4, only 0 to 3"), ([-1], "no environment -1"), (4, "only 0 to 3"),
-            ([0.5], "expected a whole number"), ("01", "expected a whole number"),
+            (np.array([0, 255], "u1"), "no environment 255"), (np.array([2**63], "u8"), "only 0"),
+            ([True, 2], "or the numbers of some"), ([0.5], "float64 .* or the numbers of some"),
+            (mask.astype("f4"), "float32 .* or the numbers of some"), (1.0, "which is 1.0, exp"),
+            ("01", "which is of str"), (b"\0\1", "which is of bytes"), ({0: True}, "is of dict"),
+            (np.ma.array(mask, mask=mask), "which is of MaskedArray"), ([None, 1], "of object"),
+            (mask.astype("O"), "of object"), ([2**70], "of object"), (object(), "which is <object"),
+            (np.nonzero(mask[:, np.newaxis]), r"shape \(2, 2\)"), ([[1], [2]], r"shape \(2, 1\)"),
+            ((np.array([1]), np.array([0])), r"shape \(2, 1\)"), ([[1, 2]], r"shape \(1, 2\)"),
+            (OnDevice(), r"which is on the device cuda:0, .* pass x.detach\(\).cpu\(\).numpy\(\)"),
         ):  # fmt: skip
             with self.assertRaisesRegex(etlc.InputError, words):
                 self.batch.reset(which)
+            with self.assertRaisesRegex(etlc.InputError, words):
+                self.batch.restart("visits", which)
+            with self.assertRaisesRegex(etlc.InputError, words):
+                self.batch.finish(which)
         self.batch.step(**samples(4))
-        self.batch.reset([])
-        self.batch.reset(1)
-        self.assertEqual(self.batch.steps.tolist(), [1, 0, 1, 1])
+        self.assertEqual(self.batch.steps.tolist(), [1] * 4)
         with self.assertRaisesRegex(etlc.InputError, "monitor 'calm' does not restart"):
             self.batch.restart("calm")
-        with self.assertRaisesRegex(etlc.InputError, "no environment 4"):
-            self.batch.monitor(4)
+        for one, words in ((4, "no environment 4"), (True, "is True"), ([1], r"is \[1\]"),
+                           (1.0, "is 1.0"), (-1, "no environment -1")):  # fmt: skip
+            with self.assertRaisesRegex(etlc.InputError, words):
+                self.batch.monitor(one)
 
     def test_no_steps(self):
         self.assertEqual(self.batch.run(samples(4, 0)).table.shape, (4, 0, 3))

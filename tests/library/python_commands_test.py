@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 import etlc
-from etlc._keywords import keyword_of
+from etlc._keywords import keyword_of, words_of
 from etlc._options import OPTIONS
 
 #: Commands that serve a program, and have no function.
@@ -170,11 +170,33 @@ class Table(unittest.TestCase):
             (lambda: etlc.fit("a", "b", settings=[1]), r"settings is \[1\], expected a dict"),
             (lambda: etlc.fit("a", "b", jobs=True), "jobs is True, expected N"),
             (lambda: etlc.fit("a", "b", jobs=0), "--jobs: found '0', expected"),
+            (lambda: etlc.fit("a", "b", jobs=False), "jobs is False, expected N"),
+            (lambda: etlc.fit("a", "b", jobs=[1]), r"jobs is \[1\], expected N"),
+            (lambda: etlc.fit("a", 3), "data is 3, expected FILE..."),
+            (lambda: etlc.fit("a", []), "data is empty, expected FILE..."),
+            (lambda: etlc.fit("a", {"z": np.zeros(3)}), "data is {.*, expected FILE..."),
+            (lambda: etlc.fit("a", ["b", None]), "data is None: expected str, bytes or os.PathL"),
+            (lambda: etlc.fit("a", ""), "data is '', expected a path"),
+            (lambda: etlc.fit("a", "b", labels=[]), "labels is empty, expected FILE..."),
+            (lambda: etlc.fit("a", "b", groups=["g"]), r"groups is \['g'\], expected PATTERN"),
+            (lambda: etlc.fit("a", "b", output=3), "output is 3: expected str, bytes or os.Path"),
+            (lambda: etlc.fit(3, "b"), "spec is 3: expected str, bytes or os.PathLike"),
+            (lambda: etlc.run("a", {"x": [1]}), "trace is {.*, expected FILE"),
+            (lambda: etlc.explain("a", "b", monitor=["m"]), r"monitor is \['m'\], expected NAME"),
+            (lambda: etlc.explain("a", "b", step=np.arange(2)), r"step is array.*, expected N"),
+            (lambda: etlc.suggest("a", "b", 3), "suggest is 3"),
             (lambda: etlc.check("a", values="bool"), "--values: found 'bool', expected robustn"),
         ):  # fmt: skip
             with self.assertRaisesRegex(etlc.InputError, words) as raised:
                 mistake()
             self.assertNotIn("--help", str(raised.exception))
+
+    def test_a_file_with_the_name_of_an_option(self):
+        with self.assertRaisesRegex(etlc.SpecError, r"^./--jobs: error: no such file \[E0902\]"):
+            etlc.fit("--jobs", ["--labels", "-b"], output="t.npz")
+        given = {"spec": "-a", "data": ["--labels", "-b", "c"], "jobs": np.int64(2)}
+        words = [b"fit", b"./-a", b"--data", b"./--labels", b"./-b", b"c", b"--jobs", b"2"]
+        self.assertEqual(words_of("fit", given)[:8], words)
 
 
 class Commands(unittest.TestCase):

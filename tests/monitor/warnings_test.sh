@@ -23,7 +23,7 @@ gcc_warnings=(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -
     -Wdouble-promotion -Wuseless-cast -Wold-style-cast -Wcast-align=strict -Wcast-qual
     -Wduplicated-cond -Wduplicated-branches -Wlogical-op -Wnull-dereference -Wundef
     -Wredundant-decls -Wswitch-enum -Wzero-as-null-pointer-constant)
-# All warnings of clang++, except those listed in docs/coding_rules.md.
+# All warnings of clang++, except those listed in docs/generated_code.md.
 clang_warnings=(-Weverything -Wno-c++98-compat -Wno-c++98-compat-pedantic
     -Wno-c++98-compat-local-type-template-args -Wno-pre-c++14-compat -Wno-pre-c++17-compat
     -Wno-padded -Wno-unused-macros)
