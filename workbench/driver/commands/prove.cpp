@@ -18,6 +18,7 @@
 #include "emit/emit.hpp"
 #include "emit/standalone.hpp"
 #include "library/version.hpp"
+#include "source/escape.hpp"
 
 namespace etlc::driver {
 
@@ -39,22 +40,56 @@ std::string hash_of(const std::vector<emit::RuntimeFile>& files) {
     return data::hash_text(hash);
 }
 
+/// Returns the lines of a text, each with its end.
+std::vector<std::string_view> lines_of(std::string_view text) {
+    std::vector<std::string_view> lines;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
+        lines.push_back(text.substr(0, end));
+        text.remove_prefix(end);
+    }
+    return lines;
+}
+
+/// Returns a line for a message.
+std::string shown_line(std::string_view line) {
+    constexpr std::size_t kMost = 100;
+    if (line.ends_with('\n')) line.remove_suffix(1);
+    return "'" + source::visible(line.substr(0, kMost)) + (line.size() > kMost ? "...'" : "'");
+}
+
+/// Returns where a header first differs from the one that etlc generates.
+std::string first_difference(std::string_view found, std::string_view expected) {
+    const std::vector<std::string_view> is = lines_of(found), should_be = lines_of(expected);
+    const std::size_t at = static_cast<std::size_t>(
+        std::mismatch(is.begin(), is.end(), should_be.begin(), should_be.end()).first - is.begin());
+    const std::string there = at < is.size() ? shown_line(is[at]) : "the end of the file";
+    const std::string line = at < should_be.size() ? shown_line(should_be[at]) : "the end of it";
+    if (there == line) return fmt::format("line {} ends in another way", at + 1);
+    return fmt::format("line {} is {}; expected {}", at + 1, there, line);
+}
+
+/// Returns the header that etlc generates. That of --header has to be the same, byte for byte.
 std::optional<std::string> header_text(const source::File& spec, const plan::Plan& plan,
                                        const Request& request, diag::Sink& sink) {
-    if (request.prove.header.empty())
-        return emit::header(plan, {request.name_space, library::kVersion, "",
-                                   fs::path(spec.path()).stem().string() + ".targets.bin"});
-    auto text = data::read_file(request.prove.header, kMostHeaderBytes, diag::Code::no_proof,
-                                data::Streams::refused);
+    const std::string& file = request.prove.header;
+    const fs::path named = file.empty() ? spec.path() : file;
+    std::string generated = emit::header(
+        plan, {request.name_space, library::kVersion, "", named.stem().string() + ".targets.bin"});
+    if (file.empty()) return generated;
+    const auto text =
+        data::read_file(file, kMostHeaderBytes, diag::Code::no_proof, data::Streams::refused);
     if (!text) {
-        sink.report(data::in_file(text.failure(), request.prove.header));
+        sink.report(data::in_file(text.failure(), file));
         return std::nullopt;
     }
-    if (text->find("ETLMON_PASTED_") == std::string::npos) return std::move(*text);
-    sink.report(data::in_file({diag::Code::no_proof,
-                               "contains the runtime; expected a header without --standalone, "
-                               "whose class has the same text"},
-                              request.prove.header));
+    if (*text == generated) return generated;
+    sink.report(data::in_file(
+                    {diag::Code::no_proof,
+                     "not the header that this etlc generates from the spec with these options: " +
+                         first_difference(*text, generated)},
+                    file))
+        .note("generate it again, without --standalone and with the options of this call");
     return std::nullopt;
 }
 
@@ -89,6 +124,17 @@ std::string restarts_of(const plan::Plan& plan, const prove::Proof& proof) {
     return fmt::format("{}, and in the first {} of several\n", one,
                        diag::counted(proof.together, "step"));
 }
+
+/// What a certificate says of itself.
+constexpr const char* kScope =
+    "\nscope: the header above, which is what this etlc generates from this spec, and no other.\n"
+    "Proved are the verdicts that reset(), judge() and finish() give for the values of predicates "
+    "and bools, where any may be missing.\n"
+    "Not proved: measure(), that is distances, expressions, thresholds, hold, stale after and "
+    "points of earlier steps;\n"
+    "telemetry, lets, counters and the recorder; the constructor; calls in another order.\n"
+    "Assumed: the compiler of the product compiles C++ correctly, and the stand-ins do what the "
+    "files of the runtime do that they replace.\n";
 
 std::string certificate(const source::File& spec, const plan::Plan& plan, const Request& request,
                         const std::string& header, const prove::Proof& proof) {
@@ -130,7 +176,7 @@ std::string certificate(const source::File& spec, const plan::Plan& plan, const 
             "assumed of its windows of {} steps, which are too long for this "
             "proof: the same\n",
             lengths(proof.long_windows));
-    return text + restarts_of(plan, proof);
+    return text + restarts_of(plan, proof) + kScope;
 }
 
 /// Returns the measurements of a witness, as a trace.

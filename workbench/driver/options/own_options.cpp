@@ -233,8 +233,8 @@ std::vector<Option> make_own_options() {
          "length of the longest inputs (default: twice the longest horizon and the longest "
          "buffer, at least 64)"},
         {prove, "--header", file(in(&Call::prove, &Call::Prove::header)),
-         "prove the class in this file, which etlc generated from the spec with the same options "
-         "(default: the class that etlc generates now)"},
+         "refuse a header that is not, byte for byte, the one that is proved: what this etlc "
+         "generates from the spec with the same options"},
         {prove, "--counterexample", text("STEM", in(&Call::prove, &Call::Prove::counterexample)),
          "where to write an input on which the class is wrong, and the spec that reads it: "
          "STEM.csv and STEM.etl (default: SPEC.counterexample in this folder)"},
