@@ -214,13 +214,81 @@ class Refusing(unittest.TestCase):
                 etlc.Monitor("a\ud800")
 
     def test_options_that_are_none(self):
-        for options in (
-            {"history": 1.5}, {"history": "1"}, {"max_state": None}, {"values": None},
-            {"thresholds": 7}, {"text": 7}, {"text": b"spec"}, {"recorder": (1, 2)},
-        ):  # fmt: skip
-            with self.assertRaises(etlc.InputError, msg=options):
+        for options, words in (
+            ({"history": 1.5}, "history is 1.5, expected a whole number from 0 on"),
+            ({"history": "1"}, "history is '1'"), ({"max_state": None}, "max_state is None"),
+            ({"history": 2**50}, "^history is 1125899906842624, expected at most"),
+            ({"values": None}, "values is None, expected robustness or boolean"),
+            ({"thresholds": 7}, "thresholds is 7"), ({"thresholds": ""}, "thresholds is '', exp"),
+            ({"fitted": ""}, "fitted is ''"), ({"spec": ""}, "spec is ''"),
+            ({"text": 7}, "text is 7, expected a str"), ({"text": b"s"}, "text is b's', expected"),
+            ({"text": None}, "there is no spec: pass its path, or text="),
+            ({"recorder": (1, 2)}, "^recorder: found '1,2', expected BEFORE,AFTER,INCIDENTS"),
+            ({"recorder": 5}, r"recorder is 5, expected \(before, after, alarms\)"),
+            ({"settings": [1]}, r"settings is \[1\], expected a dict"),
+            ({"settings": "n=1"}, "settings is 'n=1', expected a dict"),
+            ({"settings": {"n": None}}, "^settings takes NAME=NUMBER .*, not 'n=None'"),
+            ({"lets": "no"}, "lets is 'no', expected True or False"),
+            ({"threads": True}, "threads is True, expected a whole number from 1 on"),
+        ):
+            with self.assertRaisesRegex(etlc.InputError, words):
                 etlc.Monitor(**{"text": SPEC, **options})
         self.assertEqual(etlc.Monitor(text=SPEC, history=np.int64(3)).name, "all_types")
+
+
+    def test_samples_without_their_names(self):
+        monitor = etlc.Monitor(text=SPEC)
+        batch = monitor.batch(2)
+        for one in (monitor, batch):
+            for given in (({"x": 1.0},), (np.zeros(3),), (None,), (1.0, 2.0)):
+                with self.assertRaisesRegex(
+                    TypeError,
+                    r"step takes samples by the name of their input: step\(z=..., x=..., stop=..., "
+                    r"...\), or of a dict step\(\*\*samples\)",
+                ):
+                    one.step(*given)
+        short = etlc.Monitor(text="spec s; input x : f32; monitor m = F x > 1;")
+        with self.assertRaisesRegex(TypeError, r"input: step\(x=...\), or"):
+            short.step({"x": 1})
+        self.assertEqual((monitor.steps, batch.steps.tolist()), (0, [0, 0]))
+        for call in (monitor.run, monitor.ahead, batch.run, batch.ahead):
+            with self.assertRaisesRegex(etlc.InputError, "is of ndarray, expected a dict by in"):
+                call(np.zeros((2, 3)))
+
+    def test_names_that_are_no_texts(self):
+        monitor = etlc.Monitor(text=SPEC, history=9)
+        batch = monitor.batch(2)
+        steps, verdicts = monitor.run(x=[1.0], **dict.fromkeys(("z", "stop", "half", "byte"))), None
+        verdicts = monitor.step(x=1.0)
+        for name in ([0, 1], {}, None, 3, b"high", np.array(["high"])):
+            for call in (monitor.position, monitor.restart, monitor.measure, monitor.explain,
+                         monitor.let, monitor.sample_counts, batch.restart, batch.measure,
+                         verdicts.__getitem__, steps.__getitem__):  # fmt: skip
+                with self.assertRaisesRegex(etlc.InputError, "no (monitor|predicate|let|input) "):
+                    call(name)
+
+    def test_labels_and_frames_that_are_none(self):
+        monitor = etlc.Monitor(text=SPEC)
+        for distance, truth, words in (
+            (None, True, "^distance is None, expected a number"), ("1", True, "distance is '1'"),
+            ([1.0], True, r"distance is an array of float64 and the shape \(1,\), expected a num"),
+            (1.0, None, "^truth is None, expected a bool"), (1.0, 2, "truth is 2, expected a bool"),
+        ):  # fmt: skip
+            with self.assertRaisesRegex(etlc.InputError, words):
+                monitor.observe("is_high", distance, truth)
+        for frame in (None, True, 1.0, "0", 4, -1, 2**40, np.array([1])):
+            with self.assertRaisesRegex(etlc.InputError, "frame is .*, expected 0 to 3"):
+                monitor.encoder_difference(frame, [1.0])
+        for embedding in (None, "z", np.zeros((2, 2)), np.zeros(2, "i8"), np.ma.array([1.0])):
+            with self.assertRaisesRegex(etlc.InputError, "^embedding is "):
+                monitor.encoder_difference(0, embedding)
+        with self.assertRaisesRegex(etlc.InputError, "^the spec has no encoder$"):
+            monitor.encoder_agrees(0, [1.0])
+        with self.assertRaisesRegex(etlc.InputError, r"^input 'x' is 10000+\.\.\., expected a num"):
+            monitor.step(stop=False, x=np.array(10**400, "O"))
+        monitor.finish()
+        with self.assertRaisesRegex(etlc.ClosedError, r"with finish\(\): reset\(\) begins another"):
+            monitor.step()
 
 
 class Saying(unittest.TestCase):

@@ -217,7 +217,12 @@ TEST(Refusals, OptionsThatMeanNothing) {
             o.settings = &setting;
             o.setting_count = 1;
         },
-        "nonsense");
+        "options.settings takes NAME=NUMBER or NAME=DURATION, such as limit=0.25 or deadline=2s, "
+        "not 'nonsense'");
+    etlc_options many = options_of(kDock);
+    many.settings = &setting;
+    many.setting_count = ~std::size_t{0};
+    expect_refused(etlc_open(&many, &none), ETLC_WRONG_NUMBER, "expected at most 10000");
     etlc_options options = options_of(kDock);
     options.history = std::uint64_t{1} << 40U;
     expect_refused(etlc_open(&options, &none), ETLC_OUT_OF_MEMORY, "not enough memory");
@@ -281,6 +286,78 @@ TEST(Refusals, ColumnsOfOtherShapesAndStrides) {
                    "room for 6 verdicts");
     expect_refused(etlc_run(dock, none, 5, 2, verdicts, 6), ETLC_WRONG_NUMBER, "5 columns");
     EXPECT_EQ(run(0, {values + 3, nullptr, -12, 3, ETLC_F32}), ETLC_OK) << "backwards";
+}
+
+/// Sizes that a caller made up are refused before anything as long as they are begun.
+TEST(Refusals, SizesBeyondAnyMemory) {
+    const Opened dock(options_of(kDock));
+    constexpr std::uint64_t kHuge = std::uint64_t{1} << 40U;
+    constexpr std::uint64_t kMost = ~std::uint64_t{0};
+    etlc_verdict verdicts[6];
+    const std::uint8_t flags[2] = {0, 1};
+    const float values[8] = {};
+    etlc_grid grids[6] = {};
+    grids[2] = {flags, nullptr, 0, 0, 1, ETLC_BOOL};  // the same bool in all rows and steps
+    const auto ahead = [&](std::uint64_t plans, std::uint64_t steps, std::size_t room) {
+        return etlc_ahead(dock, grids, 6, plans, steps, 1, verdicts, room);
+    };
+    for (const std::uint64_t steps : {kHuge, kMost, kMost / 3 + 1})
+        expect_refused(ahead(2, steps, 6), ETLC_WRONG_NUMBER, "room for 6 verdicts, expected 2 x");
+    for (const std::uint64_t plans : {std::uint64_t{0}, kHuge, kMost})
+        expect_refused(ahead(plans, 1, 3), ETLC_WRONG_NUMBER, "plans, expected a number from 1 to");
+    expect_refused(ahead(1U << 31U, 1, 3), ETLC_WRONG_NUMBER, "expected 2147483648 x 1 x 3");
+    expect_refused(ahead(1, kMost / 3, kMost), ETLC_WRONG_NUMBER, "more than any memory");
+    EXPECT_EQ(ahead(std::uint64_t{1} << 32U, 0, 0), ETLC_OK) << "no step of many plans";
+    expect_refused(etlc_ahead(dock, grids, 6, 1, 1, 1025, verdicts, 3), ETLC_WRONG_VALUE,
+                   "threads is 1025, expected at most 1024");
+    EXPECT_EQ(ahead(2, 1, 6), ETLC_OK);
+
+    const etlc_column same[6] = {{}, {}, {flags, nullptr, 0, 1, ETLC_BOOL}};
+    for (const std::uint64_t steps : {kHuge, kMost})
+        expect_refused(etlc_run(dock, same, 6, steps, verdicts, 6), ETLC_WRONG_NUMBER, "room for");
+    expect_refused(etlc_run(dock, same, 6, kMost / 3, verdicts, kMost), ETLC_WRONG_NUMBER,
+                   "more than any memory");
+    expect_refused(etlc_finish(dock, verdicts, kMost), ETLC_WRONG_NUMBER, "more than any memory");
+    constexpr std::int64_t kFar = std::int64_t{1} << 62U;
+    const etlc_column far[6] = {{values, nullptr, kFar, 3, ETLC_F32}};
+    expect_refused(etlc_run(dock, far, 6, 2, verdicts, 6), ETLC_WRONG_VALUE, "4611686018427387904");
+    grids[0] = {values, nullptr, -kFar, 0, 3, ETLC_F32};
+    expect_refused(ahead(2, 1, 6), ETLC_WRONG_VALUE,
+                   "'z' has 2 samples, each -4611686018427387904");
+    grids[0] = {values, nullptr, 0, kFar, 3, ETLC_F32};
+    expect_refused(ahead(1, 2, 6), ETLC_WRONG_VALUE, "more than any memory");
+    std::uint64_t steps = 0;
+    EXPECT_EQ(etlc_steps(dock, &steps), ETLC_OK);
+    EXPECT_EQ(steps, 0U);
+}
+
+TEST(Refusals, BatchesBeyondTheMachine) {
+    const Opened dock(options_of(kDock));
+    etlc_session batch = 1;
+    for (const std::uint64_t environments : {std::uint64_t{0}, (std::uint64_t{1} << 32U) + 1})
+        expect_refused(etlc_open_batch(dock, environments, &batch), ETLC_WRONG_NUMBER,
+                       "expected a number from 1 to 4294967296");
+    expect_refused(etlc_open_batch(dock, std::uint64_t{1} << 32U, &batch), ETLC_OUT_OF_MEMORY,
+                   "4294967296 environments take");
+    ASSERT_EQ(etlc_open_batch(dock, 2, &batch), ETLC_OK);
+    const etlc_grid grids[6] = {};
+    etlc_verdict verdicts[6];
+    std::uint64_t steps[2];
+    etlc_measured measured[2];
+    const std::uint64_t huge = std::uint64_t{1} << 40U;
+    expect_refused(etlc_run_batch(batch, grids, 6, huge, 1, verdicts, 6), ETLC_WRONG_NUMBER,
+                   "room for 6 verdicts");
+    expect_refused(etlc_run_batch(batch, grids, huge, 1, 1, verdicts, 6), ETLC_WRONG_NUMBER,
+                   "1099511627776 grids, expected 6");
+    expect_refused(etlc_finish_batch(batch, nullptr, 2, verdicts, huge), ETLC_WRONG_NUMBER, "room");
+    for (const std::uint64_t wrong : {std::uint64_t{1}, huge}) {
+        expect_refused(etlc_reset_batch(batch, nullptr, wrong), ETLC_WRONG_NUMBER, "the 2 of the");
+        expect_refused(etlc_restart_batch(batch, 1, nullptr, wrong), ETLC_WRONG_NUMBER, "the 2");
+        expect_refused(etlc_steps_batch(batch, steps, wrong), ETLC_WRONG_NUMBER, "the 2 of");
+        expect_refused(etlc_measure_batch(batch, 0, measured, wrong), ETLC_WRONG_NUMBER, "the 2");
+    }
+    EXPECT_EQ(etlc_run_batch(batch, grids, 6, 0, 1, verdicts, 0), ETLC_OK) << "no step";
+    EXPECT_EQ(etlc_close(batch), ETLC_OK);
 }
 
 TEST(Refusals, WhatIsNotThere) {

@@ -36,6 +36,12 @@ refuses "--pipe encodes frames of standard input, and writes no files" embed t.e
     --data a --output b
 refuses "--diagnostics: found 'xml', expected text or json" t.etl --check --diagnostics xml
 refuses "-W: found 'all', expected error" t.etl --check -Wall
+# A word that is empty is not skipped, and its option does not take the next word.
+refuses "the word behind '--data' is empty: is a variable of the shell not set?" \
+    evaluate t.etl --data '' --jobs 1
+refuses "the word behind '--thresholds' is empty: is a variable of the shell not set?" \
+    run t.etl --trace t.csv --thresholds=
+refuses "the word behind 'etlc' is empty: is a variable of the shell not set?" '' --check
 # A misspelt command is not taken for a spec.
 refuses "there is no command 'rn'; did you mean 'run'?" rn t.etl --trace t.csv
 refuses "there is no command 'rn'; did you mean 'run'?" rn

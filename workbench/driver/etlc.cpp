@@ -172,6 +172,8 @@ int merge(Call& call) {
 }
 
 int execute(int argc, char** argv) {
+    if (const std::string mistake = mistake_in_words(argc, argv); !mistake.empty())
+        return complain("etlc", mistake);
     const std::string_view word = argc > 1 ? argv[1] : "";
     if (const auto command = command_named(word)) return execute(*command, argc - 1, argv + 1);
     // With a spec, --explain is an option of the generated class.

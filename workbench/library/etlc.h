@@ -79,7 +79,7 @@ typedef struct etlc_options {
   const char *thresholds;       /* a file; null: SPEC.thresholds.json beside the spec */
   const char *fitted;           /* a file; null: SPEC.fitted.npz beside the spec */
   const char *const *settings;  /* values of constants, each "NAME=VALUE" */
-  size_t setting_count;
+  size_t setting_count;         /* at most 10000 */
   uint32_t values;     /* ETLC_ROBUSTNESS or ETLC_BOOLEAN */
   uint32_t targets_as; /* ETLC_AS_F32, ETLC_AS_F16 or ETLC_AS_I8 */
   uint32_t lets;       /* 1: etlc_let() returns the lets at each step */
@@ -309,9 +309,9 @@ typedef struct etlc_grid {
 
 /* Gives the verdicts of continuations: each row goes on from the present state, which does not
  * change. A batch has `plans` rows for each of its environments, those of environment 0 first; any
- * other session has `plans` rows. `verdicts`: room for rows x steps x monitors, in this order.
- * `threads` share the rows; 0 or 1: only this one. History and recorder take no part. Allocates
- * memory. */
+ * other session has `plans` rows; at most 2^32 rows in all. `verdicts`: room for rows x steps x
+ * monitors, in this order. `threads`, at most 1024, share the rows; 0 or 1: only this one. History
+ * and recorder take no part. Allocates memory. */
 ETLC_EXPORT etlc_status etlc_ahead(etlc_session session, const etlc_grid *grids, size_t grid_count,
                                    uint64_t plans, uint64_t steps, uint32_t threads,
                                    etlc_verdict *verdicts, size_t verdict_count);
@@ -332,15 +332,16 @@ ETLC_EXPORT etlc_status etlc_load(etlc_session session, const void *bytes, size_
  * spec; each has the verdicts that a session of its own would have. A batch is a session too: it
  * has a number, is used by one thread at a time, and describes its spec. */
 
-/* Opens a batch of `environments` >= 1 with the spec of a session, which may be closed before the
- * batch. All begin before their first step, with the thresholds of etlc_open(). There is no history
- * and no recorder. Allocates memory. */
+/* Opens a batch of 1 to 2^32 `environments` with the spec of a session, which may be closed before
+ * the batch. All begin before their first step, with the thresholds of etlc_open(). There is no
+ * history and no recorder. Allocates memory; ETLC_OUT_OF_MEMORY where it takes more than there is. */
 ETLC_EXPORT etlc_status etlc_open_batch(etlc_session session, uint64_t environments,
                                         etlc_session *batch);
 
 /* Makes `steps` steps in all environments. `grids`: one per input, in the order of the spec, with a
  * row per environment. `verdicts`: room for environments x steps x monitors, in this order.
- * `threads` share the environments; 0 or 1: only this one. With more, allocates memory. */
+ * `threads`, at most 1024, share the environments; 0 or 1: only this one. With more, allocates
+ * memory. */
 ETLC_EXPORT etlc_status etlc_run_batch(etlc_session batch, const etlc_grid *grids,
                                        size_t grid_count, uint64_t steps, uint32_t threads,
                                        etlc_verdict *verdicts, size_t verdict_count);

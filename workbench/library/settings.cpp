@@ -56,20 +56,19 @@ std::optional<check::Setting> parse(const std::string& word) {
 }  // namespace
 
 std::optional<std::vector<check::Setting>> parse_settings(const std::vector<std::string>& words,
-                                                          std::string& why) {
+                                                          std::string_view what, std::string& why) {
     std::vector<check::Setting> settings;
     for (const std::string& word : words) {
         auto setting = parse(word);
         if (!setting) {
             why = fmt::format(
-                "--set takes NAME=NUMBER or NAME=DURATION, such as limit=0.25 or deadline=2s, not "
-                "{}",
-                data::in_quotes(word));
+                "{} takes NAME=NUMBER or NAME=DURATION, such as limit=0.25 or deadline=2s, not {}",
+                what, data::in_quotes(word));
             return std::nullopt;
         }
         const auto again = [&](const check::Setting& s) { return s.name == setting->name; };
         if (std::any_of(settings.begin(), settings.end(), again)) {
-            why = fmt::format("--set gives {} twice", data::in_quotes(setting->name));
+            why = fmt::format("{} gives {} twice", what, data::in_quotes(setting->name));
             return std::nullopt;
         }
         settings.push_back(std::move(*setting));

@@ -12,10 +12,10 @@
 
 namespace etlc::library {
 
-/// Parses --set NAME=VALUE: other values for constants, each a number or a duration as in a spec.
-/// Every name may be set once.
+/// Parses NAME=VALUE: other values for constants, each a number or a duration as in a spec. Every
+/// name may be set once. `what`: the option that takes them.
 std::optional<std::vector<check::Setting>> parse_settings(const std::vector<std::string>& words,
-                                                          std::string& why);
+                                                          std::string_view what, std::string& why);
 
 /// Parses --recorder BEFORE,AFTER,INCIDENTS: two durations or numbers of steps, and a number
 /// from 1.

@@ -26,7 +26,7 @@ namespace etlc::driver {
 
 std::string read_settings(Call& call, const std::vector<std::string>& words) {
     std::string mistake;
-    if (auto parsed = library::parse_settings(words, mistake))
+    if (auto parsed = library::parse_settings(words, "--set", mistake))
         call.check.settings = std::move(*parsed);
     return mistake;
 }
@@ -283,6 +283,18 @@ std::string mistake_in_evaluating(const Call& call) {
 }
 
 }  // namespace
+
+std::string mistake_in_words(int argc, char** argv) {
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view word = argv[i];
+        const bool is_option = word.starts_with("--") && word.ends_with('=');
+        if (!word.empty() && !is_option) continue;
+        const std::string_view before = is_option ? word.substr(0, word.size() - 1) : argv[i - 1];
+        return fmt::format("the word behind {} is empty: is a variable of the shell not set?",
+                           data::in_quotes(std::string(i == 1 && !is_option ? "etlc" : before)));
+    }
+    return "";
+}
 
 std::string mistake_in_command(int argc, char** argv) {
     const std::string word = argc > 1 ? argv[1] : "";

@@ -42,6 +42,9 @@ std::string mistake_in_namespace(const std::string& name);
 /// Expected: seconds from 0.
 std::string mistake_in_seconds(const std::string& found);
 
+/// Says which word of a call is empty. An option would take the next word for its value.
+std::string mistake_in_words(int argc, char** argv);
+
 /// Checks whether the first word is meant as a command that does not exist.
 std::string mistake_in_command(int argc, char** argv);
 

@@ -27,10 +27,13 @@ const check::Encoder* find_encoder(const Session& session, const char* name, etl
     if (name == nullptr && encoders.size() == 1) return &encoders[0];
     for (const check::Encoder& encoder : encoders)
         if (name != nullptr && encoder.name == name) return &encoder;
-    refused =
-        name == nullptr
-            ? refuse(ETLC_NO_SUCH, "encoder is null, and the spec has {} encoders", encoders.size())
-            : refuse(ETLC_NO_SUCH, "the spec has no encoder '{}'", name);
+    if (encoders.empty())
+        refused = refuse(ETLC_NO_SUCH, "the spec has no encoder");
+    else if (name == nullptr)
+        refused =
+            refuse(ETLC_NO_SUCH, "the spec has {} encoders: name one of them", encoders.size());
+    else
+        refused = refuse(ETLC_NO_SUCH, "the spec has no encoder '{}'", name);
     return nullptr;
 }
 

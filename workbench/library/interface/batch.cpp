@@ -1,32 +1,41 @@
 // Batches of environments.
+#include <unistd.h>
+
+#include <vector>
+
 #include "library/interface/checks.hpp"
 #include "library/interface/grids.hpp"
 
 namespace etlc::library {
 
+namespace {
+
+etlc_status check_room(const Session& session, const Grids& samples, const void* verdicts,
+                       std::size_t count) {
+    if (const etlc_status failed = check_verdicts(verdicts, count)) return failed;
+    const std::uint64_t monitors = session.plan().monitors.size();
+    const std::uint64_t per_step = samples.rows * monitors;
+    if (count % per_step == 0 && count / per_step == samples.steps) return ETLC_OK;
+    return refuse(ETLC_WRONG_NUMBER, "there is room for {} verdicts, expected {} x {} x {}", count,
+                  samples.rows, samples.steps, monitors);
+}
+
+}  // namespace
+
 etlc_status check_grids(const Session& session, const Grids& samples, std::size_t grid_count,
-                        std::uint32_t threads) {
+                        std::uint32_t threads, const void* verdicts, std::size_t count) {
     if (const etlc_status failed = check_count(session, samples.grids, grid_count, "grids"))
         return failed;
     if (threads > kMostThreads)
         return refuse(ETLC_WRONG_VALUE, "threads is {}, expected at most {}", threads,
                       kMostThreads);
+    if (const etlc_status failed = check_room(session, samples, verdicts, count)) return failed;
     const std::vector<check::Input>& inputs = session.model().inputs;
     for (std::size_t i = 0; i < inputs.size(); ++i)
         if (const etlc_status failed =
                 check_grid(inputs[i], samples.grids[i], samples.rows, samples.steps))
             return failed;
     return ETLC_OK;
-}
-
-etlc_status check_grid_room(const Session& session, const Grids& samples, const void* verdicts,
-                            std::size_t count) {
-    if (verdicts == nullptr) return refuse_null("verdicts");
-    const std::uint64_t monitors = session.plan().monitors.size();
-    const std::uint64_t per_step = samples.rows * monitors;
-    if (count % per_step == 0 && count / per_step == samples.steps) return ETLC_OK;
-    return refuse(ETLC_WRONG_NUMBER, "there is room for {} verdicts, expected {} x {} x {}", count,
-                  samples.rows, samples.steps, monitors);
 }
 
 etlc_status check_none_ended(const Batch& batch) {
@@ -45,6 +54,21 @@ etlc_status check_environments(const Batch& batch, std::uint64_t environments) {
     if (environments == batch.size()) return ETLC_OK;
     return refuse(ETLC_WRONG_NUMBER, "there are {} environments, expected the {} of the batch",
                   environments, batch.size());
+}
+
+/// Refuses a batch that this machine has too little memory for. Where the system promises memory
+/// that it does not have, the program would be ended while it makes the states.
+etlc_status check_memory(Session& opened, std::uint64_t environments) {
+    std::vector<std::uint8_t> state;
+    opened.evaluator().state().write(state);
+    const std::uint64_t bytes = sizeof(plan::State) + state.size();
+    const long pages = sysconf(_SC_PHYS_PAGES);
+    const long page = sysconf(_SC_PAGE_SIZE);
+    const auto memory = static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page);
+    if (pages <= 0 || page <= 0 || environments <= memory / bytes) return ETLC_OK;
+    return refuse(ETLC_OUT_OF_MEMORY,
+                  "{} environments take {} MB or more, and this machine has {} MB", environments,
+                  environments * bytes >> 20U, memory >> 20U);
 }
 
 /// Calls `work(environment)` for those chosen.
@@ -69,6 +93,7 @@ etlc_status etlc_open_batch(etlc_session session, uint64_t environments, etlc_se
             return refuse(ETLC_WRONG_NUMBER,
                           "there are {} environments, expected a number from 1 to {}", environments,
                           kMostRows);
+        if (const etlc_status failed = check_memory(opened, environments)) return failed;
         return give_session(batch, "batch", [&] {
             return std::make_unique<Session>(opened.program(),
                                              Batch(opened.program(), environments));
@@ -82,9 +107,8 @@ etlc_status etlc_run_batch(etlc_session batch, const etlc_grid* grids, size_t gr
     return with_batch(batch, [&](Batch& of, Session& opened) -> etlc_status {
         if (const etlc_status failed = check_none_ended(of)) return failed;
         const Grids samples{grids, of.size(), steps};
-        if (const etlc_status failed = check_grids(opened, samples, grid_count, threads))
-            return failed;
-        if (const etlc_status failed = check_grid_room(opened, samples, verdicts, verdict_count))
+        if (const etlc_status failed =
+                check_grids(opened, samples, grid_count, threads, verdicts, verdict_count))
             return failed;
         of.run(samples, threads_for(threads, samples), verdicts);
         return ETLC_OK;
@@ -114,7 +138,7 @@ etlc_status etlc_finish_batch(etlc_session batch, const uint8_t* which, uint64_t
     return with_batch(batch, [&](Batch& of, Session& opened) -> etlc_status {
         if (const etlc_status failed = check_environments(of, environments)) return failed;
         const Grids one_step{nullptr, of.size(), 1};
-        if (const etlc_status failed = check_grid_room(opened, one_step, verdicts, verdict_count))
+        if (const etlc_status failed = check_room(opened, one_step, verdicts, verdict_count))
             return failed;
         const std::size_t monitors = opened.plan().monitors.size();
         for_each_of(of, which, [&](std::uint64_t e) { of.finish(e, verdicts + e * monitors); });

@@ -1,5 +1,7 @@
 #include "library/interface/checks.hpp"
 
+#include <cstdint>
+
 #include "library/interface/call.hpp"
 #include "library/samples.hpp"
 
@@ -31,6 +33,19 @@ etlc_status check_aligned(const check::Input& input, const void* data, std::int6
                   input.name, place, stride, bytes);
 }
 
+/// Checks that the samples of so many strides are in the memory of a process.
+etlc_status check_reach(const check::Input& input, std::int64_t stride, std::uint64_t count) {
+    constexpr std::int64_t kMost = std::int64_t{1} << 60U;
+    std::int64_t reach = 0;
+    if (count == 0) return ETLC_OK;
+    if (!__builtin_mul_overflow(stride, count - 1, &reach) && reach <= kMost && reach >= -kMost)
+        return ETLC_OK;
+    return refuse(ETLC_WRONG_VALUE,
+                  "input '{}' has {} samples, each {} bytes after the previous one: that is more "
+                  "than any memory",
+                  input.name, count, stride);
+}
+
 etlc_status check_bool(const check::Input& input, const void* data) {
     const std::uint8_t found = *static_cast<const std::uint8_t*>(data);
     if (input.type != check::InputType::boolean || found <= 1) return ETLC_OK;
@@ -49,6 +64,13 @@ etlc_status check_count(const Session& session, const void* samples, std::size_t
     return samples == nullptr && inputs > 0 ? refuse_null(what) : etlc_status{ETLC_OK};
 }
 
+etlc_status check_verdicts(const void* verdicts, std::size_t count) {
+    if (verdicts == nullptr) return refuse_null("verdicts");
+    if (count <= PTRDIFF_MAX / sizeof(etlc_verdict)) return ETLC_OK;
+    return refuse(ETLC_WRONG_NUMBER, "there is room for {} verdicts: that is more than any memory",
+                  count);
+}
+
 etlc_status check_sample(const check::Input& input, const etlc_sample& sample) {
     if (sample.data == nullptr) return ETLC_OK;
     if (const etlc_status failed = check_elements(input, sample.type, sample.count)) return failed;
@@ -61,6 +83,7 @@ etlc_status check_column(const check::Input& input, const etlc_column& column,
     if (column.data == nullptr) return ETLC_OK;
     if (const etlc_status failed = check_elements(input, column.type, column.count)) return failed;
     if (const etlc_status failed = check_aligned(input, column.data, column.stride)) return failed;
+    if (const etlc_status failed = check_reach(input, column.stride, steps)) return failed;
     if (input.type != check::InputType::boolean) return ETLC_OK;
     const auto* flag = static_cast<const std::uint8_t*>(column.data);
     for (std::uint64_t step = 0; step < steps; ++step, flag += column.stride) {
@@ -76,7 +99,9 @@ etlc_status check_grid(const check::Input& input, const etlc_grid& grid, std::ui
     if (const etlc_status failed = check_elements(input, grid.type, grid.count)) return failed;
     for (const std::int64_t stride : {grid.stride, grid.step_stride})
         if (const etlc_status failed = check_aligned(input, grid.data, stride)) return failed;
-    if (input.type != check::InputType::boolean) return ETLC_OK;
+    if (const etlc_status failed = check_reach(input, grid.stride, rows)) return failed;
+    if (const etlc_status failed = check_reach(input, grid.step_stride, steps)) return failed;
+    if (input.type != check::InputType::boolean || steps == 0) return ETLC_OK;
     for (std::uint64_t row = 0; row < rows; ++row)
         for (std::uint64_t step = 0; step < steps; ++step) {
             const void* const flag = at(grid, steps, row, step);

@@ -13,13 +13,9 @@ namespace etlc::library {
 constexpr std::uint64_t kMostRows = std::uint64_t{1} << 32U;
 constexpr std::uint32_t kMostThreads = 1024;
 
-/// Checks the samples of all inputs, and the number of threads.
+/// Checks the samples of all inputs, the number of threads and the room for all verdicts.
 etlc_status check_grids(const Session& session, const Grids& samples, std::size_t grid_count,
-                        std::uint32_t threads);
-
-/// Checks the room for all verdicts.
-etlc_status check_grid_room(const Session& session, const Grids& samples, const void* verdicts,
-                            std::size_t count);
+                        std::uint32_t threads, const void* verdicts, std::size_t count);
 
 /// Refuses a batch where the episode of an environment has ended.
 etlc_status check_none_ended(const Batch& batch);

@@ -28,14 +28,18 @@ std::string text_of(const char* words) {
 etlc_status take_settings(const etlc_options& options, Wish& wish) {
     if (options.setting_count > 0 && options.settings == nullptr)
         return refuse_null("options.settings");
+    constexpr std::size_t kMostSettings = 10'000;
+    if (options.setting_count > kMostSettings)
+        return refuse(ETLC_WRONG_NUMBER, "options.setting_count is {}, expected at most {}",
+                      options.setting_count, kMostSettings);
     std::vector<std::string> words;
     for (std::size_t i = 0; i < options.setting_count; ++i) {
         if (options.settings[i] == nullptr) return refuse_null("an element of options.settings");
         words.emplace_back(options.settings[i]);
     }
     std::string why;
-    auto settings = parse_settings(words, why);
-    if (!settings) return refuse(ETLC_WRONG_VALUE, "options.settings: {}", why);
+    auto settings = parse_settings(words, "options.settings", why);
+    if (!settings) return refuse(ETLC_WRONG_VALUE, "{}", why);
     wish.check.settings = std::move(*settings);
     return ETLC_OK;
 }

@@ -18,7 +18,7 @@ static_assert(ETLC_SATISFIED == etlmon::Verdict::kSatisfied &&
 etlc_status check_room(const Session& session, const void* verdicts, std::size_t count,
                        std::uint64_t steps) {
     const std::size_t monitors = session.plan().monitors.size();
-    if (verdicts == nullptr) return refuse_null("verdicts");
+    if (const etlc_status failed = check_verdicts(verdicts, count)) return failed;
     if (count / monitors == steps && count % monitors == 0) return ETLC_OK;
     return refuse(ETLC_WRONG_NUMBER, "there is room for {} verdicts, expected {} x {}", count,
                   steps, monitors);
