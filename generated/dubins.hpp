@@ -37,7 +37,9 @@
 #endif
 
 namespace dubins {
-inline namespace ETLMON_BUILD {  // another class for each set of compiler flags
+// Another class for each set of compiler flags, and for each text of this header.
+inline namespace ETLMON_BUILD {
+inline namespace text_fae33b9b582134d8 {
 
 /// The inputs of one step. In Inputs{} all of them are missing.
 struct Inputs {
@@ -369,5 +371,6 @@ inline Verdicts Monitor::judge(const Atoms& now) noexcept {
   return verdicts;
 }
 
+}  // namespace text_fae33b9b582134d8
 }  // namespace ETLMON_BUILD
 }  // namespace dubins

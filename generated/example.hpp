@@ -32,7 +32,9 @@
 #endif
 
 namespace example {
-inline namespace ETLMON_BUILD {  // another class for each set of compiler flags
+// Another class for each set of compiler flags, and for each text of this header.
+inline namespace ETLMON_BUILD {
+inline namespace text_46521b4b315e7b83 {
 
 /// The inputs of one step. In Inputs{} all of them are missing.
 struct Inputs {
@@ -151,5 +153,6 @@ inline Verdicts Monitor::judge(const Atoms& now) noexcept {
   return verdicts;
 }
 
+}  // namespace text_46521b4b315e7b83
 }  // namespace ETLMON_BUILD
 }  // namespace example

@@ -39,7 +39,9 @@
 #endif
 
 namespace example {
-inline namespace ETLMON_BUILD {  // another class for each set of compiler flags
+// Another class for each set of compiler flags, and for each text of this header.
+inline namespace ETLMON_BUILD {
+inline namespace text_3de5231eed14cd1d {
 
 /// The inputs of one step. In Inputs{} all of them are missing.
 struct Inputs {
@@ -72,7 +74,7 @@ inline constexpr size_t goal = 32;  ///< 2 rows of 2 elements
 /// The layout of a block of parameters. kShape is a hash of the class without its numbers; kEncoder
 /// is a hash of the encoder, 0 if the spec has none. A block must have both.
 struct Layout {
-  static constexpr uint64_t kShape = 0x9374b404b234bd43u;
+  static constexpr uint64_t kShape = 0x4ed219e8a5b9dc23u;
   static constexpr uint64_t kEncoder = 0x0000000000000000u;
   static constexpr size_t kSize = 192;  ///< in bytes
   /// Offset, count, row length and rule of each part.
@@ -105,7 +107,8 @@ class Monitor {
   /// sets some.
   constexpr Monitor() noexcept : numbers_(nullptr) { reset(); }
   /// Uses the parameters if they are ready.
-  constexpr explicit Monitor(const Params& params) noexcept : numbers_(params.numbers()) {
+  constexpr explicit Monitor(const Params& etlmon_params) noexcept
+      : numbers_(etlmon_params.numbers()) {
     reset();
   }
   /// Returns whether this monitor has parameters.
@@ -219,5 +222,6 @@ inline Verdicts Monitor::judge(const Atoms& now) noexcept {
 /// counted (etlmon/params/shadow.hpp).
 using Shadow = etlmon::Shadow<Monitor, Inputs, Verdicts, 1>;
 
+}  // namespace text_3de5231eed14cd1d
 }  // namespace ETLMON_BUILD
 }  // namespace example

@@ -180,6 +180,20 @@ std::uint64_t shape(const plan::Plan& plan, const std::string& version) {
     return data::xxh64(without_comments(out.take()));
 }
 
+/// The inline namespace of one text, while its digest is not known yet.
+constexpr std::string_view kOfText = "text_0000000000000000";
+
+/// Puts the digest of the header into the name of its namespace, so that no two headers have inline
+/// functions or variables of one name: the linker would keep only one of them.
+std::string with_digest(std::string text) {
+    const std::string name = fmt::format("text_{:016x}", data::xxh64(text));
+    for (const std::string_view before : {"\ninline namespace ", "\n}  // namespace "}) {
+        const std::size_t at = text.find(fmt::format("{}{}", before, kOfText));
+        text.replace(at + before.size(), kOfText.size(), name);
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string header(const plan::Plan& plan, const Options& options) {
@@ -195,13 +209,17 @@ std::string header(const plan::Plan& plan, const Options& options) {
     print_includes(out, context, options.version, !options.standalone.empty());
     Printer inner;
     inner.line("namespace {} {{", context.name_space);
-    inner.line("inline namespace ETLMON_BUILD {  // another class for each set of compiler flags");
+    inner.line(
+        "// Another class for each set of compiler flags, and for each text of this header.");
+    inner.line("inline namespace ETLMON_BUILD {");
+    inner.line("inline namespace {} {{", kOfText);
     inner.line();
     print_body(inner, context);
+    inner.line("}}  // namespace {}", kOfText);
     inner.line("}  // namespace ETLMON_BUILD");
     inner.line("}}  // namespace {}", context.name_space);
     const std::string text = out.take() + shielded(inner.take());
-    return options.standalone.empty() ? text : standalone(text, options.standalone);
+    return with_digest(options.standalone.empty() ? text : standalone(text, options.standalone));
 }
 
 std::string params(const plan::Plan& plan, const Options& options) {

@@ -2,7 +2,8 @@
 # flags_test.sh ETLC GXX CLANGXX: headers and the runtime under many flags. Each set of flags
 # compiles. Objects of two sets share no inline function of ours, unless the flags leave all code
 # the same to the byte. A unit gives the same bits alone and linked with another, in either order,
-# even if that one is compiled for a CPU that this machine does not have.
+# even if that one is compiled for a CPU that this machine does not have. Classes of one name, from
+# one spec with other data or options, share nothing either, linked or loaded.
 set -euo pipefail
 etlc=$1 gxx=$2 clangxx=$3
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -173,7 +174,7 @@ END
 [ "$(wc -l <standalone.txt)" -gt 300 ] || fail "no inline function in standalone objects"
 shared=$(sort standalone.txt | uniq -d | head -n 1)
 [ -z "$shared" ] || fail "standalone: one name under different flags: $(c++filt "$shared")"
-grep -q N6etlmon4v0_2 standalone.txt || fail "the short name is longer than v0_2"
+grep -q N6etlmon6v0_2_0 standalone.txt || fail "the short name is longer than v0_2_0"
 
 # Links units together. Units that this machine cannot run are linked only.
 run_with() {  # UNIT OBJECT...: the output of the unit in a program of these objects
@@ -197,3 +198,114 @@ for unit in base tiny fast clang; do
   done
 done
 [ "$ran" -eq 15 ] || fail "only $ran pairs could be run"
+
+# ---- Classes of one name in one program: a spec with other data, thresholds, comments and options.
+cat >grasp.etl <<'END'
+spec grasp;
+const limit = 1;
+input z : f32[3];
+input q : bool;
+target held = [[0, 0, 0]];
+predicate near = min l2(z, held) <= limit;
+let ready = near && q;
+monitor ok = F near;
+repeating monitor again = G (q -> F[0, 3] ready);
+sliding monitor soon = F[0, 3] near;
+END
+sed 's/0, 0, 0/5, 5, 5/' grasp.etl >right.etl
+sed 's/ok = F/ok = G/' grasp.etl >formula.etl
+sed '1s/$/  \/\/ a comment/' grasp.etl >comment.etl
+variants=0
+while read -r name spec options; do
+  mkdir "arm_$name"
+  cp "$spec.etl" "arm_$name/grasp.etl"
+  # shellcheck disable=SC2086
+  (cd "arm_$name" && "$etlc" grasp.etl $options -o grasp.hpp) || fail "arm_$name"
+  echo '#include "grasp.hpp"
+    grasp::Verdicts STEP(grasp::Monitor& monitor, const grasp::Inputs& in);
+    grasp::Verdicts STEP(grasp::Monitor& monitor, const grasp::Inputs& in) {
+      monitor.reset();
+      return monitor.step(in);
+    }' >"arm_$name/unit.cpp"
+  "$gxx" -std=c++17 -O0 -DSTEP="step_$name" -I "arm_$name" -I "$runtime" \
+    -c "arm_$name/unit.cpp" -o arm.o || fail "arm_$name does not compile"
+  nm --defined-only arm.o | awk '$2 ~ /^[WwVuv]$/ && $3 ~ /5grasp/ { print $3 }' >arm.txt
+  [ "$(wc -l <arm.txt)" -gt 5 ] || fail "arm_$name: no inline function is to be seen"
+  cat arm.txt >>arms.txt
+  variants=$((variants + 1))
+done <<'END'
+left grasp
+right right
+formula formula
+comment comment
+limit grasp --set limit=2
+lets grasp --lets
+explain grasp --explain
+recorder grasp --recorder 4,2,2
+boolean grasp --values boolean
+narrow grasp --targets-as i8
+stored grasp --inline-targets 0
+moving grasp --retargetable
+alone grasp --standalone
+alone_right right --standalone
+host grasp --standalone=host
+END
+[ "$variants" -eq 15 ] || fail "only $variants variants"
+shared=$(sort arms.txt | uniq -d | head -n 1)
+[ -z "$shared" ] || fail "two classes share $(c++filt "$shared")"
+
+cat >arm.cpp <<'END'
+#include "grasp.hpp"
+extern "C" bool ARM(const float (&z)[3]);
+bool ARM(const float (&z)[3]) {
+  grasp::Monitor monitor;
+  grasp::Inputs in;
+  in.z = z;
+  return monitor.step(in).ok.satisfied();
+}
+END
+cat >arms.cpp <<'END'
+#include <dlfcn.h>
+
+#include <cstdio>
+#ifdef LOADED
+using Arm = bool (*)(const float (&z)[3]);
+static Arm arm_of(const char* file, const char* name) {
+  void* library = dlopen(file, RTLD_NOW | RTLD_LOCAL);
+  return library == nullptr ? nullptr : reinterpret_cast<Arm>(dlsym(library, name));
+}
+static const Arm left_arm = arm_of("./left.so", "left_arm");
+static const Arm right_arm = arm_of("./right.so", "right_arm");
+#else
+extern "C" bool left_arm(const float (&z)[3]);
+extern "C" bool right_arm(const float (&z)[3]);
+#endif
+int main() {
+  const float at_left[3] = {0, 0, 0}, at_right[3] = {5, 5, 5};
+  std::printf("%d%d%d%d\n", left_arm(at_left), left_arm(at_right), right_arm(at_left),
+              right_arm(at_right));
+}
+END
+for cxx in "$gxx" "$clangxx"; do
+  for flags in "-O0 -g" "-O2 -DNDEBUG"; do
+    # shellcheck disable=SC2086
+    for side in left right; do
+      "$cxx" -std=c++17 $flags -fPIC -DARM=${side}_arm -I "arm_$side" -I "$runtime" -c arm.cpp \
+        -o $side.o
+      "$cxx" -shared $side.o -o $side.so
+    done
+    "$cxx" arms.cpp left.o right.o -o linked
+    "$cxx" -DLOADED arms.cpp -ldl -o loaded
+    for program in linked loaded; do
+      said=$(./$program)
+      [ "$said" = 1001 ] || fail "$cxx $flags: two arms, $program: $said"
+    done
+  done
+done
+printf '#include "%s/grasp.hpp"\n' arm_left arm_right >both.cpp
+echo 'grasp::Monitor monitor;' >>both.cpp
+for cxx in "$gxx" "$clangxx"; do
+  ! "$cxx" -std=c++17 -I "$runtime" -fsyntax-only both.cpp 2>said ||
+    fail "$cxx takes either of two classes of one name"
+  grep -q ambiguous said || fail "$cxx on two classes of one name: $(head -n 3 said)"
+done

@@ -67,8 +67,8 @@ printf '#include "worst_step.hpp"\nint main() {\n%s}\n' "$runs" >>main.cpp
 valgrind --tool=callgrind --combine-dumps=yes --callgrind-out-file=counts ./main \
     >states 2>valgrind.log || { cat valgrind.log; exit 1; }
 
-# The class is in an inline namespace named after the flags.
-class='([A-Za-z0-9_]+)::[A-Za-z0-9_]+::Monitor'
+# The class is in inline namespaces named after the flags and after the text of its header.
+class='([A-Za-z0-9_]+)::[A-Za-z0-9_]+::text_[0-9a-f]+::Monitor'
 sed -nE "s/.*with Monitor = $class.*\t([0-9]+)\t.*/\1 \2/p
     s/.* $class::[a-z_]+\(.*\t([0-9]+)\t.*/\1 \2/p" ./*.su >frames
 awk -v frame="$frame" '
