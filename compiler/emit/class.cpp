@@ -171,7 +171,7 @@ void print_class_constants(Printer& out, const Context& context) {
     if (cost.stack_bytes > 0)
         sizes.emplace_back(
             fmt::format("static constexpr size_t kStackBytes = {};", cost.stack_bytes),
-            "stack of a step, for " + what_takes_stack(context.plan));
+            "arrays on the stack of a step: " + plan::what_takes_stack(context.plan));
     sizes.emplace_back(fmt::format("static constexpr uint32_t kOperations = {};", cost.operations),
                        "min, max, compare in the worst case");
     sizes.emplace_back(
@@ -203,13 +203,13 @@ void print_constructors(Printer& out, const Context& context) {
     print_doc(out, fmt::format("Uses the targets of {}, which must outlive the monitor. While they "
                                "are not ready, every predicate on them is unknown at every step.",
                                context.targets_file));
-    out.open(
-        "constexpr explicit Monitor(const Targets& targets) noexcept : rows_(targets.rows()) {");
+    out.line("constexpr explicit Monitor(const Targets& etlmon_targets) noexcept");
+    out.open("    : rows_(etlmon_targets.rows()) {");
     out.line("reset();");
     out.close();
     print_doc(out, "Uses the bytes of the file, and reads all of them once to check them.");
-    out.line(
-        "Monitor(const uint8_t* bytes, size_t size) noexcept : Monitor(Targets(bytes, size)) {}");
+    out.line("Monitor(const uint8_t* etlmon_bytes, size_t etlmon_size) noexcept");
+    out.line("    : Monitor(Targets(etlmon_bytes, etlmon_size)) {}");
     out.line();
     print_doc(out, "Returns whether the bytes are those that the class was generated with.");
     out.open("static bool valid(const uint8_t* bytes, size_t size) noexcept {");

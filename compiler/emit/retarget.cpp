@@ -155,8 +155,8 @@ void print_retarget_interface(Printer& out, const Context& context) {
               "retarget() sets some.");
     out.line("constexpr Monitor() noexcept : numbers_(nullptr) { reset(); }");
     print_doc(out, "Uses the parameters if they are ready.");
-    out.open(
-        "constexpr explicit Monitor(const Params& params) noexcept : numbers_(params.numbers()) {");
+    out.line("constexpr explicit Monitor(const Params& etlmon_params) noexcept");
+    out.open("    : numbers_(etlmon_params.numbers()) {");
     out.line("reset();");
     out.close();
     print_doc(out, "Returns whether this monitor has parameters.");
