@@ -161,17 +161,4 @@ std::string Context::place(plan::NodeId node) const {
     return as_written ? words : fmt::format("{}  ({})", words, quoted(text));
 }
 
-std::string what_takes_stack(const plan::Plan& plan) {
-    const bool pending = std::any_of(
-        plan.readings.begin(), plan.readings.end(),
-        [](const plan::Reading& reading) { return reading.kind == plan::Reading::Kind::pending; });
-    const std::vector<check::Index> points = plan::built_points(*plan.model, plan.distances);
-    const auto is_projected = [&](check::Index p) { return plan.model->points[p].is_projected(); };
-    const std::string computed = std::all_of(points.begin(), points.end(), is_projected)
-                                     ? "projected points"
-                                     : "points of distances";
-    if (points.empty()) return "positions evaluated again";
-    return pending ? "positions evaluated again, " + computed : computed;
-}
-
 }  // namespace etlc::emit

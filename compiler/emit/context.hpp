@@ -96,9 +96,6 @@ std::string open_condition(ir::Interval interval, std::string_view position);
 std::string call(std::string_view function, const std::vector<std::string>& arguments,
                  bool lazy = false);
 
-/// Returns what needs stack: "positions evaluated again", "projected points", or both.
-std::string what_takes_stack(const plan::Plan& plan);
-
 // The parts of the header, in order.
 void print_summary(Printer& out, const Context& context);
 /// Prints the figures that the head of the file and --emit report share.

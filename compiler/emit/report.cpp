@@ -50,8 +50,8 @@ std::string report(const plan::Plan& plan, const Options& options) {
     out.line();
     out.line("estimated code: {} bytes, targets aside", plan.cost.code_bytes);
     if (plan.cost.stack_bytes > 0)
-        out.line("stack of a step: {} bytes, for {}", plan.cost.stack_bytes,
-                 what_takes_stack(plan));
+        out.line("arrays on the stack of a step: {} bytes, for {}", plan.cost.stack_bytes,
+                 plan::what_takes_stack(plan));
     out.line();
     std::vector<Row> rows{{"part", "as", "state B", "code B", "operations"}};
     for (const Index p : plan.pasts) {

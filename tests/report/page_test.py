@@ -139,6 +139,12 @@ def look(browser, path, width, height, judged):
     assert shown_step(page) == page.value("view.episode.why.find("
                                           "of => of.monitor === view.why)?.step"), "explained step"
 
+    whole = page.value("unbroken('G (F[0, 0.5 s] p || q@2 > 3 steps)').filter(c => c.className)"
+                       ".map(c => c.textContent).join('; ')")
+    assert whole == "[0, 0.5 s]; 3 steps", whole
+    kept = page.value("getComputedStyle(document.querySelector('.formula .whole')).whiteSpace")
+    assert kept == "nowrap", kept
+
     page.value("chooseTheme(false)")
     light = page.value("getComputedStyle(document.body).backgroundColor")
     page.key("d")

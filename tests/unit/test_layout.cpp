@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "emit/text/layout.hpp"
+#include "emit/text/table.hpp"
 
 namespace etlc::emit {
 
@@ -86,6 +88,26 @@ TEST(Layout, CommentsBreakBetweenWordsAndFirstBetweenTheirParts) {
                   "t.etl:3: " + letters(40) + "  (" + letters(30) + " " + letters(30) + ")", 4);
     EXPECT_EQ(out.take(), "// t.etl:3: " + letters(40) + "\n//     (" + letters(30) + " " +
                               letters(30) + ")\n");
+}
+
+TEST(Layout, IntervalsAndUnitsStayWhole) {
+    const std::string words =
+        " F[0, 8 s] held[2 steps] x@3 s > y in [0.5, 1] for 20 min, 50 % of mean(x, 10 ms)";
+    const std::vector<std::string> wholes = {"F[0, 8 s]", "held[2 steps]", "x@3 s", "[0.5, 1]",
+                                             "20 min",    "50 %",          "10 ms"};
+    for (std::size_t n = 1; n < kLineWidth; ++n) {
+        Printer comment;
+        print_comment(comment, "//", letters(n) + words);
+        Printer table;
+        print_table(table, "//   ", {{letters(1 + n % 40) + words, letters(n % 7)}}, 2);
+        for (const std::string& text : {comment.take(), table.take()})
+            for (const std::string& whole : wholes)
+                EXPECT_NE(text.find(whole), std::string::npos) << whole << " in\n" << text;
+        const std::string room = letters(2 * n) + " F[0, 8 s] ";
+        for (const std::string& cut : {quoted(room + letters(160)), shortened(room + letters(60))})
+            EXPECT_EQ(cut.find('[') != std::string::npos, cut.find("8 s]") != std::string::npos)
+                << cut;
+    }
 }
 
 TEST(Layout, ALongCommentStandsAboveItsDeclaration) {

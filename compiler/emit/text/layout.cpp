@@ -18,6 +18,43 @@ bool is_word(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
+/// Returns whether the text ends in a number: "[0, 8", "x > 0.5".
+bool ends_in_number(Text text) {
+    std::size_t begin = text.size();
+    while (begin > 0 && (is_word(text[begin - 1]) || text[begin - 1] == '.')) --begin;
+    const Text word = text.substr(begin);
+    return !word.empty() && word.back() != '.' &&
+           std::isdigit(static_cast<unsigned char>(word.front())) != 0;
+}
+
+bool begins_with_unit(Text text) {
+    std::size_t end = 0;
+    while (end < text.size() && is_word(text[end])) ++end;
+    for (const Text unit : {"us", "ms", "s", "min", "h", "Hz", "step", "steps", "bytes"})
+        if (text.substr(0, end) == unit) return true;
+    return text.starts_with('%');
+}
+
+/// Returns the length of "[0, 8 s]" at the beginning of a text; 0 for a longer list.
+std::size_t interval(Text text) {
+    constexpr std::size_t kLongestInterval = 32;
+    const std::size_t close = text.find(']');
+    return close < kLongestInterval && text.find('[', 1) > close ? close + 1 : 0;
+}
+
+/// Returns the length of the first words of a text between which no line may break.
+std::size_t unbroken(Text text) {
+    std::size_t end = 0;
+    while (end < text.size()) {
+        const std::size_t whole = text[end] == '[' ? interval(text.substr(end)) : 0;
+        const bool breaks = text[end] == ' ' && !(ends_in_number(text.substr(0, end)) &&
+                                                  begins_with_unit(text.substr(end + 1)));
+        if (breaks) break;
+        end += std::max<std::size_t>(whole, 1);
+    }
+    return end;
+}
+
 /// Returns the number of open brackets around each character; a bracket itself is outside. `<` is a
 /// bracket directly after a name.
 std::vector<std::size_t> depths(Text text) {
@@ -166,6 +203,14 @@ std::string float_literal(float x) {
     return text + "f";
 }
 
+std::size_t fitting(std::string_view text, std::size_t width) {
+    std::size_t end = unbroken(text);
+    for (std::size_t next = end; next <= width && next < text.size();
+         next += 1 + unbroken(text.substr(next + 1)))
+        end = next;
+    return end;
+}
+
 std::string quoted(std::string_view text) {
     std::string line;
     for (char c : text) {
@@ -177,7 +222,7 @@ std::string quoted(std::string_view text) {
     }
     while (!line.empty() && line.back() == ' ') line.pop_back();
     if (line.size() <= kLongestQuote) return line;
-    std::size_t cut = kLongestQuote - 4;
+    std::size_t cut = std::min(fitting(line, kLongestQuote - 4), kLongestQuote - 4);
     while (cut > 0 && (static_cast<unsigned char>(line[cut]) & 0xC0U) == 0x80U)
         --cut;  // not inside a code point
     return line.substr(0, cut) + " ...";
@@ -210,7 +255,7 @@ void print_comment(Printer& out, std::string_view mark, std::string_view text, s
     const bool breaks = line.size() + 1 + text.size() > width;
     bool first_word = true;
     while (!text.empty()) {
-        const std::string_view word = text.substr(0, text.find(' '));
+        const std::string_view word = text.substr(0, unbroken(text));
         // A line that is too long breaks before two blanks first.
         const bool parts = word.empty() && breaks;
         if (!first_word && (parts || line.size() + 1 + word.size() > width)) {

@@ -24,6 +24,10 @@ void print_wrapped(Printer& out, const std::string& text);
 /// Prints a statement with a comment: on one line if both fit, otherwise above it.
 void print_with_comment(Printer& out, const std::string& text, const std::string& comment);
 
+/// Returns the length of the longest beginning of a text that fits and ends between words, neither
+/// inside an interval "F[0, 8 s]" nor before a unit; of the first word if even that does not fit.
+std::size_t fitting(std::string_view text, std::size_t width);
+
 /// Prints a comment, broken between words. Each line begins with the mark and a blank; lines after
 /// the first have `hang` more blanks.
 void print_comment(Printer& out, std::string_view mark, std::string_view text,

@@ -8,7 +8,8 @@ namespace etlc::emit {
 
 std::string shortened(const std::string& formula) {
     constexpr std::size_t kLongest = 60;
-    return formula.size() <= kLongest ? formula : formula.substr(0, kLongest - 4) + " ...";
+    if (formula.size() <= kLongest) return formula;
+    return formula.substr(0, std::min(fitting(formula, kLongest - 4), kLongest - 4)) + " ...";
 }
 
 std::string number(std::uint64_t x) {
@@ -22,16 +23,15 @@ bool is_comment(const std::string& prefix) {
 namespace {
 
 /// Breaks the words of a cell into lines of at most `width`, unless a word is longer.
-std::vector<std::string> lines_of(std::string cell, std::size_t width) {
+std::vector<std::string> lines_of(std::string_view cell, std::size_t width) {
     std::vector<std::string> lines;
     while (cell.size() > width) {
-        std::size_t end = cell.rfind(' ', width);
-        if (end == std::string::npos) end = cell.find(' ');
-        if (end == std::string::npos) break;
-        lines.push_back(cell.substr(0, end));
-        cell.erase(0, end + 1);
+        const std::size_t end = fitting(cell, width);
+        if (end == cell.size()) break;
+        lines.emplace_back(cell.substr(0, end));
+        cell.remove_prefix(end + 1);
     }
-    lines.push_back(cell);
+    lines.emplace_back(cell);
     return lines;
 }
 

@@ -25,9 +25,13 @@ Cost distance_cost(const check::Model& model, const check::Distance& distance) {
     const bool between = distance.is_between_points();
     const std::uint64_t rows = between ? 1 : model.targets[distance.target].rows;
     const std::uint64_t elements = rows * dimension;
-    // Between points, cosine and angular scale the second one to length 1.
+    // Between points, cosine and angular scale the second one to length 1; kth keeps the smallest.
     const bool scales = between && check::is_of_directions(distance.metric);
-    return {.stack_bytes = scales ? dimension * kWord : 0,
+    const bool keeps = distance.aggregation == check::Aggregation::kth;
+    return {.stack_bytes = (scales  ? dimension
+                            : keeps ? distance.kth
+                                    : 0) *
+                           kWord,
             .distance_operations = distance.full_weights() ? elements * (1 + dimension) : elements};
 }
 
@@ -49,6 +53,12 @@ Cost point_cost(const check::Model& model, const check::Point& point) {
 std::uint64_t bytes_of_element(check::InputType type) {
     if (type == check::InputType::i8) return sizeof(std::int8_t);
     return type == check::InputType::f16 ? sizeof(std::uint16_t) : sizeof(float);
+}
+
+/// Returns the cost of an embedding whose elements become float32.
+Cost widening_cost(const check::Input& input) {
+    const bool widens = input.is_embedding() && input.type != check::InputType::f32;
+    return {.stack_bytes = widens ? input.dimension * kWord : 0};
 }
 
 Cost hold_cost(const check::Input& input) {
@@ -113,7 +123,8 @@ public:
         sum.target_bytes = target_bytes(plan_, distances_, Vectors::with);
         sum.scalar_target_bytes = target_bytes(plan_, distances_, Vectors::without);
         for (Index i : inputs_)
-            sum = sum + hold_cost(model.inputs[i]) + stale_cost(model.inputs[i]);
+            sum = sum + widening_cost(model.inputs[i]) + hold_cost(model.inputs[i]) +
+                  stale_cost(model.inputs[i]);
         return sum;
     }
 
@@ -179,6 +190,26 @@ Cost operator+(Cost a, const Cost& b) {
 bool within(const Cost& cost, const Limits& limits) {
     return cost.state_bytes + cost.stack_bytes <= limits.state_bytes &&
            cost.code_bytes <= limits.code_bytes && cost.operations <= limits.operations;
+}
+
+std::string what_takes_stack(const Plan& plan) {
+    const check::Model& model = *plan.model;
+    std::string list;
+    const auto add = [&](std::string_view what, const Cost& cost) {
+        if (cost.stack_bytes == 0 || list.find(what) != std::string::npos) return;
+        list.append(list.empty() ? "" : ", ").append(what);
+    };
+    for (const Reading& reading : plan.readings)
+        add("positions evaluated again", cost_of(reading, plan.values));
+    for (const Stream& stream : plan.streams) add("counts", cost_of(stream, plan.values));
+    for (const Index i : plan.inputs) add("widened embeddings", widening_cost(model.inputs[i]));
+    for (const Index p : built_points(model, plan.distances))
+        add(model.points[p].is_projected() ? "projected points" : "points of distances",
+            point_cost(model, model.points[p]));
+    for (const Index d : plan.distances)
+        add(model.distances[d].is_between_points() ? "points scaled to length 1" : "kth",
+            distance_cost(model, model.distances[d]));
+    return list;
 }
 
 std::string in_words(const Cost& cost) {

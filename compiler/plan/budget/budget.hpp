@@ -30,6 +30,8 @@ using Advice = std::function<std::vector<diag::Note>(check::Index monitor, Among
 
 Cost operator+(Cost a, const Cost& b);
 bool within(const Cost& cost, const Limits& limits);
+/// Returns the parts of a plan whose arrays are on the stack: "projected points, counts".
+std::string what_takes_stack(const Plan& plan);
 /// Describes a cost: "12 bytes of state, 216 bytes of code (estimated), 3 operations a step".
 std::string in_words(const Cost& cost);
 Cost cost_of(const Stream& stream, check::Values values);

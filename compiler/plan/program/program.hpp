@@ -41,8 +41,8 @@ struct Let {
 /// in each).
 struct Cost {
     std::uint64_t state_bytes = 0;
-    std::uint64_t stack_bytes = 0;   ///< arrays of a step, for positions that are evaluated again
-    std::uint64_t target_bytes = 0;  ///< with weights, on a machine with float vectors
+    std::uint64_t stack_bytes = 0;          ///< arrays of a step: what_takes_stack()
+    std::uint64_t target_bytes = 0;         ///< with weights, on a machine with float vectors
     std::uint64_t scalar_target_bytes = 0;  ///< the same on a machine without
     std::uint64_t code_bytes = 0;           ///< estimated, targets aside
     std::uint64_t operations = 0;           ///< min, max and comparisons of the temporal part

@@ -75,7 +75,8 @@ function showWhy() {
   const goTo = element("button", { type: "button", class: "go" }, `go to ${when(chosen.step)}`);
   goTo.addEventListener("click", () => moveCursor(chosen.step));
   fill("why", element("h4", {}, "Why"), buttons, goTo,
-    element("pre", { "data-monitor": data.monitors[chosen.monitor].name }, chosen.text));
+    element("pre", { "data-monitor": data.monitors[chosen.monitor].name },
+      ...unbroken(chosen.text)));
 }
 
 function moveCursor(step) {

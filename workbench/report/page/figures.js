@@ -55,7 +55,8 @@ function monitorTable() {
   for (const monitor of data.monitors) {
     const of = figures?.monitors[monitor.name];
     const row = element("tr", { "data-monitor": monitor.name },
-      element("th", {}, monitor.name), element("td", { class: "formula" }, monitor.formula));
+      element("th", {}, monitor.name),
+      element("td", { class: "formula" }, ...unbroken(monitor.formula)));
     body.append(row);
     if (!figures) continue;
     if (!of.evaluable) {
@@ -81,7 +82,8 @@ function provenanceTable() {
   for (const predicate of data.predicates)
     body.append(element("tr", {}, element("th", {}, predicate.shown),
       element("td", { class: "formula" },
-        `${predicate.expression} ${predicate.comparison} ${measured(predicate.threshold)}`),
+        ...unbroken(
+          `${predicate.expression} ${predicate.comparison} ${measured(predicate.threshold)}`)),
       element("td", {}, predicate.provenance)));
   for (const monitor of data.monitors)
     for (const guarantee of monitor.guarantees)

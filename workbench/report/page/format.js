@@ -19,6 +19,18 @@ function fill(id, ...children) {
   document.getElementById(id).replaceChildren(...children);
 }
 
+// Returns the children of an element that shows a formula: no line breaks inside "[0, 8 s]" or
+// between a number and its unit.
+function unbroken(text) {
+  const children = [];
+  let at = 0;
+  for (const match of text.matchAll(/\[[^[\]]{1,30}\]|[\d.]+ (?:us|ms|s|min|h|steps?)\b/g)) {
+    children.push(text.slice(at, match.index), element("span", { class: "whole" }, match[0]));
+    at = match.index + match[0].length;
+  }
+  return [...children, text.slice(at)];
+}
+
 // Formats a figure as etlc's tables do: "0.950".
 const rate = (value) => (value === null || value === undefined ? "–" : value.toFixed(3));
 
