@@ -4,6 +4,15 @@ include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_DATADIR}/cmake/etlc")
 
+# ./demo.sh builds only what it runs; nothing is installed before all of it is there.
+install(CODE "
+foreach(file $<TARGET_FILE:etlc> $<TARGET_FILE:libetlc> $<TARGET_FILE:etlc_read_hdf5>)
+  if(NOT EXISTS \"\${file}\")
+    message(FATAL_ERROR
+      \"There is no \${file}. Build all first:\n  cmake --build ${PROJECT_BINARY_DIR}\")
+  endif()
+endforeach()")
+
 install(TARGETS etlc EXPORT etlcTargets RUNTIME)
 # Where etlc looks for it, relative to bin/.
 install(TARGETS etlc_read_hdf5 etlc_read_parquet RUNTIME DESTINATION libexec/etlc)
@@ -18,7 +27,7 @@ if(TARGET etlc_serve)
   install(TARGETS etlc_serve RUNTIME DESTINATION libexec/etlc COMPONENT serve)
 endif()
 install(TARGETS etlmon EXPORT etlmonTargets)
-install(TARGETS libetlc EXPORT etlcTargets)
+install(TARGETS libetlc EXPORT etlcLibraryTargets)
 file(RELATIVE_PATH ETLC_PREFIX_FROM_PC "/usr/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/usr")
 configure_file("${CMAKE_CURRENT_LIST_DIR}/etlc.pc.in" "${PROJECT_BINARY_DIR}/etlc.pc" @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/etlc.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
@@ -27,6 +36,7 @@ install(DIRECTORY "${PROJECT_SOURCE_DIR}/runtime/include/etlmon"
   FILES_MATCHING PATTERN "*.hpp" PATTERN "*.inc" PATTERN "*.def")
 
 install(EXPORT etlcTargets NAMESPACE etlc:: DESTINATION "${package_dir}")
+install(EXPORT etlcLibraryTargets NAMESPACE etlc:: DESTINATION "${package_dir}")
 install(EXPORT etlmonTargets NAMESPACE etlmon:: DESTINATION "${package_dir}")
 configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/etlcConfig.cmake.in"
   "${PROJECT_BINARY_DIR}/etlcConfig.cmake"
@@ -39,13 +49,10 @@ install(FILES "${PROJECT_BINARY_DIR}/etlcConfig.cmake"
   "${PROJECT_BINARY_DIR}/etlcConfigVersion.cmake"
   "${CMAKE_CURRENT_LIST_DIR}/EtlAddMonitor.cmake" DESTINATION "${package_dir}")
 
-# The output of `etlc --man` and `etlc --completion`, where man and the shells look.
+# The output of `etlc --man` and `etlc --completion bash`, where man and bash look.
 set(manual "${PROJECT_BINARY_DIR}/workbench/driver/manual")
 install(FILES "${manual}/etlc.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 install(FILES "${manual}/etlc" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
-install(FILES "${manual}/_etlc" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions")
-install(FILES "${manual}/etlc.fish"
-  DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d")
 
 # The pages, and everything that their links lead to.
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}"

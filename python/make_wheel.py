@@ -55,6 +55,7 @@ def main(pyproject, library, command, *programs, folder):
     with tempfile.TemporaryDirectory() as box:
         source = Path(box)
         shutil.copytree(here / "etlc", source / "etlc", ignore=shutil.ignore_patterns("__pyc*"))
+        shutil.copytree(here / "bin", source / "bin")
         stage(source / "etlc" / "_native", library, command, programs)
         shutil.copy(pyproject, source)
         shutil.copy(here / "setup.py", source)

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # consumer_test.sh BUILD_DIR CMAKE CXX GENERATOR: installs etlc under a new prefix. A project
-# outside the source tree finds it, builds monitors with it and runs them. A changed target rebuilds
-# only its own header.
+# outside the source tree finds it, builds monitors with it and runs them; so does one for a board
+# without dynamic linking. A changed target rebuilds only its own header. What ./demo.sh configures
+# is installed once all of it is built, as README.md says, and nothing is before.
 set -euo pipefail
 build_dir=$1 cmake=$2 cxx=$3 generator=$4
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -92,3 +93,71 @@ change sed -i 's/<= 2.25/<= /' "$box/consumer/specs/guard.etl"
 if "$cmake" --build "$box/build" >"$box/log" 2>&1; then fail "a spec with an error builds"; fi
 grep -q 'guard.etl:4:.*error:' "$box/log" ||
     { cat "$box/log"; fail "the error of the spec is not shown"; }
+
+# A bare-metal program, where CMake warns of every shared library that a package imports.
+if command -v arm-none-eabi-g++ >"$box/log"; then
+    mkdir "$box/board"
+    cp "$here/consumer/specs/guard.etl" "$box/board"
+    cat >"$box/board/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.20)
+project(board CXX)
+find_package(etlc REQUIRED)
+add_library(board STATIC board.cpp)
+etlc_add_monitor(board SPEC guard.etl)
+END
+    echo '#include "guard.hpp"
+    static guard::Monitor monitor;
+    bool alarm(const guard::Inputs& in) { return monitor.step(in).limit.alarm(); }' \
+        >"$box/board/board.cpp"
+    cat >"$box/board/arm.cmake" <<'END'
+set(CMAKE_SYSTEM_NAME Generic)
+set(CMAKE_SYSTEM_PROCESSOR arm)
+set(CMAKE_CXX_COMPILER arm-none-eabi-g++)
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+set(CMAKE_CXX_FLAGS_INIT "-mcpu=cortex-m4 -mthumb -fno-exceptions -fno-rtti")
+END
+    "$cmake" -Werror=dev -S "$box/board" -B "$box/board/build" -G "$generator" \
+        -DCMAKE_TOOLCHAIN_FILE="$box/board/arm.cmake" -DCMAKE_PREFIX_PATH="$box/prefix" \
+        >"$box/log" 2>&1 && ! grep -i warning "$box/log" &&
+        "$cmake" --build "$box/board/build" >>"$box/log" 2>&1 ||
+        { cat "$box/log"; fail "a bare-metal program"; }
+fi
+
+# README.md: ./demo.sh, cmake --build, cmake --install. Every file that the last one copies from the
+# build folder is there after the first, or made by the second.
+[ "$generator" = Ninja ] || exit 0
+top=$here/../..
+[ "$(sed -n '/^## Get it/,/^## /p' "$top/README.md" |
+    grep -oE '^    (\./demo\.sh|cmake --(build|install) build/release)' | tr -d '\n')" = \
+    "    ./demo.sh    cmake --build build/release    cmake --install build/release" ] ||
+    fail "README.md on how to install etlc"
+demo=$box/demo
+words=$(grep -oE '^ *configure release .*' "$top/demo.sh" | sed 's/.*configure release //')
+# shellcheck disable=SC2086 # several words
+(cd "$top" && "$cmake" --preset release -B "$demo" -G Ninja -DCMAKE_CXX_COMPILER="$cxx" $words) \
+    >"$box/log" 2>&1 || { cat "$box/log"; fail "what ./demo.sh configures"; }
+if "$cmake" --install "$demo" --prefix "$box/early" >"$box/log" 2>&1; then
+    fail "what is not built is installed"
+fi
+grep -q "^ *cmake --build $demo" "$box/log" && [ ! -e "$box/early" ] ||
+    { cat "$box/log"; fail "installed before it was built: $(ls "$box")"; }
+/usr/bin/python3 - "$demo" <<'END' >"$box/missing" || fail "what is installed: $(cat "$box/missing")"
+import pathlib, re, sys
+
+folder = pathlib.Path(sys.argv[1])
+made_of = {}
+for line in re.findall(r"^build (.*)$", (folder / "build.ninja").read_text(), re.M):
+    outputs, inputs = line.split(": ", 1)
+    made_of.update(dict.fromkeys(outputs.split(), outputs.split() + inputs.split()))
+made, open_ = set(), ["all"]
+while open_:
+    file = open_.pop()
+    if file not in made:
+        made.add(file)
+        open_ += made_of.get(file, [])
+scripts = "\n".join(script.read_text() for script in folder.rglob("cmake_install.cmake"))
+installed = set(re.findall(rf'"{folder}/([^"$]+)"', scripts))
+missing = [x for x in installed if x not in made and not (folder / x).exists()]
+print(*(missing or installed))
+sys.exit(bool(missing) or not {"etlc", "libetlc.so", "libetlc.so.1"} <= installed)
+END
