@@ -41,8 +41,7 @@ done
 for file in include/etlmon/temporal/value.hpp share/cmake/etlc/etlcConfig.cmake \
     share/cmake/etlc/EtlAddMonitor.cmake share/doc/etlc/copyright include/etlc.h \
     lib/libetlc.so lib/libetlc.so.1 lib/pkgconfig/etlc.pc share/man/man1/etlc.1 \
-    share/bash-completion/completions/etlc share/zsh/vendor-completions/_etlc \
-    share/fish/vendor_completions.d/etlc.fish; do
+    share/bash-completion/completions/etlc; do
     [ -f "$box/root/usr/$file" ] || fail "it lacks /usr/$file"
 done
 

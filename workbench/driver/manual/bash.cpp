@@ -95,8 +95,7 @@ std::string completion_of_bash(const std::vector<CommandHelp>& commands) {
         fmt::format("    case ${{COMP_WORDS[1]}} in\n        {}) command=${{COMP_WORDS[1]}} ;;\n",
                     fmt::join(names, " | "));
     text += "    esac\n    case \"$command $before\" in\n" + values;
-    text += fmt::format("        ' --completion') _etlc_words '{}'; return ;;\n",
-                        fmt::join(kShells, " "));
+    text += "        ' --completion') _etlc_words 'bash'; return ;;\n";
     text += "    esac\n    if [[ $current == -* ]]; then\n        case $command in\n" + options +
             "        esac\n        return\n    fi\n    case $command in\n";
     text += others + "    esac\n";

@@ -100,7 +100,7 @@ std::string manual_page(const std::vector<CommandHelp>& commands, const std::str
         version);
     for (const CommandHelp& command : commands) text += synopsis(command);
     text += ".br\n\\fBetlc \\-\\-explain\\fR \\fICODE\\fR\n";
-    text += fmt::format(".br\n\\fBetlc \\-\\-completion\\fR \\fI{}\\fR\n", fmt::join(kShells, "|"));
+    text += ".br\n\\fBetlc \\-\\-completion bash\\fR\n";
     text += ".br\n\\fBetlc \\-\\-man\\fR\n";
     text += ".SH DESCRIPTION\n" + lines_of(compiles.text.substr(0, compiles.text.find('\n')));
     text += ".SH OPTIONS\n" + items(compiles);

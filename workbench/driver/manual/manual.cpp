@@ -1,4 +1,4 @@
-// The code that the manual page and the completion scripts share, and the calls that print them.
+// The code that the manual page and the completion script share, and the calls that print them.
 #include "driver/manual/manual.hpp"
 
 #include <fmt/format.h>
@@ -73,15 +73,6 @@ std::string word_of(const CommandHelp& command) {
     return blank == std::string::npos ? "" : command.name.substr(blank + 1);
 }
 
-std::string first_sentence(const std::string& text) {
-    std::string line = text;
-    std::replace(line.begin(), line.end(), '\n', ' ');
-    const std::size_t end = std::min(line.find(". "), line.find(": "));
-    if (end != std::string::npos) line.resize(end);
-    if (line.ends_with('.')) line.pop_back();
-    return line;
-}
-
 namespace {
 
 int print_text(const std::string& text) {
@@ -93,15 +84,12 @@ int print_text(const std::string& text) {
 }  // namespace
 
 int completion_command(const std::string& shell) {
-    const std::string mistake = mistake_in_word(shell, {std::begin(kShells), std::end(kShells)});
+    const std::string mistake = mistake_in_word(shell, {"bash"});
     if (!mistake.empty()) {
         print_error(fmt::format("etlc: --completion: {}\n", mistake));
         return kWrongCall;
     }
-    const std::vector<CommandHelp> commands = all_help();
-    return print_text(shell == "bash"  ? completion_of_bash(commands)
-                      : shell == "zsh" ? completion_of_zsh(commands)
-                                       : completion_of_fish(commands));
+    return print_text(completion_of_bash(all_help()));
 }
 
 int manual_command() {

@@ -1,4 +1,4 @@
-// `etlc --completion SHELL`, `etlc --man`, docs/command_line.md and a module of the Python package,
+// `etlc --completion bash`, `etlc --man`, docs/command_line.md and a module of the Python package,
 // made from the table of options.
 // Keeps true: every command and every option is in each of them.
 #pragma once
@@ -31,10 +31,8 @@ struct CommandHelp {
 /// Returns the help of all commands, that of etlc itself first.
 std::vector<CommandHelp> all_help();
 
-/// Make the completion scripts of the shells.
+/// Makes the completion script of bash. zsh reads --help, and fish the manual page.
 std::string completion_of_bash(const std::vector<CommandHelp>& commands);
-std::string completion_of_zsh(const std::vector<CommandHelp>& commands);
-std::string completion_of_fish(const std::vector<CommandHelp>& commands);
 
 /// Makes the page for man and groff.
 std::string manual_page(const std::vector<CommandHelp>& commands, const std::string& version);
@@ -45,7 +43,7 @@ std::string command_line_page();
 /// Makes python/etlc/_options.py.
 std::string python_options();
 
-/// Run `etlc --completion SHELL` and `etlc --man`, and return the exit status.
+/// Run `etlc --completion bash` and `etlc --man`, and return the exit status.
 int completion_command(const std::string& shell);
 int manual_command();
 
@@ -56,11 +54,7 @@ Paths paths_of(const OptionHelp& option);
 /// Returns "run" for "etlc run".
 std::string word_of(const CommandHelp& command);
 
-/// Returns the first sentence of a text, on one line.
-std::string first_sentence(const std::string& text);
-
 /// Options of etlc that stand alone and are not in the table.
 inline constexpr const char* kOwnWords[] = {"--completion", "--man"};
-inline constexpr const char* kShells[] = {"bash", "zsh", "fish"};
 
 }  // namespace etlc::driver

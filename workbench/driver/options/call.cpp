@@ -69,7 +69,7 @@ CommandText text_of(Command command) {
         if (!other.name.empty())
             summary += fmt::format("  etlc {}{}{}\n", other.name, other.takes.empty() ? "" : " ",
                                    other.takes);
-    summary += "  etlc --explain CODE\n  etlc --completion bash|zsh|fish\n  etlc --man";
+    summary += "  etlc --explain CODE\n  etlc --completion bash\n  etlc --man";
     return {"etlc", summary,
             "Exit status: 0, success; 1, failure, which a message explains; 2, the call is wrong; "
             "3, an internal error of etlc."};
