@@ -2,14 +2,17 @@
 """same_recording_test.py ETLC: every way from a recording to another episode, in every storage.
 `etlc calibrate`, `evaluate`, and calibration on the episodes of a fit refuse it; other recordings
 pass in the same way."""
+import contextlib
 import ctypes
 import ctypes.util
 import itertools
 import json
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
+import time
 
 import numpy as np
 
@@ -244,12 +247,65 @@ def test_old_files(world):
     assert done.returncode == 0, done.stderr  # it still compiles
 
 
+def has_nameless_file(process, folder):
+    """Returns whether a process writes a file that has no name yet in the folder."""
+    with contextlib.suppress(OSError):  # of descriptors that are closed meanwhile
+        for link in pathlib.Path(f"/proc/{process}/fd").iterdir():
+            of = os.readlink(link)
+            if of.startswith(f"{folder}/") and of.endswith(" (deleted)"):
+                return True
+    return False
+
+
+def test_another_call(world):
+    """The thresholds to which those of monitors are added are not replaced where another call has
+    changed them meanwhile. A pipe that is full holds etlc before the file takes its name."""
+    (world.folder / "w.etl").write_text(
+        "spec w; input x : f32; predicate a = x <= calibrated(conformal, alpha = 0.25);\n"
+        "monitor m = F a calibrated(conformal, alpha = 0.25, against = missed_alarm);\n")
+    for half in ("first", "second"):
+        (world.folder / half).mkdir()
+        for number in range(8):
+            x = np.linspace(3, 0, 20) + world.random.normal(0, 0.1, 20)
+            np.savez(world.folder / half / f"{number}.npz", **{"x": x, "truth.a": x < 1})
+
+    def call(*words, **options):
+        return subprocess.Popen([world.etlc, "calibrate", "w.etl", "--data", *words],
+                                cwd=world.folder, stderr=subprocess.PIPE, text=True, **options)
+
+    assert call("first", stdout=subprocess.DEVNULL).wait() == 0
+    file = world.folder / "w.thresholds.json"
+    for changes in (True, False):
+        readable, writable = os.pipe()
+        os.set_blocking(writable, False)
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                os.write(writable, b" " * 512)
+        os.set_blocking(writable, True)
+        adding = call("second", "--thresholds", file.name, stdout=writable)
+        os.close(writable)
+        while not has_nameless_file(adding.pid, world.folder.resolve()):
+            assert adding.poll() is None, adding.stderr.read()
+            time.sleep(0.01)
+        before = file.read_text() + ("\n" if changes else "")
+        file.write_text(before)
+        with open(readable, encoding="utf-8") as pipe:
+            pipe.read()
+        said = adding.stderr.read()
+        if changes:
+            assert adding.wait() == 1 and "[E0901]" in said and "since it was read" in said, said
+            assert file.read_text() == before
+        else:
+            assert adding.wait() == 0 and "m" in json.loads(file.read_text())["monitors"], said
+
+
 def main(etlc):
     with tempfile.TemporaryDirectory() as name:
         world = World(etlc, pathlib.Path(name), 1)
         test_episodes(world)
         test_scalars(world)
         test_old_files(world)
+        test_another_call(world)
 
 
 if __name__ == "__main__":

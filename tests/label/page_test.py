@@ -104,7 +104,14 @@ def accept_and_correct(labeller):
     labeller.expect(corrected)
     labeller.key("u")
     labeller.expect(said)
+    labeller.key("U")
+    labeller.expect(corrected)
+    labeller.key("U")  # nothing is left
+    labeller.expect(corrected)
+    labeller.key("u")
     labeller.key("b")
+    labeller.expect(corrected)
+    labeller.key("U")  # a new key leaves nothing to redo
     labeller.expect(corrected)
     return first
 
@@ -118,9 +125,11 @@ def undo_elsewhere(labeller, episode):
 
 def reload(labeller):
     before = rows(labeller.table)
+    episode = labeller.value("view.episode")
     labels = labeller.value("JSON.stringify(store.labels)")
     labeller.page.call("Page.reload")
     labeller.page.wait("typeof store !== 'undefined' && store.version > 0")
+    assert labeller.value("view.episode") == episode
     assert labeller.value("JSON.stringify(store.labels)") == labels
     assert rows(labeller.table) == before
     labeller.page.wait("store.proposals.size === 3")
@@ -262,6 +271,140 @@ def without_frames(browser, folder):
         assert labeller.value("document.querySelectorAll('.lane').length") == 2
 
 
+def network(labeller, latency=0, offline=False):
+    labeller.page.call("Network.emulateNetworkConditions", offline=offline, latency=latency,
+                       downloadThroughput=-1, uploadThroughput=-1)
+
+
+def at_speed(labeller, *keys):
+    """Presses keys without waiting for answers, and then for all of them."""
+    for key in keys:
+        labeller.page.key(key)
+    labeller.page.wait("document.body.dataset.waiting === '0'")
+
+
+def go_on_at_once(labeller, before):
+    """Each key is about the episode that was shown when it was pressed."""
+    labeller.value("chooseEpisode(0)")
+    labeller.value("choosePredicate(0)")
+    count = labeller.value("data.episodes.length")
+    keys, expected = [], []
+    for episode in range(count):
+        name = labeller.value(f"data.episodes[{episode}].name")
+        keys += [*["ArrowRight"] * episode, "b", "p", "f", "p", "j"]
+        expected += [[name, "near", str(episode or ""), ""], [name, "!passes", "", ""]]
+    at_speed(labeller, *keys)
+    assert labeller.value("view.episode") == count - 1, labeller.value("view.episode")
+    assert rows(labeller.table) == sorted(expected), (rows(labeller.table), expected)
+    at_speed(labeller, *"uu" * count)
+    assert rows(labeller.table) == before, rows(labeller.table)
+
+
+def accept_at_once(labeller, before):
+    """`n` goes to the next episode that will not be labelled once all keys are written."""
+    labeller.page.wait("store.proposals.size === 3")
+    at_speed(labeller, *"nanana")
+    text = labeller.value("document.getElementById('progress').textContent")
+    assert text.startswith("6 of 6 episodes labelled"), text
+    assert labeller.trouble() == "", labeller.trouble()
+    last = labeller.value("view.episode")
+    at_speed(labeller, "u")
+    assert labeller.value("view.episode") == last
+    at_speed(labeller, *"uu")
+    assert labeller.value("view.episode") != last, "undo goes to the episode that it is about"
+    assert rows(labeller.table) == before, rows(labeller.table)
+
+
+def undo_and_go_on(labeller, before):
+    """The answer to undo does not take back an episode that was chosen since."""
+    labeller.value("chooseEpisode(2)")
+    at_speed(labeller, "c")
+    labeller.value("chooseEpisode(4)")
+    at_speed(labeller, "u", "j")
+    assert labeller.value("view.episode") == 5
+    note = labeller.value("document.getElementById('note').textContent")
+    assert note == f"undo in {labeller.value('data.episodes[2].name')}", note
+    assert rows(labeller.table) == before, rows(labeller.table)
+
+
+def late_frames(labeller):
+    """A frame that arrives when another episode is shown is not drawn."""
+    labeller.value("""drawn = [], drawFrame = ((draw) => (image, caption) => {
+        drawn.push([view.episode, caption]);
+        draw(image, caption);
+    })(drawFrame), chooseEpisode(1)""")
+    for key in ("End", "j", "End", "k"):
+        labeller.page.key(key)
+    labeller.page.wait("document.getElementById('frame').dataset.place === '1/0'")
+    labeller.page.wait("drawn.some(([of, caption]) => of === 1 && caption.includes('step 0 '))")
+    found = labeller.value("drawn.filter(([, caption]) => caption.includes('step 59'))")
+    assert found == [], found
+
+
+def pending_keys(labeller, before):
+    """Keys that are not on disk are shown; Esc drops them, but not the one that is on its way."""
+    labeller.value("chooseEpisode(0)")
+    labeller.value("choosePredicate(0)")
+    network(labeller, offline=True)
+    labeller.page.key("f")
+    labeller.page.key("j")
+    labeller.page.key("c")
+    labeller.page.wait("document.getElementById('trouble').textContent.includes('2 keys')")
+    note = labeller.value("document.getElementById('note').textContent")
+    names = [labeller.value(f"data.episodes[{episode}].name") for episode in range(2)]
+    assert note == f"not written yet: f in {names[0]}, c in {names[1]}", note
+    assert labeller.value("document.querySelectorAll('.row.waiting').length") == 2
+    network(labeller)
+    labeller.page.wait("document.body.dataset.waiting === '0'")
+    labeller.page.wait("document.getElementById('trouble').textContent === ''")
+    assert labeller.value("document.getElementById('note').hidden")
+    assert [names[0], "!near", "", ""] in rows(labeller.table), rows(labeller.table)
+    at_speed(labeller, *"uu")
+    assert rows(labeller.table) == before, rows(labeller.table)
+
+    labeller.value("chooseEpisode(0)")
+    network(labeller, latency=500)
+    labeller.page.key("f")
+    labeller.page.key("b")
+    labeller.page.key("Escape")
+    labeller.page.key("x")
+    labeller.page.wait("document.body.dataset.waiting === '0'")
+    assert [names[0], "!near", "", ""] in rows(labeller.table), rows(labeller.table)
+    network(labeller)
+    at_speed(labeller, "u")
+    assert rows(labeller.table) == before, rows(labeller.table)
+
+
+def refused_key(labeller):
+    """What a key was refused for stays on the page until the next one, whatever is answered."""
+    labeller.value("chooseEpisode(0)")
+    labeller.value("store.waiting.push({action: 'begin', episode: 0, predicate: 9, step: 0})")
+    at_speed(labeller, "f")
+    assert "b in" in labeller.trouble() and "no such key" in labeller.trouble(), labeller.trouble()
+    at_speed(labeller, "u")
+    assert labeller.trouble() == "", labeller.trouble()
+
+
+def late_answers(browser, folder):
+    (folder / "late").mkdir()
+    (folder / "late" / "stack.etl").write_text(SPEC)
+    make_episodes(folder / "late" / "demos")
+    (folder / "late" / "demos" / "labels.csv").write_text("episode,predicate,start,end\n" + "".join(
+        f"ep{number},near,50,\nep{number},passes,13,36\n" for number in range(3)))
+    with Service(ETLC, folder / "late", "--frames", "camera") as service:
+        labeller = Labeller(browser, service)
+        before = rows(service.table)
+        for latency in (0, 60, 150):
+            network(labeller, latency)
+            go_on_at_once(labeller, before)
+            accept_at_once(labeller, before)
+            undo_and_go_on(labeller, before)
+            late_frames(labeller)
+        pending_keys(labeller, before)
+        refused_key(labeller)
+        assert rows(service.table) == before, rows(service.table)
+
+
 def main():
     with tempfile.TemporaryDirectory() as name, Browser() as browser:
         folder = pathlib.Path(name)
@@ -284,6 +427,7 @@ def main():
             open_twice(browser, service, labeller)
             changed_meanwhile(labeller)
             full_disk(labeller, service)
+        late_answers(browser, folder)
         killed(browser, folder)
         without_frames(browser, folder)
 

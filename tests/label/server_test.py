@@ -11,6 +11,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 import numpy as np
@@ -153,6 +154,98 @@ def proposals(folder):
     table.unlink()
 
 
+def slow_connections(service):
+    """Connections that send a byte now and then keep no page waiting."""
+    slow = []
+    is_over = threading.Event()
+
+    def dribble():
+        while not is_over.wait(0.2):
+            for connection in slow:
+                connection.send(b"x")
+
+    for _ in range(200):
+        slow.append(socket.create_connection(("127.0.0.1", service.port)))
+        slow[-1].send(b"GET / HTTP/1.1\r\nX: ")
+    dribbling = threading.Thread(target=dribble)
+    dribbling.start()
+    try:
+        for _ in range(5):
+            assert request(service, f"/{service.token}/")[0] == 200
+    finally:
+        is_over.set()
+        dribbling.join()
+        for connection in slow:
+            connection.close()
+
+
+def two_labellers(folder):
+    """Two calls label one folder at a time, each its own episodes: no key that was acknowledged is
+    lost, though each reads the table again whenever the other one has written."""
+    count = 30
+    (folder / "demos").rename(folder / "others")
+    (folder / "demos").mkdir()
+    for number in range(count):
+        np.savez(folder / "demos" / f"run{number}.npz", z=np.zeros((STEPS, 2), np.float32))
+    acknowledged, refusals = {}, []
+
+    def label(service, episodes):
+        for episode in episodes:
+            name = service.names[episode]
+            for predicate in range(2):
+                step = (7 * episode + predicate) % (STEPS - 1) + 1
+                while True:
+                    status, _ = act(service, action="begin", episode=episode, predicate=predicate,
+                                    step=step)
+                    if status == 200:
+                        break
+                    assert status == 409, status
+                    refusals.append(episode)
+                    act(service, action="reload")
+                acknowledged[name, ("near", "passes")[predicate]] = str(step)
+
+    with Service(ETLC, folder) as one, Service(ETLC, folder) as two:
+        threads = []
+        for first, service in enumerate((one, two)):
+            service.names = sorted(f"run{number}" for number in range(count))
+            threads.append(threading.Thread(target=label,
+                                            args=(service, range(first, count, 2))))
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        found = {(name, predicate): start for name, predicate, start, _ in rows(one.table)}
+    assert len(acknowledged) == 2 * count, acknowledged
+    assert found == acknowledged, sorted(set(acknowledged.items()) - set(found.items()))
+    print(f"two labellers: {len(acknowledged)} keys, each refused {len(refusals)} times and "
+          "pressed again, none lost")
+    shutil.rmtree(folder / "demos")
+    (folder / "others").rename(folder / "demos")
+
+
+def sent_twice(service):
+    """A page that got no answer to a key sends it again: it is done once."""
+    table = service.table
+    assert act(service, action="end", episode=1, predicate=0, step=9)[0] == 200
+    first = act(service, action="unknown", episode=1, predicate=0, step=3, number=7)
+    assert rows(table) == [["ep0", "?near", "0", "10"]], rows(table)
+    assert act(service, action="unknown", episode=1, predicate=0, step=3, number=7) == first
+    assert rows(table) == [["ep0", "?near", "0", "10"]], rows(table)
+    assert act(service, action="unknown", episode=1, predicate=0, step=3, number=8)[0] == 200
+    assert rows(table) == [["ep0", "near", "0", "10"]], rows(table)
+
+
+def accepts_what_is_shown(service):
+    """Key `a` carries the labels that the page shows, whatever is proposed by now."""
+    for marks in ([[[5, 5, 1]]], [[[0, STEPS + 1, 1]]], [[[4, 9, 1], [8, 12, 1]]], [[["x", 3, 1]]],
+                  [3], 3):
+        status, said = act(service, action="accept", episode=2, marks=marks)
+        assert status == 400, (marks, said)
+    status, said = act(service, action="accept", episode=2, marks=[[[5, 9, 1], [20, STEPS, 2]], None])
+    assert status == 200 and said["labels"] == [[[5, 9, 1], [20, STEPS, 2]], None], said
+    assert act(service, action="undo")[0] == 200
+
+
 def another_table(folder):
     with Service(ETLC, folder, "--labels", "mine.csv") as service:
         assert act(service, action="never", episode=1, predicate=1, step=0)[0] == 200
@@ -215,9 +308,14 @@ def main():
             only_with_the_token(service)
             only_on_the_loopback(service)
             nonsense(service)
+            slow_connections(service)
+            sent_twice(service)
+            accepts_what_is_shown(service)
+            act(service, action="forget", episode=1, predicate=0, step=0)
             time_to_disk(service)
             service.table.unlink()
         wrong_tables(folder)
+        two_labellers(folder)
         another_table(folder)
         without_a_server(folder)
         ends_together(folder)

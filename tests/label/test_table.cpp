@@ -1,10 +1,15 @@
 // Tests the tables that `etlc label` rewrites.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
 
+#include "data/files/descriptor.hpp"
+#include "episodes/labels/labels.hpp"
 #include "label/table.hpp"
 #include "npy_bytes.hpp"
 
@@ -69,6 +74,32 @@ TEST(Table, StaysInSeconds) {
     EXPECT_EQ(file_bytes(file.path()), bytes + "a,near,0.3,0.7\n");
 }
 
+/// Compared with integers: t / 10^digits seconds are t x rate / 10^digits steps.
+TEST(Table, OfASpreadsheetGetsCommas) {
+    const TemporaryPath file("labels.csv",
+                             "\xef\xbb\xbfsep=;\r\nepisode;predicate;start_s;end_s\r\n"
+                             "b;near;0,15;\r\n;;;\r\n");
+    Table table = read(file.path(), 0.1);
+    EXPECT_FALSE(table.write({near_in_a({{{3, 7}}})}));
+    EXPECT_EQ(file_bytes(file.path()),
+              "episode,predicate,start_s,end_s\nb,near,0.15,\na,near,0.3,0.7\n");
+}
+
+TEST(Seconds, AreTheStepThatTheExactDecimalSays) {
+    for (const std::uint64_t rate : {10, 12, 15, 24, 25, 30, 50, 60, 100, 120, 240})
+        for (const std::uint64_t unit : {1, 10, 100, 1000})
+            for (std::uint64_t t = 0; t < 40 * unit; ++t) {
+                const std::uint64_t step = t * rate / unit;
+                const std::uint64_t tenths = 10 * (t * rate % unit);
+                const double seconds = static_cast<double>(t) / static_cast<double>(unit);
+                EXPECT_EQ(episodes::step_at(seconds, 1.0 / static_cast<double>(rate)),
+                          tenths <= unit ? step : step + 1)
+                    << t << "/" << unit << " s at " << rate << " Hz";
+            }
+    EXPECT_EQ(episodes::step_at(0.17, 1.0 / 30), 5U);
+    EXPECT_EQ(episodes::step_at(0.171, 1.0 / 30), 6U);
+}
+
 TEST(Table, IsNotWrittenOverAnother) {
     const TemporaryPath file("labels.csv");
     Table table = read(file.path());
@@ -78,6 +109,22 @@ TEST(Table, IsNotWrittenOverAnother) {
     ASSERT_TRUE(failure);
     EXPECT_NE(failure->message.find("another program"), std::string::npos);
     EXPECT_EQ(file_bytes(file.path()), "episode,predicate\nb,near\n");
+}
+
+/// Another call that compares the table, and replaces it next, has the lock of the folder.
+TEST(Table, IsNotWrittenWhileAnotherCallDoes) {
+    const TemporaryPath file("labels.csv");
+    Table table = read(file.path());
+    const data::Descriptor folder(
+        ::open(std::filesystem::path(file.path()).parent_path().c_str(), O_RDONLY));
+    ASSERT_EQ(::flock(*folder, LOCK_EX), 0);
+    const auto failure = table.write({near_in_a({{{2, 5}}})});
+    ASSERT_TRUE(failure);
+    EXPECT_NE(failure->message.find("locked its folder"), std::string::npos) << failure->message;
+    EXPECT_FALSE(std::filesystem::exists(file.path()));
+    ASSERT_EQ(::flock(*folder, LOCK_UN), 0);
+    EXPECT_FALSE(table.write({near_in_a({{{2, 5}}})}));
+    EXPECT_EQ(file_bytes(file.path()), "episode,predicate,start,end\na,near,2,5\n");
 }
 
 TEST(Table, HoldsAnyNameOrRefusesIt) {

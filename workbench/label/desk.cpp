@@ -150,32 +150,57 @@ void Desk::place() {
     }
 }
 
+/// Reads the tables, whose bytes are compared before they are replaced, and the labels in them.
+/// Both have to be of the same bytes: they are read again where another program has written
+/// meanwhile.
 bool Desk::read(diag::Sink& sink) {
-    episodes::LabelSources sources;
-    std::error_code ignored;
-    if (!request_.table.empty() && fs::exists(request_.table, ignored))
-        sources.tables = {request_.table};
-    std::shared_ptr<const episodes::LabelSet> labels;
-    if (request_.table.empty() || !sources.tables.empty())
-        labels = episodes::LabelSet::read(sources, {model_}, request_.episodes, sink);
-    if (sink.has_errors()) return false;
-    std::vector<Table> tables;
+    constexpr int kMostReads = 20;
+    for (int i = 0; i < kMostReads; ++i) {
+        std::vector<diag::Result<Table>> found = read_tables();
+        const std::shared_ptr<const episodes::LabelSet> labels = read_labels(sink);
+        if (sink.has_errors()) return false;
+        std::vector<Table> tables;
+        for (std::size_t t = 0; t < found.size(); ++t) {
+            if (!found[t]) {
+                sink.report(data::in_file(found[t].failure(), paths_[t]));
+                return false;
+            }
+            tables.push_back(std::move(*found[t]));
+        }
+        if (std::any_of(tables.begin(), tables.end(),
+                        [](const Table& table) { return table.has_changed(); }))
+            continue;
+        if (!take(labels.get(), sink)) return false;
+        tables_ = std::move(tables);
+        changes_.clear();
+        undone_.clear();
+        ++version_;
+        return true;
+    }
+    sink.report(data::in_file(
+        {Code::unreadable_trace, "cannot be read: another program changes it all the time"},
+        paths_.front()));
+    return false;
+}
+
+std::vector<diag::Result<Table>> Desk::read_tables() const {
+    std::vector<diag::Result<Table>> tables;
     for (std::size_t t = 0; t < paths_.size(); ++t) {
         std::vector<std::string> inside;
         for (const Episode& episode : episodes_)
             if (episode.table == t) inside.push_back(episode.path);
-        auto table = Table::read(paths_[t], inside, model_->step_seconds);
-        if (!table) {
-            sink.report(data::in_file(table.failure(), paths_[t]));
-            return false;
-        }
-        tables.push_back(std::move(*table));
+        tables.push_back(Table::read(paths_[t], inside, model_->step_seconds));
     }
-    if (!take(labels.get(), sink)) return false;
-    tables_ = std::move(tables);
-    changes_.clear();
-    ++version_;
-    return true;
+    return tables;
+}
+
+std::shared_ptr<const episodes::LabelSet> Desk::read_labels(diag::Sink& sink) const {
+    episodes::LabelSources sources;
+    std::error_code ignored;
+    if (!request_.table.empty() && fs::exists(request_.table, ignored))
+        sources.tables = {request_.table};
+    if (!request_.table.empty() && sources.tables.empty()) return nullptr;
+    return episodes::LabelSet::read(sources, {model_}, request_.episodes, sink);
 }
 
 /// Takes the labels of the tables, in which only the length of the episodes was not checked.
@@ -241,6 +266,7 @@ std::optional<Failure> Desk::change(std::size_t episode,
     for (const auto& [p, marks] : labels) change.before.emplace_back(p, marks_[episode][p]);
     if (auto failure = put(episode, labels)) return failure;
     changes_.push_back(std::move(change));
+    undone_.clear();
     return std::nullopt;
 }
 
@@ -262,12 +288,18 @@ std::optional<Failure> Desk::accept(std::size_t episode, const std::vector<Marks
     return change(episode, std::move(labels));
 }
 
-diag::Result<std::optional<std::size_t>> Desk::undo() {
-    if (changes_.empty()) return std::optional<std::size_t>();
-    const Change& last = changes_.back();
-    const std::size_t episode = last.episode;
-    if (auto failure = put(episode, last.before)) return *failure;
-    changes_.pop_back();
+/// Puts back what the last change of `from` has replaced, and adds a change to `to` that undoes
+/// this.
+diag::Result<std::optional<std::size_t>> Desk::take_back(std::vector<Change>& from,
+                                                         std::vector<Change>& to) {
+    if (from.empty()) return std::optional<std::size_t>();
+    const std::size_t episode = from.back().episode;
+    Change back{episode, {}};
+    for (const auto& [p, before] : from.back().before)
+        back.before.emplace_back(p, marks_[episode][p]);
+    if (auto failure = put(episode, from.back().before)) return *failure;
+    from.pop_back();
+    to.push_back(std::move(back));
     return std::optional(episode);
 }
 

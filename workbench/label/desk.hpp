@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -61,11 +62,14 @@ public:
                                        std::uint64_t step);
     /// Labels the predicates of an episode that nobody has labelled; `proposed`: per predicate.
     std::optional<diag::Failure> accept(std::size_t episode, const std::vector<Marks>& proposed);
-    /// Takes the last change back. Returns the episode that it was about; nothing without a change.
-    diag::Result<std::optional<std::size_t>> undo();
+    /// Takes the last change back, or makes the last one again that was taken back. Returns the
+    /// episode that it was about; nothing without a change.
+    diag::Result<std::optional<std::size_t>> undo() { return take_back(changes_, undone_); }
+    diag::Result<std::optional<std::size_t>> redo() { return take_back(undone_, changes_); }
     /// Returns whether another program has changed a table.
     bool have_tables_changed() const;
-    /// Reads the tables again, after another program has changed them. Nothing can be undone then.
+    /// Reads the tables again, after another program has changed them. Nothing can be undone then,
+    /// or redone.
     std::optional<diag::Failure> reload();
 
 private:
@@ -80,11 +84,15 @@ private:
     bool measure(diag::Sink& sink);
     void place();
     bool read(diag::Sink& sink);
+    std::vector<diag::Result<Table>> read_tables() const;
+    std::shared_ptr<const episodes::LabelSet> read_labels(diag::Sink& sink) const;
     bool take(const episodes::LabelSet* labels, diag::Sink& sink);
     std::optional<diag::Failure> put(std::size_t episode,
                                      const std::vector<std::pair<std::size_t, Marks>>& labels);
     std::optional<diag::Failure> change(std::size_t episode,
                                         std::vector<std::pair<std::size_t, Marks>> labels);
+    diag::Result<std::optional<std::size_t>> take_back(std::vector<Change>& from,
+                                                       std::vector<Change>& to);
 
     const check::Model* model_;
     DeskRequest request_;
@@ -94,6 +102,7 @@ private:
     std::vector<Table> tables_;
     std::vector<std::vector<Marks>> marks_;  ///< by episode and predicate
     std::vector<Change> changes_;
+    std::vector<Change> undone_;
     std::uint64_t version_ = 1;
 };
 

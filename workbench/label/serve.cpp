@@ -45,6 +45,19 @@ Json json_of(const Marks& marks) {
     return intervals;
 }
 
+/// Reads what json_of writes; nothing where it is no labels of an episode of so many steps.
+std::optional<Marks> marks_of(const Json& json, std::uint64_t steps) {
+    if (json.is_null()) return Marks();
+    std::vector<Interval> intervals;
+    for (const Json& one : json) {
+        intervals.push_back({one.at(0), one.at(1), one.at(2) == 2 ? Label::unknown : Label::yes});
+        const Interval& last = intervals.back();
+        const std::uint64_t from = intervals.size() > 1 ? std::prev(intervals.end(), 2)->end : 0;
+        if (last.start < from || last.start >= last.end || last.end > steps) return std::nullopt;
+    }
+    return intervals;
+}
+
 /// Answers the requests of pages.
 class Clerk {
 public:
@@ -58,7 +71,7 @@ public:
         try {
             const Json asked = Json::parse(content);
             background_.look_after(desk_);
-            return path == "/state" ? state(asked) : act(asked);
+            return path == "/state" ? state(asked) : act_once(asked);
         } catch (const nlohmann::json::exception& error) {
             return refused("refused", error.what(), 400);
         }
@@ -123,6 +136,19 @@ private:
         return labels;
     }
 
+    /// A page that did not get the answer to a key sends it again; it is done once.
+    Answer act_once(const Json& asked) {
+        const std::uint64_t number = asked.value("number", std::uint64_t{0});
+        const std::pair<std::string, std::uint64_t> key{asked.at("page"), number};
+        if (number > 0 && key == last_key_) return last_answer_;
+        Answer answer = act(asked);
+        if (answer.status == 200) {
+            last_key_ = key;
+            last_answer_ = answer;
+        }
+        return answer;
+    }
+
     Answer act(const Json& asked) {
         const std::string page = asked.at("page");
         const std::string action = asked.at("action");
@@ -136,15 +162,15 @@ private:
             if (auto failure = desk_.reload()) return refused("changed", failure->message, 409);
             return answered({{"version", desk_.version()}});
         }
-        if (action == "undo") {
-            const auto undone = desk_.undo();
-            if (!undone) return not_written(undone.failure());
-            return changed(*undone);
+        if (action == "undo" || action == "redo") {
+            const auto done = action == "undo" ? desk_.undo() : desk_.redo();
+            if (!done) return not_written(done.failure());
+            return changed(*done);
         }
         const std::size_t episode = asked.at("episode");
         if (episode >= desk_.episodes().size())
             return refused("refused", "there is no such episode", 400);
-        if (action == "accept") return accept(episode);
+        if (action == "accept") return accept(episode, asked.at("marks"));
         const std::size_t p = asked.at("predicate");
         const std::uint64_t step = asked.at("step");
         const auto key = key_named(action);
@@ -154,13 +180,16 @@ private:
         return changed(episode);
     }
 
-    Answer accept(std::size_t episode) {
-        for (const Proposal& one : background_.proposals().found)
-            if (one.episode == episode) {
-                if (auto failure = desk_.accept(episode, one.marks)) return not_written(*failure);
-                return changed(episode);
-            }
-        return refused("refused", "there is no proposal for this episode", 400);
+    /// Accepts what the page shows, since other labels may be proposed by now.
+    Answer accept(std::size_t episode, const Json& shown) {
+        std::vector<Marks> marks;
+        for (const Json& one : shown) {
+            auto of = marks_of(one, desk_.episodes()[episode].steps);
+            if (!of) return refused("refused", "these are no labels of this episode", 400);
+            marks.push_back(std::move(*of));
+        }
+        if (auto failure = desk_.accept(episode, marks)) return not_written(*failure);
+        return changed(episode);
     }
 
     Answer changed(std::optional<std::size_t> episode) const {
@@ -181,7 +210,9 @@ private:
     Frames& frames_;
     Background& background_;
     const std::string& page_;
-    std::string holder_;  ///< the page that labels
+    std::string holder_;                              ///< the page that labels
+    std::pair<std::string, std::uint64_t> last_key_;  ///< its page and number
+    Answer last_answer_;
     Clock::time_point heard_;
 };
 

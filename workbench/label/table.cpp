@@ -96,9 +96,6 @@ bool Table::has_changed() const {
 }
 
 std::optional<Failure> Table::write(const std::vector<LabelsOf>& labels) {
-    if (has_changed())
-        return Failure{Code::unwritable_output,
-                       "was changed by another program, and is not overwritten"};
     Rows rows = rows_;
     for (const LabelsOf& one : labels) put(one, rows);
     std::string text = text_of(rows);
@@ -107,7 +104,12 @@ std::optional<Failure> Table::write(const std::vector<LabelsOf>& labels) {
     if (!parsed) return parsed.failure();
     if (!std::equal(rows.begin(), rows.end(), parsed->rows.begin(), parsed->rows.end(), is_same))
         return Failure{Code::malformed_labels, "cannot hold the name of this episode"};
-    if (auto failure = data::write_file_durably(path_, text, Code::unwritable_output))
+    const auto is_right = [&]() -> std::optional<Failure> {
+        if (!has_changed()) return std::nullopt;
+        return Failure{Code::unwritable_output,
+                       "was changed by another program, and is not overwritten"};
+    };
+    if (auto failure = data::write_file_durably(path_, text, Code::unwritable_output, is_right))
         return failure;
     rows_ = std::move(rows);
     bytes_ = std::move(text);

@@ -2,7 +2,8 @@
 // Takes: the file, and the new labels of a predicate in an episode. Gives: the file with these.
 // Keeps true: rows about anything else stay, and stay in their order; the file is the old one or
 // the new one at any moment, and on the disk when a write returns; a file that another program has
-// changed is never overwritten.
+// changed is not overwritten: two calls of etlc exclude each other from the comparison until the
+// new file has its name, other programs only before it.
 #pragma once
 
 #include <cstdint>

@@ -92,22 +92,26 @@ bool names_no_file(const fs::path& path) {
 /// A lock on a folder while names in it are exchanged.
 class Turn {
 public:
-    /// Waits for a second at most: without the lock the files of two calls may mix, no more.
+    /// Waits for a second at most.
     explicit Turn(int folder)
         : folder_(uninterrupted(
               [&] { return ::openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC); })) {
         for (int i = 0; folder_ && i < kMostTurns; ++i) {
             is_held_ = ::flock(*folder_, LOCK_EX | LOCK_NB) == 0;
-            if (is_held_ || (errno != EWOULDBLOCK && errno != EINTR)) return;
+            is_others_ = !is_held_ && (errno == EWOULDBLOCK || errno == EINTR);
+            if (!is_others_) return;
             ::usleep(kTurnMicroseconds);
         }
     }
 
     bool is_held() const { return is_held_; }
+    /// Returns whether another process has the lock; false too where there are no locks.
+    bool is_others() const { return is_others_; }
 
 private:
     Descriptor folder_;
     bool is_held_ = false;
+    bool is_others_ = false;
 };
 
 }  // namespace
@@ -271,12 +275,13 @@ void AtomicFile::take_back() {
     state_ = State::direct;
 }
 
-std::optional<diag::Failure> AtomicFile::commit() {
-    if (auto uncommitted = commit_all({this})) return uncommitted->failure;
+std::optional<diag::Failure> AtomicFile::commit(const StillRight& is_right) {
+    if (auto uncommitted = commit_all({this}, is_right)) return uncommitted->failure;
     return {};
 }
 
-std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files) {
+std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files,
+                                      const StillRight& is_right) {
     std::size_t n = 0;
     const auto all = [&](auto step) -> std::optional<Uncommitted> {
         for (n = 0; n < files.size(); ++n)
@@ -284,8 +289,17 @@ std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files) {
         return {};
     };
     if (auto uncommitted = all(&AtomicFile::finish)) return uncommitted;
-    const Turn turn(files.empty() ? -1 : *files.back()->folder_);
-    if (turn.is_held()) clear(*files.back()->folder_);
+    int folder = -1;
+    for (const AtomicFile* file : files)
+        if (file->folder_) folder = *file->folder_;
+    const Turn turn(folder);
+    // Without the lock the files of two calls may mix, no more; but what was read may be gone.
+    if (is_right && turn.is_others())
+        return Uncommitted{
+            0,
+            {files[0]->code_, "cannot be written: another program has locked its folder (flock)"}};
+    if (auto why = is_right ? is_right() : std::nullopt) return Uncommitted{0, *why};
+    if (turn.is_held()) clear(folder);
     if (auto uncommitted = all(&AtomicFile::place)) {
         while (n > 0) files[--n]->take_back();
         return uncommitted;
@@ -303,20 +317,20 @@ void remove_left_over(const std::string& folder) {
 }
 
 std::optional<diag::Failure> write_file_atomically(const std::string& path, std::string_view bytes,
-                                                   diag::Code code) {
+                                                   diag::Code code, const StillRight& is_right) {
     auto file = AtomicFile::create(path, code);
     if (!file) return file.failure();
     if (auto failure = file->write(bytes)) return failure;
-    return file->commit();
+    return file->commit(is_right);
 }
 
 std::optional<diag::Failure> write_file_durably(const std::string& path, std::string_view bytes,
-                                                diag::Code code) {
+                                                diag::Code code, const StillRight& is_right) {
     auto file = AtomicFile::create(path, code);
     if (!file) return file.failure();
     if (auto failure = file->write(bytes)) return failure;
     if (auto failure = file->sync()) return failure;
-    if (auto failure = file->commit()) return failure;
+    if (auto failure = file->commit(is_right)) return failure;
     const fs::path parent = behind_links(path).parent_path();
     const Descriptor folder(uninterrupted([&] {
         return ::open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

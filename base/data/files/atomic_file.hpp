@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,6 +29,12 @@ struct Uncommitted {
     diag::Failure failure;
 };
 
+/// Says why a file must not be replaced after all, such as another content than was read. It is
+/// asked when no other process of etlc can write to the folder any more: the lock is that of the
+/// folder, which outlasts its files. Where the file system has no locks (flock), it is asked all
+/// the same, and another process may still come between the answer and the new name.
+using StillRight = std::function<std::optional<diag::Failure>()>;
+
 /// A file that takes its own name only when it is complete. Devices, pipes, /dev/stdout and
 /// /dev/stderr are written to directly. A symbolic link stays; the file that it points to is
 /// created or replaced.
@@ -43,10 +50,11 @@ public:
     /// Waits until the disk has what was written.
     std::optional<diag::Failure> sync();
     /// Calls commit_all() for this file alone.
-    std::optional<diag::Failure> commit();
+    std::optional<diag::Failure> commit(const StillRight& is_right = nullptr);
 
 private:
-    friend std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files);
+    friend std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files,
+                                                 const StillRight& is_right);
 
     AtomicFile(std::string name, Descriptor folder, Descriptor file, diag::Code code);
 
@@ -80,19 +88,23 @@ private:
 };
 
 /// Gives all files their names in this order, or none: a failure undoes the earlier ones.
-/// Processes that commit to the folder of the last file take turns, so that their files do not
-/// mix.
-std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files);
+/// Processes that commit to the folder of the last file, pipes and devices aside, take turns, so
+/// that their files do not mix. With `is_right`, about the first file, nothing is committed where
+/// another process has the folder's lock for more than a second.
+std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files,
+                                      const StillRight& is_right = nullptr);
 
 /// Removes the temporary files of killed processes from a folder.
 void remove_left_over(const std::string& folder);
 
 /// Writes `bytes` as the whole content of `path`.
 std::optional<diag::Failure> write_file_atomically(const std::string& path, std::string_view bytes,
-                                                   diag::Code code);
+                                                   diag::Code code,
+                                                   const StillRight& is_right = nullptr);
 
 /// Does so, and returns when the disk has the bytes, and the name where its file system tells.
 std::optional<diag::Failure> write_file_durably(const std::string& path, std::string_view bytes,
-                                                diag::Code code);
+                                                diag::Code code,
+                                                const StillRight& is_right = nullptr);
 
 }  // namespace etlc::data

@@ -1,7 +1,13 @@
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+
 #include "calibrate/calibrate.hpp"
 #include "calibrate/shift.hpp"
 #include "check/check.hpp"
 #include "data/files/file.hpp"
+#include "data/files/hash.hpp"
 #include "data/recordings/open.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/process/output_file.hpp"
@@ -60,6 +66,24 @@ std::vector<std::string> inputs(const check::Model& model, const source::File& f
     return paths;
 }
 
+/// Fails where the thresholds to which those of monitors are added are no longer those that were
+/// read: another call has written them meanwhile, and its thresholds would be lost.
+data::StillRight still_as_read(const std::string& thresholds) {
+    if (thresholds.empty()) return nullptr;
+    const auto hash = [thresholds] {
+        const auto found = data::hash_of_file(thresholds, diag::Code::unreadable_thresholds);
+        return found ? *found : "";
+    };
+    return [hash, thresholds, before = hash()]() -> std::optional<diag::Failure> {
+        if (hash() == before) return std::nullopt;
+        return diag::Failure{
+            diag::Code::unwritable_output,
+            fmt::format("is not written: another program has changed {} since it was read; "
+                        "calibrate the monitors again",
+                        thresholds)};
+    };
+}
+
 /// Returns the files that scores depend on, besides the episodes.
 std::vector<std::string> loaded(const check::Model& model, const source::File& file,
                                 const std::string& output, const episodes::ReadOptions& reading) {
@@ -73,6 +97,7 @@ std::vector<std::string> loaded(const check::Model& model, const source::File& f
 }  // namespace
 
 bool calibrate(const source::File& file, const Request& request, diag::Sink& sink) {
+    const auto as_read = still_as_read(request.check.thresholds_path);
     ast::Spec spec = parse::parse(file, sink);
     check::Options options = request.check;
     options.allow_uncalibrated = options.thresholds_path.empty();
@@ -112,7 +137,7 @@ bool calibrate(const source::File& file, const Request& request, diag::Sink& sin
                              [&](std::string_view piece) { return files.write(piece); }) &&
            files.add(output == kStandardOutput ? "/dev/stderr" : std::string(kStandardOutput),
                      source::visible_lines(result->report)) &&
-           files.commit();
+           files.commit(as_read);
 }
 
 }  // namespace etlc::driver

@@ -100,10 +100,10 @@ bool OutputFiles::write(std::string_view bytes) {
     return !failure || report(*failure, files_.back().path);
 }
 
-bool OutputFiles::commit() {
+bool OutputFiles::commit(const data::StillRight& is_right) {
     std::vector<data::AtomicFile*> files;
     for (File& file : files_) files.push_back(&file.file);
-    const auto uncommitted = data::commit_all(files);
+    const auto uncommitted = data::commit_all(files, is_right);
     if (!uncommitted) return true;
     return report(uncommitted->failure,
                   std::next(files_.begin(), static_cast<long>(uncommitted->file))->path);

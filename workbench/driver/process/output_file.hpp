@@ -33,8 +33,9 @@ public:
     bool add(const std::string& path, std::string_view bytes) {
         return begin(path) && write(bytes);
     }
-    /// Gives all files their names, in the order in which they were begun, or none.
-    bool commit();
+    /// Gives all files their names, in the order in which they were begun, or none. `is_right`: as
+    /// for data::commit_all.
+    bool commit(const data::StillRight& is_right = nullptr);
 
 private:
     bool report(const diag::Failure& failure, const std::string& path);

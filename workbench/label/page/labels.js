@@ -1,12 +1,16 @@
-// The labels, which etlc keeps: every key goes to it at once, and is shown once it is on disk.
-// Keys that could not be written wait here, in their order, until they can be, or are dropped.
+// The labels, which etlc keeps: every key goes to it at once, with the episode that it is about, and
+// is shown once it is on disk. Until then it waits here, in its order, and the page says so. Answers
+// may come late: they never change what the keys that follow are about.
 
 const store = {
   page: Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(16)).join(""),
   version: 0, labels: data.episodes.map(() => data.predicates.map(() => null)),
   proposed: 0, proposals: new Map(), whyNone: "", isBusy: false,
-  waiting: [], isSending: false, trouble: "", holds: true,
+  waiting: [], pressed: 0, isSending: false, trouble: "", refusal: "", holds: true,
 };
+
+const changedElsewhere = "Another program has changed the labels on disk. r: read them again.";
+const noAnswer = "etlc label does not answer: is it still running?";
 
 function say(trouble) {
   const box = document.getElementById("trouble");
@@ -17,6 +21,27 @@ function say(trouble) {
 
 const waitingText = () =>
   store.waiting.length > 0 ? ` ${counted(store.waiting.length, "key")} not written.` : "";
+
+const nameOf = (episode) => data.episodes[episode].name;
+
+// Says what is not on disk yet, or what a late answer was about.
+function note(text) {
+  const box = document.getElementById("note");
+  box.textContent = text;
+  box.hidden = text === "";
+}
+
+function showWaiting() {
+  const most = 3;
+  const shown = store.waiting.slice(0, most)
+    .map(({ action, episode }) => `${letterOf[action]} in ${nameOf(episode)}`);
+  const more = store.waiting.length - shown.length;
+  if (more > 0) shown.push(`${more} more`);
+  note(shown.length > 0 ? `not written yet: ${shown.join(", ")}` : "");
+  const waiting = new Set(store.waiting.map((key) => key.episode));
+  list.rows.forEach((row, episode) => row.classList.toggle("waiting", waiting.has(episode)));
+  document.body.dataset.waiting = store.waiting.length;
+}
 
 async function post(path, content) {
   const answer = await fetch(path, {
@@ -36,11 +61,18 @@ function sayRefusal({ kind, error }) {
   return kind === "disk";
 }
 
-function takeAnswer(json) {
-  store.version = json.version;
-  if (json.episode === undefined) return;
-  store.labels[json.episode] = json.labels;
-  showLabels(json.episode);
+// Shows the labels after a key. Only undo and redo change the episode, if nobody has gone on since.
+function takeAnswer(key, json) {
+  if (json.version < store.version) return;
+  // More than one change has been made since the last answer: refresh() asks for all of them.
+  if (json.version <= store.version + 1) store.version = json.version;
+  const { episode } = json;
+  if (episode === undefined) return;
+  store.labels[episode] = json.labels;
+  showLabels(episode);
+  if (key.action !== "undo" && key.action !== "redo") return;
+  if (key.moves !== view.moves) note(`${key.action} in ${nameOf(episode)}`);
+  else if (episode !== view.episode) selectEpisode(episode);
 }
 
 const later = () => setTimeout(send, 1000);
@@ -50,12 +82,12 @@ async function send() {
   if (store.isSending) return;
   store.isSending = true;
   while (store.waiting.length > 0) {
-    document.body.dataset.waiting = store.waiting.length;
+    const [key] = store.waiting;
     let answer;
     try {
-      answer = await post("act", store.waiting[0]);
+      answer = await post("act", key);
     } catch {
-      say(`etlc label does not answer: is it still running?${waitingText()}`);
+      say(`${noAnswer}${waitingText()}`);
       later();
       break;
     }
@@ -65,34 +97,48 @@ async function send() {
       break;
     }
     store.waiting.shift();
-    if (ok) takeAnswer(json);
-    say(ok ? "" : json.error);
+    showWaiting();
+    if (ok) takeAnswer(key, json);
+    else store.refusal = `${letterOf[key.action]} in ${nameOf(key.episode)}: ${json.error}`;
+    say(store.refusal);
   }
-  document.body.dataset.waiting = store.waiting.length;
   store.isSending = false;
 }
 
+// Its number tells etlc whether it has a key already, of which the page did not get the answer.
 function press(action) {
-  store.waiting.push({ action, episode: view.episode, predicate: view.predicate, step: view.step });
+  const { episode, predicate, step, moves } = view;
+  const marks = action === "accept" ? proposedFor(episode) : null;
+  store.refusal = action === "accept" && !marks ? `nothing is proposed for ${nameOf(episode)}` : "";
+  if (store.waiting.length === 0 || store.refusal) say(store.refusal);
+  if (store.refusal) return;
+  store.pressed++;
+  store.waiting.push({ action, number: store.pressed, episode, predicate, step, marks, moves });
+  showWaiting();
   send();
 }
 
+// Drops the keys that wait, but not one that is on its way.
 function dropWaiting() {
-  store.waiting = [];
-  document.body.dataset.waiting = 0;
+  store.waiting.splice(store.isSending ? 1 : 0);
+  showWaiting();
   say("");
 }
 
 // Does `action` before the keys that wait, which then go on.
 async function firstDo(action) {
-  const { ok, json } = await post("act", { action });
-  if (!ok) {
-    sayRefusal(json);
-    return;
+  try {
+    const { ok, json } = await post("act", { action });
+    if (!ok) {
+      sayRefusal(json);
+      return;
+    }
+    say("");
+    await refresh();
+    send();
+  } catch {
+    say(`${noAnswer}${waitingText()}`);
   }
-  say("");
-  await refresh();
-  send();
 }
 
 // Asks for labels and proposals that are newer than those shown.
@@ -102,8 +148,8 @@ async function refresh() {
   if (!json.holds) sayRefusal({ kind: "elsewhere", error: "This page is open elsewhere, too" });
   const isBack = json.holds && !store.holds;
   store.holds = json.holds;
-  if (json.labels) store.labels = json.labels;
-  store.version = json.version;
+  const isNew = json.labels && json.version >= store.version;  // else a key's answer overtook it
+  if (isNew) Object.assign(store, { labels: json.labels, version: json.version });
   if (json.proposals) {
     store.proposals = new Map(json.proposals.map((one) => [one.episode, one]));
     store.whyNone = json.why_none;
@@ -111,9 +157,10 @@ async function refresh() {
   }
   if (isBack) say("");
   if (isBack) send();
-  if (json.changed && !store.trouble)
-    say("Another program has changed the labels on disk. r: read them again.");
-  if (json.labels || json.proposals) showLabels(null);
+  if (json.changed && !store.trouble) say(changedElsewhere);
+  if (!json.changed && store.trouble === changedElsewhere) say("");
+  if (store.trouble === noAnswer) say("");
+  if (isNew || json.proposals) showLabels(null);
   showProgress();
 }
 
@@ -121,7 +168,7 @@ async function keepFresh() {
   try {
     if (!store.isSending) await refresh();
   } catch {
-    say(`etlc label does not answer: is it still running?${waitingText()}`);
+    say(`${noAnswer}${waitingText()}`);
   }
   setTimeout(keepFresh, 1000);
 }

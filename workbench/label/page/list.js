@@ -4,6 +4,26 @@ const isOpen = (episode, predicate) =>
   !store.labels[episode][predicate] && !data.episodes[episode].recorded[predicate];
 const isLabelled = (episode) => data.predicates.every((_, index) => !isOpen(episode, index));
 
+// Returns what is shown as proposed, by predicate; null where nothing is.
+function proposedFor(episode) {
+  const marks = store.proposals.get(episode)?.marks
+    .map((of, index) => (isOpen(episode, index) ? of : null));
+  return marks?.some((of) => of) ? marks : null;
+}
+
+// Returns whether nobody has labelled the predicate, once the keys that wait are written.
+function staysOpen(episode, predicate) {
+  let open = isOpen(episode, predicate);
+  for (const key of store.waiting) {
+    const isAbout = key.episode === episode && (key.marks?.[predicate] ||
+      (key.action !== "accept" && key.predicate === predicate));
+    if (!isAbout) continue;
+    if (["accept", "begin", "end", "never"].includes(key.action)) open = false;
+    if (key.action === "forget") open = !data.episodes[episode].recorded[predicate];
+  }
+  return open;
+}
+
 const list = { filter: "", rows: [] };
 
 function rowState(episode) {
@@ -40,7 +60,7 @@ function filterRows() {
 function beginList() {
   list.rows = data.episodes.map((_, episode) => {
     const row = element("div", { class: "row", "data-place": episode });
-    row.addEventListener("click", () => selectEpisode(episode));
+    row.addEventListener("click", () => chooseEpisode(episode));
     return row;
   });
   fill("rows", ...list.rows);
@@ -56,16 +76,16 @@ function neighbour(step) {
   const shown = list.rows.map((_, episode) => episode)
     .filter((episode) => episode === view.episode || !list.rows[episode].hidden);
   const next = shown[shown.indexOf(view.episode) + step];
-  if (next !== undefined) selectEpisode(next);
+  if (next !== undefined) chooseEpisode(next);
 }
 
 // The most doubtful episode that is not labelled; without proposals the next one in the list.
 function nextOpen() {
   const count = data.episodes.length;
   const inOrder = data.episodes.map((_, index) => (view.episode + 1 + index) % count);
-  const next = [...store.proposals.keys(), ...inOrder]
-    .find((episode) => episode !== view.episode && !isLabelled(episode));
-  if (next !== undefined) selectEpisode(next);
+  const next = [...store.proposals.keys(), ...inOrder].find((episode) =>
+    episode !== view.episode && data.predicates.some((_, index) => staysOpen(episode, index)));
+  if (next !== undefined) chooseEpisode(next);
 }
 
 function showProgress() {

@@ -1,15 +1,15 @@
 // The episode on the page, its keys, and the start of the page.
 
-const view = { episode: 0, step: 0, predicate: 0, timelines: null, domain: null };
+// `moves` counts how often somebody has chosen an episode.
+const view = { episode: 0, step: 0, predicate: 0, timelines: null, domain: null, moves: 0 };
 const play = { timer: null, speed: 1, begun: 0, from: 0 };
 
 function drawTracks() {
   const { steps, recorded } = data.episodes[view.episode];
-  const proposal = store.proposals.get(view.episode);
+  const proposed = proposedFor(view.episode);
   view.timelines = new LabelTracks(document.getElementById("tracks"), {
     steps, recorded, predicate: view.predicate, marks: store.labels[view.episode],
-    proposed: data.predicates.map((_, index) =>
-      (proposal && isOpen(view.episode, index) ? proposal.marks[index] : null)),
+    proposed: proposed ?? data.predicates.map(() => null),
   }, { move: moveCursor, drawn: () => {
     view.domain = view.timelines.domain;
     view.timelines.moveTo(view.step);
@@ -21,10 +21,9 @@ function drawTracks() {
 
 // Shows the labels of an episode after a change, or of all: null.
 function showLabels(episode) {
-  if (episode !== null && episode !== view.episode) selectEpisode(episode);
   if (episode === null) list.rows.forEach((_, index) => showRow(index));
   else showRow(episode);
-  drawTracks();
+  if (episode === null || episode === view.episode) drawTracks();
   showProgress();
 }
 
@@ -40,11 +39,17 @@ function moveCursor(step) {
 function selectEpisode(episode) {
   stop();
   Object.assign(view, { episode, step: 0, domain: null });
+  history.replaceState(null, "", `#${episode}`);  // a reload comes back to it
   document.getElementById("episode-name").textContent = data.episodes[episode].path;
   markSelected();
   showPictures();
   drawTracks();
   moveCursor(0);
+}
+
+function chooseEpisode(episode) {
+  view.moves++;
+  selectEpisode(episode);
 }
 
 function choosePredicate(predicate) {
@@ -117,6 +122,7 @@ const keys = {
   c: () => press("forget"),
   a: () => press("accept"),
   u: () => press("undo"),
+  U: () => press("redo"),
   r: () => firstDo("reload"),
   o: () => firstDo("claim"),
   Escape: dropWaiting,
@@ -125,6 +131,10 @@ const keys = {
   0: () => view.timelines.zoom(view.timelines.whole()),
   d: switchTheme,
 };
+// The letters of the keys that go to etlc, to say which of them wait.
+const letterOf = { begin: "b", end: "e", remove: "x", never: "f", unknown: "?", forget: "c",
+  accept: "a", undo: "u", redo: "U" };
+
 for (let digit = 1; digit <= 9; digit++) keys[digit] = () => choosePredicate(digit - 1);
 
 const keyTable = [
@@ -132,7 +142,7 @@ const keyTable = [
   ["[ ]", "the last, the next change"], ["1 … 9 p", "choose the predicate"],
   ["b", "it holds from here on"], ["e", "it holds up to here"], ["x", "remove the interval here"],
   ["f", "it never holds"], ["?", "nobody knows here"], ["c", "clear: not labelled"],
-  ["a", "accept what is proposed"], ["u", "undo"], ["n", "next to label"],
+  ["a", "accept what is proposed"], ["u U", "undo, redo"], ["n", "next to label"],
   ["↑ ↓ k j", "episode before, after"], ["+ - 0", "zoom"], ["d", "dark or light"],
 ];
 
@@ -145,7 +155,7 @@ function begin() {
     element("th", {}, ...key.split(" ").map((one) => element("kbd", {}, one))),
     element("td", {}, does))));
   beginList();
-  selectEpisode(0);
+  selectEpisode(Math.min(Number(location.hash.slice(1)) || 0, data.episodes.length - 1));
   listenTo(keys);
   onOtherWidth(drawTracks);
   window.addEventListener("pagehide", () => navigator.sendBeacon("act",

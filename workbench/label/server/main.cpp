@@ -15,11 +15,13 @@
 #include <cstdio>
 #include <deque>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -35,7 +37,8 @@ constexpr const char* kHost = "127.0.0.1";
 constexpr int kGood = 200;
 constexpr int kForbidden = 403;
 constexpr const char* kEnd = "/events/end";       ///< a page has gone, which no page says itself
-constexpr std::size_t kConnections = 32;          ///< a browser opens six for a page
+constexpr std::size_t kConnections = 512;         ///< at a time; a browser opens six for a page
+constexpr int kReadSeconds = 2;                   ///< for the next bytes of a request
 constexpr std::size_t kMostRequests = 1'000'000;  ///< of a connection
 
 bool read_all(char* to, std::size_t n) {
@@ -184,6 +187,62 @@ private:
     std::uint64_t first_ = 0;  ///< number of the first of these
 };
 
+/// A thread for each connection, so that none waits for a slow one: programs that connect and say
+/// nothing keep no page waiting. Threads are started when they are needed.
+class Connections final : public httplib::TaskQueue {
+    /// void, or in later versions of the library whether the connection was taken.
+    using Taken = decltype(std::declval<httplib::TaskQueue&>().enqueue(nullptr));
+
+public:
+    Taken enqueue(std::function<void()> connection) override {
+        const std::lock_guard lock(mutex_);
+        waiting_.push_back(std::move(connection));
+        if (idle_ < waiting_.size() && threads_.size() < kConnections) start();
+        changed_.notify_one();
+        return static_cast<Taken>(true);
+    }
+
+    void shutdown() override {
+        {
+            const std::lock_guard lock(mutex_);
+            is_over_ = true;
+        }
+        changed_.notify_all();
+        for (std::thread& thread : threads_) thread.join();
+    }
+
+private:
+    void start() {
+        try {
+            threads_.emplace_back([this] { work(); });
+        } catch (const std::system_error&) {
+            if (threads_.empty()) throw;  // else a thread that there is takes the connection
+        }
+    }
+
+    void work() {
+        std::unique_lock lock(mutex_);
+        for (;;) {
+            ++idle_;
+            changed_.wait(lock, [this] { return is_over_ || !waiting_.empty(); });
+            --idle_;
+            if (waiting_.empty()) return;
+            const std::function<void()> connection = std::move(waiting_.front());
+            waiting_.pop_front();
+            lock.unlock();
+            connection();
+            lock.lock();
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<std::function<void()>> waiting_;
+    std::vector<std::thread> threads_;
+    std::size_t idle_ = 0;
+    bool is_over_ = false;
+};
+
 /// Answers with events until the page goes: https://html.spec.whatwg.org, "Server-sent events".
 void send_events(Etlc& etlc, const Etlc::Answer& begin, httplib::Response& response) {
     const auto number = std::make_shared<std::uint64_t>(begin.next_event);
@@ -219,7 +278,8 @@ int serve() {
     server.set_payload_max_length(kMostContent);
     server.set_tcp_nodelay(true);
     server.set_keep_alive_max_count(kMostRequests);
-    server.new_task_queue = [] { return new httplib::ThreadPool(kConnections); };
+    server.set_read_timeout(kReadSeconds);
+    server.new_task_queue = [] { return new Connections; };
     server.set_default_headers({{"Cache-Control", "no-store"},
                                 {"Referrer-Policy", "no-referrer"},
                                 {"X-Content-Type-Options", "nosniff"},

@@ -102,6 +102,8 @@ function summaryOf(row) {
 async function selectEpisode(row) {
   list.selected = row;
   markSelected();
+  const episode = row.series === null ? null : await unpack(row.series);
+  if (list.selected !== row) return;  // another one was chosen meanwhile
   document.getElementById("episode-name").textContent = row.path;
   document.getElementById("episode-summary").textContent = summaryOf(row);
   if (row.series === null) {
@@ -110,8 +112,6 @@ async function selectEpisode(row) {
     fill("tracks", element("p", {}, "No timelines: they were left out to keep this page small."));
     return;
   }
-  const episode = await unpack(row.series);
-  if (list.selected !== row) return;  // another one was chosen meanwhile
   view.row = row;
   view.episode = episode;
   view.timelines = new Timelines(document.getElementById("tracks"), episode,

@@ -4,7 +4,8 @@
 let sheet = null;  // the pictures of the episode, one below the other; null: they are files
 
 function showPictures() {
-  const { pictures } = view.row;
+  const { row } = view;
+  const { pictures } = row;
   sheet = null;
   fill("pictures");
   fill("nearest");
@@ -19,7 +20,7 @@ function showPictures() {
   fill("pictures", element("figure", {}, canvas, caption));
   const image = new Image();
   image.addEventListener("load", () => {
-    if (view.row.pictures !== pictures) return;
+    if (list.selected !== row) return;  // another episode was chosen meanwhile
     sheet = image;
     movePictures();
   });

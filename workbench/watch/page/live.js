@@ -129,7 +129,6 @@ function hold() {
   view.held = !view.held;
   document.getElementById("hold").classList.toggle("chosen", view.held);
   if (view.held) return;
-  view.busy = false;
   drawTimelines();
 }
 
