@@ -98,6 +98,30 @@ def alarms_in_a_row():
         assert lines[-1] == "3 incidents in kept; 1 more alarm found no room", lines
 
 
+def two_in_one_folder():
+    """Two calls that began with the same files keep all incidents of both."""
+    spec = "spec look; input x : f32; repeating monitor now = G x >= 0;"
+    with tempfile.TemporaryDirectory() as folder:
+        pathlib.Path(folder, "look.etl").write_text(spec)
+        both = [Watch(ETLC, folder, "--trace", "-", "--record", "kept", "--recorder", "1,1,4",
+                      stdin=subprocess.PIPE) for _ in range(2)]
+        for watch in both:
+            watch.write("x\n1\n")
+            watch.line()
+        for _ in range(3):
+            for watch in both:
+                watch.write("-1\n")
+                assert watch.line().endswith(": alarm")
+        for watch in both:
+            lines, errors, status = watch.stop()
+            assert status == 0 and not errors, (status, errors)
+            assert lines[-1] == "3 incidents in kept", lines
+        kept = incidents(folder)
+        assert list(kept) == [f"look-incident-{number}" for number in range(6)], kept
+        for step in (1, 2, 3):
+            assert sum(step in alarms for _, alarms in kept.values()) >= 2, (step, kept)
+
+
 def a_full_disk():
     """What cannot be written is said at once, and the rest goes on."""
     with tempfile.TemporaryDirectory() as folder:
@@ -121,6 +145,7 @@ def main():
         at_the_first_alarm(number)
     at_last(many_alarms)
     alarms_in_a_row()
+    two_in_one_folder()
     a_full_disk()
 
 

@@ -16,13 +16,11 @@ using etlmon::Verdict;
 Incidents::Incidents(const plan::Plan& plan, std::string folder)
     : plan_(plan), folder_(std::move(folder)), recorder_(plan), alarms_(plan.monitors.size()) {
     std::error_code error;
-    while (fs::exists(path(0), error)) ++first_;
-    begin_ = first_;
+    while (fs::exists(path(next_), error)) ++next_;
 }
 
-std::string Incidents::path(std::uint32_t incident) const {
-    return (fs::path(folder_) / fmt::format("{}-incident-{}", plan_.model->name, first_ + incident))
-        .string();
+std::string Incidents::path(std::uint64_t number) const {
+    return (fs::path(folder_) / fmt::format("{}-incident-{}", plan_.model->name, number)).string();
 }
 
 /// As the recorder counts: each alarm of a monitor that begins again with it is a new one.
@@ -64,25 +62,38 @@ std::optional<diag::Diagnostic> Incidents::write_complete() {
     if (written_ == 0 || written_ < begun_) return std::nullopt;
     lost_ += recorder_.lost();
     recorder_.forget();
-    first_ += written_;
+    before_ += written_;
+    numbers_.clear();
     written_ = begun_ = 0;
     return std::nullopt;
 }
 
+/// Writes an incident: at first under a number that is free, though another call may watch into the
+/// same folder, then again in the same file.
 std::optional<diag::Diagnostic> Incidents::write(plan::FlightRecorder& recorder,
                                                  std::uint32_t incident) {
     const std::vector<std::uint8_t>& bytes = recorder.write(incident);
-    const std::string to = path(incident);
-    const auto failure =
-        data::write_file_atomically(to, {reinterpret_cast<const char*>(bytes.data()), bytes.size()},
-                                    diag::Code::unwritable_output);
-    if (failure) return data::in_file(*failure, to);
-    return std::nullopt;
+    const bool is_new = incident == numbers_.size();
+    std::error_code error;
+    for (;; ++next_) {
+        const std::string to = path(is_new ? next_ : numbers_[incident]);
+        const auto is_free = [&]() -> std::optional<diag::Failure> {
+            if (!is_new || !fs::exists(to, error)) return std::nullopt;
+            return diag::Failure{diag::Code::unwritable_output, "is another incident"};
+        };
+        const auto failure = data::write_file_atomically(
+            to, {reinterpret_cast<const char*>(bytes.data()), bytes.size()},
+            diag::Code::unwritable_output, is_free);
+        if (failure && is_new && fs::exists(to, error)) continue;
+        if (failure) return data::in_file(*failure, to);
+        if (is_new) numbers_.push_back(next_++);
+        return std::nullopt;
+    }
 }
 
 std::string Incidents::text() const {
     std::string text =
-        fmt::format("{} in {}", diag::counted(first_ + written_ - begin_, "incident"), folder_);
+        fmt::format("{} in {}", diag::counted(before_ + written_, "incident"), folder_);
     const std::uint64_t lost = lost_ + recorder_.lost();
     if (lost > 0) text += fmt::format("; {} found no room", diag::counted(lost, "more alarm"));
     return text + "\n";

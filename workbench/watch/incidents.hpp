@@ -31,7 +31,7 @@ public:
     std::string text() const;
 
 private:
-    std::string path(std::uint32_t incident) const;
+    std::string path(std::uint64_t number) const;
     std::optional<diag::Diagnostic> write(plan::FlightRecorder& recorder, std::uint32_t incident);
     bool begins(const std::vector<etlmon::Verdict>& verdicts);
     std::optional<diag::Diagnostic> write_complete();
@@ -43,9 +43,11 @@ private:
     bool is_noted_ = true;       ///< all incidents so far have a file
     std::uint32_t begun_ = 0;    ///< in the recorder
     std::uint32_t written_ = 0;  ///< of these, complete and in their files
-    std::uint64_t first_ = 0;    ///< number of the recorder's first one, in names of files
-    std::uint64_t begin_;        ///< number of the first one of all
-    std::uint64_t lost_ = 0;     ///< alarms that the recorder had no room for, before this filling
+    std::vector<std::uint64_t>
+        numbers_;               ///< of those in the recorder that have a file, in its name
+    std::uint64_t next_ = 0;    ///< number of the next one, unless another call takes it
+    std::uint64_t before_ = 0;  ///< complete ones before this filling of the recorder
+    std::uint64_t lost_ = 0;    ///< alarms that had no room, before this filling
 };
 
 }  // namespace etlc::watch
