@@ -123,6 +123,7 @@ def report(
     label_by: str | None = None,
     allow_overlap: str | None = None,
     frames: str | None = None,
+    camera: str | None = None,
     size: int | None = None,
     no_truths: bool = False,
     values: str | None = None,
@@ -138,7 +139,9 @@ def report(
     Args:
         spec, data: as in `evaluate`.
         output: the page, an .html file.
-        frames: camera frames: an array of the episodes, or a pattern: "camera/{episode}/*.png".
+        frames: camera frames: an array of the episodes, the folder of a data set, or a pattern:
+            "camera/{episode}/*.png".
+        camera: the camera of a data set.
         size: the size of the page in MB.
         no_truths: show the verdicts without comparing them with truths.
         thresholds, fitted, embedded, settings, names, groups, labels, label_by, allow_overlap,

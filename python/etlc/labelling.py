@@ -98,7 +98,8 @@ def label(
         spec: the path of the spec.
         data: episodes: files (.csv, .npz, .h5), folders, data sets or patterns.
         labels: the table of labels to write; by default labels.csv beside the episodes.
-        frames: camera frames: an array of the episodes, or a pattern: "camera/{episode}/*.png".
+        frames: camera frames: an array of the episodes, the folder of a data set, or a pattern:
+            "camera/{episode}/*.png".
         camera: the camera of a data set.
         port: that of the page; by default any free one.
         embedded, settings, names, groups, jobs, warnings_are_errors: as in `calibrate`.

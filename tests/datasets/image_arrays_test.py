@@ -2,6 +2,7 @@
 """image_arrays_test.py ETLC HDF5: arrays of images in .npz and .h5 files, and GIFs, become episodes
 with the embeddings of their pixels; other arrays in the file become the other inputs."""
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -106,6 +107,22 @@ def groups():
         assert f"[{code}]" in found and said in found, (code, said, found)
 
 
+def shown():
+    """etlc report shows grey images, too, which no encoder gets."""
+    report = [ETLC, "report", "plain.etl", "--data", "demos.h5", "--episodes", "data/*", "--map",
+              "q=obs/eef_pos", "--no-truths", "-o", "page.html", "--frames"]
+    for camera, size in (("obs/agentview_image", (8, 6)), ("obs/grey_image", (24, 6))):
+        done = subprocess.run([*report, camera], capture_output=True, text=True)
+        assert done.returncode == 0 and "W0840" not in done.stderr, done
+        with open("page.html", encoding="utf-8") as page:
+            text = page.read()
+        found = re.findall(r'"steps":\[([0-9,]+)\],"files":.*?"width":(\d+),"height":(\d+)', text)
+        assert found == [("0,1,2,3", str(size[0]), str(size[1]))] * 2, found
+    found = embed("--data", "demos.h5", "--episodes", "data/*", "--camera", "obs/grey_image",
+                  "--map", "q=obs/eef_pos", "grip=actions", status=1)
+    assert "holds no images, expected (steps, rows, columns, 3) of uint8" in found, found
+
+
 def moving_pictures():
     """A GIF is a video: its frames are those of ffmpeg."""
     def call(*words):
@@ -121,12 +138,14 @@ def moving_pictures():
 
 
 def main():
-    for name, text in (("see.py", ENCODER), ("seen.etl", SPEC.format("")),
+    plain = "spec plain; input q : f32[3]; target t = [[0, 0, 0]]; monitor m = F l2(q, t) <= 1;"
+    for name, text in (("see.py", ENCODER), ("plain.etl", plain), ("seen.etl", SPEC.format("")),
                        ("others.etl", SPEC.format(OTHERS))):
         with open(name, "w", encoding="utf-8") as file:
             file.write(text)
     archives(np.random.default_rng(2))
     groups()
+    shown()
     moving_pictures()
 
 

@@ -46,6 +46,8 @@ int main(int argc, char** argv) {
         const std::vector<hsize_t> shape = {kSteps, kRows, kColumns, 3};
         write(file, group + "obs/agentview_image", H5T_NATIVE_UCHAR, shape, images(37 * demo));
         write(file, group + "obs/eye_in_hand_image", H5T_NATIVE_UCHAR, shape, images(7));
+        write(file, group + "obs/grey_image", H5T_NATIVE_UCHAR, {kSteps, kRows, 3 * kColumns},
+              images(7));
         std::vector<double> q, grip;
         for (unsigned step = 0; step < kSteps; ++step) {
             for (unsigned i = 0; i < 3; ++i) q.push_back(demo + step + i / 2.0);

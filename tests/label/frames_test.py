@@ -63,6 +63,16 @@ def videos(folder):
         for step in JUMPS:
             assert (frame(service, 0, step) == frames[step]).all(), step
         assert "found 0 pictures" in frame(service, 1, 0)
+        for change in (-1, 1):
+            lerobot.call("ffmpeg", "-v", "error", "-f", "lavfi", "-i", made.replace(
+                str(2 * STEPS), str(2 * (STEPS + change))), "-pix_fmt", "yuv420p", "-c:v",
+                "libx264", "-g", "12", str(folder / "films" / "two.mp4"))
+            word = "fewer" if change < 0 else "more"
+            said = f"two.mp4: found {word} than {STEPS} pictures, expected {STEPS}, one per step"
+            assert said in frame(service, 1, 0), frame(service, 1, 0)
+            (folder / "films" / "two.mp4").unlink()
+            assert "found 0 pictures" in frame(service, 1, 0)
+            assert (frame(service, 0, 0) == frames[0]).all()
         film.rename(folder / "gone.mp4")
         assert "found 0 pictures" in frame(service, 0, 50)
         (folder / "gone.mp4").rename(film)
@@ -96,7 +106,40 @@ def data_set(folder):
         assert isinstance(frame(service, 0, 0), str)
     with Service(ETLC, folder, "--frames", "pick") as service:
         assert "observation.images.top" in frame(service, 1, 0)
+    (folder / "plain.etl").write_text("spec plain; rate 10 Hz; input z : f32[4];\n"
+                                      "target t = [[0, 0, 0, 0]]; monitor m = F l2(z, t) <= 1;")
+
+    def report(name):
+        return subprocess.run([ETLC, "report", "plain.etl", "--data", f"demos/{name}.npz",
+                               "--frames", "pick", "--camera", camera, "--no-truths", "-o",
+                               "page.html"], cwd=folder, capture_output=True, text=True)
+
+    assert report("pick-000002").returncode == 0
+    assert "data:image/png" in (folder / "page.html").read_text()
+    # Neither frames of an episode of another length, nor of another data set.
+    for name, said in (("pick-000001", "found 20 pictures, expected 90, one per step"),
+                       ("pick-000007", "pick:7: "),
+                       ("place-000002", "is named after another data set than pick: "
+                        "expected pick-000002")):
+        (folder / "demos" / "pick-000002.npz").rename(folder / "demos" / f"{name}.npz")
+        with Service(ETLC, folder, "--frames", "pick", "--camera", camera) as service:
+            assert said in frame(service, 1, 0), frame(service, 1, 0)
+        done = report(name)
+        assert done.returncode == 1 and "[E0840]" in done.stderr and said in done.stderr, done
+        (folder / "demos" / f"{name}.npz").rename(folder / "demos" / "pick-000002.npz")
     (folder / "demos" / "pick-000002.npz").unlink()
+
+
+def grey_arrays(folder):
+    """Arrays of grey frames are shown, and those of another length are not."""
+    grey = np.arange(STEPS, dtype=np.uint8)[:, None, None] + np.zeros((1, 6, 8), np.uint8)
+    for name, camera in (("one", grey), ("two", grey[1:])):
+        made = dict(np.load(folder / "demos" / f"{name}.npz"))
+        np.savez(folder / "demos" / f"{name}.npz", **made, grey=camera)
+    with Service(ETLC, folder, "--frames", "grey") as service:
+        for step in JUMPS:
+            assert (frame(service, 0, step) == step).all(), step
+        assert f"found {STEPS - 1} pictures, expected {STEPS}" in frame(service, 1, 0)
 
 
 def fitted(folder):
@@ -125,6 +168,7 @@ def main():
         videos(folder)
         images(folder)
         data_set(folder)
+        grey_arrays(folder)
 
 
 main()

@@ -95,6 +95,54 @@ def look_without_a_target(report):
     assert "tour.mp4" in said and "W0840" in said and "without pictures" in said, said
 
 
+def telling_steps(browser):
+    """Of 1000 grey frames the page has those of the samples that decide, and of every change."""
+    pathlib.Path("far.etl").write_text("spec far; input x : f32; input held : bool;\n"
+                                       "monitor safe = G x >= 0;\nmonitor hold = F held;\n")
+    steps = np.arange(1000)
+    np.savez("far.npz", x=np.where(steps == 329, -1.0, 1.0 + (steps > 500)),
+             held=(steps > 713) & (steps < 777), camera=np.tile(
+                 (steps % 251).astype(np.uint8)[:, None, None], (1, 12, 16)))
+    said = call(ETLC, "report", "far.etl", "--data", "far.npz", "--no-truths", "--frames", "camera",
+                "-o", "far.html")
+    assert "W0840" not in said, said
+    page = browser.page("far.html")
+    page.wait("sheet !== null")
+    pictures = page.value("view.row.pictures.steps")
+    assert pictures == sorted(pictures) and len(pictures) == 120, pictures
+    assert {0, 329, 330, 714, 777, 999} <= set(pictures), pictures
+    assert max(np.diff(pictures)) <= 17, pictures  # the others are even
+    for step in (0, 329, 330, 714, 777, 999):
+        page.value(f"moveCursor({step})")
+        assert page.value("document.getElementById('frame').dataset.step") == str(step)
+        assert middle(page, "#frame") == [step % 251] * 3, step
+    # Pictures that arrive when an episode without timelines is shown are not drawn.
+    page.value("""selectEpisode(episodes[0]).then(() => {
+        selectEpisode({ ...episodes[0], series: null });
+        return new Promise((done) => {
+            const image = new Image();
+            image.addEventListener("load", done);
+            image.src = episodes[0].pictures.files[0];
+        });
+    }).then(() => 0)""")
+    assert page.value("document.getElementById('frame') === null")
+    assert page.messages == [], page.messages
+
+
+def frames_that_do_not_belong():
+    """Frames of another length, and those of another data set, are refused."""
+    report = [ETLC, "report", "far.etl", "--data", "far.npz", "--no-truths", "-o", "no.html"]
+    np.savez("short.npz", **{**np.load("far.npz"), "camera": np.zeros((999, 2, 2), np.uint8)})
+    for words, code, said in (
+            (["--frames", "x"], "E0841", "has elements of float64, expected uint8"),
+            (["--frames", "top"], "E0840", "top"),
+            (["--data", "short.npz", "--frames", "camera"], "E0840",
+             "found 999 pictures, expected 1000, one per step")):
+        done = subprocess.run([*report, *words], capture_output=True, text=True)
+        assert done.returncode == 1 and f"[{code}]" in done.stderr, (words, done.stderr)
+        assert said in done.stderr, (words, done.stderr)
+
+
 def main():
     make_files()
     call(ETLC, "embed", "look.etl", "--data", "drives/one.mp4", "-o", "episodes",
@@ -104,6 +152,8 @@ def main():
     assert "warning" not in said, said
     with Browser() as browser:
         look(browser)
+        telling_steps(browser)
+    frames_that_do_not_belong()
 
     look_without_a_target(report)
     call("ffmpeg", "-v", "error", "-y", "-i", "tour.mp4", "-frames:v", "7", "drives/short.mp4")

@@ -3,22 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <utility>
-#include <vector>
 
-#include "data/datasets/dataset.hpp"
-#include "data/datasets/trace.hpp"
 #include "data/files/file.hpp"
-#include "data/recordings/image_arrays.hpp"
-#include "data/text/number.hpp"
-#include "data/text/quote.hpp"
 
 namespace etlc::label {
 
 namespace {
 
-namespace fs = std::filesystem;
 using diag::Code;
 using diag::Failure;
 using report::Picture;
@@ -34,7 +26,8 @@ void append(std::string& bytes, std::uint32_t number, unsigned size) {
 }
 
 Failure of_path(const Failure& failure, const std::string& path) {
-    return {failure.code, fmt::format("{}: {}", path, failure.message)};
+    return {failure.code,
+            path.empty() ? failure.message : fmt::format("{}: {}", path, failure.message)};
 }
 
 diag::Result<ImageFile> image_file(const std::string& path) {
@@ -43,13 +36,6 @@ diag::Result<ImageFile> image_file(const std::string& path) {
     if (bytes->starts_with("\x89PNG")) return ImageFile{"image/png", std::move(*bytes)};
     if (bytes->starts_with("\xFF\xD8\xFF")) return ImageFile{"image/jpeg", std::move(*bytes)};
     return Failure{Code::not_pictures, path + ": expected a PNG or JPEG file"};
-}
-
-/// Returns the number at the end of a name: 3 for "pick-000003".
-std::optional<std::uint64_t> number_at_end(const std::string& name) {
-    const std::size_t last = name.find_last_not_of("0123456789");
-    return data::parse_whole<std::uint64_t>(
-        std::string_view(name).substr(last == std::string::npos ? 0 : last + 1));
 }
 
 }  // namespace
@@ -77,57 +63,26 @@ ImageFile bitmap(const Picture& picture) {
     return {"image/bmp", std::move(bytes)};
 }
 
-/// Returns the episode of a data set that shows this one, or an empty text.
-std::string Frames::dataset_episode(const Episode& episode) const {
-    const std::string& text = request_.option.text;
-    if (text.empty()) return data::dataset_path(episode.path) ? episode.path : "";
-    if (!data::is_dataset(text)) return "";
-    const auto number = number_at_end(fs::path(episode.path).stem().string());
-    return number ? data::episode_path(text, *number) : "";
-}
-
-bool Frames::has(const Episode& episode) const {
-    const std::string of_set = dataset_episode(episode);
-    if (of_set.empty()) return !request_.option.text.empty();
-    const auto found = data::find_episode(of_set);
-    return found && !found->set->cameras().empty();
-}
-
-diag::Result<std::unique_ptr<data::FrameSource>> Frames::open_dataset(const std::string& episode) {
-    file_ = episode;
-    const auto found = data::find_episode(episode);
-    if (!found) return found.failure();
-    const auto camera = data::camera_of(*found->set, request_.camera);
-    if (!camera) return camera.failure();
+diag::Result<report::Film> Frames::open(const Episode& episode, std::uint64_t from) const {
     const double rate = request_.step_seconds > 0 ? 1 / request_.step_seconds : 0;
-    const auto stride = data::rows_a_step(*found->set, rate);
-    if (!stride) return stride.failure();
-    return data::open_clip(*found->set, *found->episode, *camera, *stride);
+    return report::open_film(request_.option, episode.path, {episode.steps, rate}, from);
 }
 
-/// Opens the frames of an episode from a step on, or from the first one.
-diag::Result<std::unique_ptr<data::FrameSource>> Frames::open(const Episode& episode,
-                                                              std::uint64_t from) {
-    next_ = 0;
-    can_skip_ = false;
-    if (const std::string of_set = dataset_episode(episode); !of_set.empty())
-        return open_dataset(of_set);
-    if (!request_.option.is_pattern()) {
-        file_ = episode.path;
-        return data::open_image_array(episode.path, request_.option.text);
+/// Fails where a video has other numbers of frames and steps, which only its end tells.
+std::optional<Failure> Frames::check_end(const Episode& episode) const {
+    const auto end = open(episode, episode.steps - 1);
+    if (!end) return end.failure();
+    data::Frame frame;
+    for (const bool is_there : {true, false}) {
+        const auto more = end->frames->next(frame);
+        if (!more) return of_path(more.failure(), end->path);
+        if (*more != is_there)
+            return Failure{Code::no_frames, fmt::format("{}: found {} than {} pictures, expected "
+                                                        "{}, one per step",
+                                                        end->path, is_there ? "fewer" : "more",
+                                                        episode.steps, episode.steps)};
     }
-    const std::vector<std::string> paths = report::files_of_frames(request_.option, episode.path);
-    file_ = paths.empty() ? "--frames " + request_.option.text : paths[0];
-    if (paths.size() != 1 || !data::is_video(paths[0]))
-        return Failure{Code::no_frames,
-                       fmt::format("found {}, expected {}, one per step",
-                                   diag::counted(paths.size(), "picture"), episode.steps)};
-    can_skip_ = true;
-    next_ = from;
-    data::FrameChoice choice;
-    choice.rate = request_.step_seconds > 0 ? 1 / request_.step_seconds : 0;
-    choice.skipped = from;
-    return data::open_video(paths[0], choice);
+    return std::nullopt;
 }
 
 /// Drops the pictures that are farthest from a step.
@@ -145,15 +100,16 @@ void Frames::make_room(std::uint64_t step) {
 
 std::optional<Failure> Frames::read_up_to(std::uint64_t step) {
     data::Frame frame;
-    while (next_ <= step) {
-        const auto more = source_->next(frame);
-        if (!more) return of_path(more.failure(), file_);
+    while (film_.next <= step) {
+        const auto more = film_.frames->next(frame);
+        if (!more) return of_path(more.failure(), film_.path);
         if (!*more)
-            return Failure{Code::no_frames, fmt::format("{}: ends before step {}", file_, step)};
+            return Failure{Code::no_frames,
+                           fmt::format("{}: ends before step {}", film_.path, step)};
         Picture picture = report::shrunk(frame.rgb, frame.width, frame.height, 3, kMostSide);
-        if (const auto [at, is_new] = pictures_.try_emplace(next_, std::move(picture)); is_new)
+        if (const auto [at, is_new] = pictures_.try_emplace(film_.next, std::move(picture)); is_new)
             bytes_ += at->second.pixels.size();
-        ++next_;
+        ++film_.next;
         make_room(step);
     }
     return std::nullopt;
@@ -161,28 +117,27 @@ std::optional<Failure> Frames::read_up_to(std::uint64_t step) {
 
 diag::Result<ImageFile> Frames::at(const Episode& episode, std::uint64_t step) {
     if (episode.path != std::exchange(episode_, episode.path)) {
-        source_.reset();
+        film_ = {};
+        belongs_ = false;
         pictures_.clear();
         bytes_ = 0;
     }
-    if (request_.option.is_pattern() && !data::is_dataset(request_.option.text)) {
-        const auto paths = report::files_of_frames(request_.option, episode.path);
-        if (paths.size() == episode.steps && !data::is_video(paths[0]))
-            return image_file(paths[step]);
-    }
     if (const auto known = pictures_.find(step); known != pictures_.end())
         return bitmap(known->second);
-    const bool is_ahead = source_ && next_ <= step && (step - next_ <= kMostPassed || !can_skip_);
+    const bool is_ahead =
+        film_.frames && film_.next <= step && (step - film_.next <= kMostPassed || !film_.can_skip);
     if (!is_ahead) {
         auto opened = open(episode, step - std::min(step, kBefore));
-        if (!opened) return of_path(opened.failure(), file_);
-        source_ = std::move(*opened);
+        if (!opened) return opened.failure();
+        film_ = std::move(*opened);
     }
-    if (auto failure = read_up_to(step)) {
-        source_.reset();
-        return *failure;
-    }
-    return bitmap(pictures_.at(step));
+    if (!film_.images.empty()) return image_file(std::exchange(film_, {}).images[step]);
+    auto failure = belongs_ || !film_.can_skip ? std::nullopt : check_end(episode);
+    belongs_ = !failure;
+    if (!failure) failure = read_up_to(step);
+    if (!failure) return bitmap(pictures_.at(step));
+    film_ = {};
+    return *failure;
 }
 
 }  // namespace etlc::label

@@ -1,16 +1,16 @@
 // The camera's frame at a step of an episode, for the page.
 // Takes: what --frames names. Gives: an image file. Keeps true: a frame is exactly that of its
-// step, counted by the decoder; memory is that of an episode's small pictures, up to a limit; files
-// that have gone are a failure for this frame alone.
+// step, counted by the decoder, and the episode has as many of them as steps; memory is that of an
+// episode's small pictures, up to a limit; files that have gone are a failure for this frame alone.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
-#include "data/frames/frames.hpp"
 #include "diag/diag.hpp"
 #include "label/desk.hpp"
 #include "report/pictures.hpp"
@@ -18,10 +18,7 @@
 namespace etlc::label {
 
 struct FramesRequest {
-    /// An array or a pattern as for `etlc report`, or the folder of a data set, whose episode is
-    /// that of the number at the end of the name.
     report::FramesOption option;
-    std::string camera;  ///< of the data set; empty: its only one
     double step_seconds = 0;
 };
 
@@ -39,23 +36,21 @@ public:
     explicit Frames(FramesRequest request) : request_(std::move(request)) {}
 
     /// Returns whether there may be frames of an episode.
-    bool has(const Episode& episode) const;
+    bool has(const Episode& episode) const {
+        return report::names_frames(request_.option, episode.path);
+    }
     diag::Result<ImageFile> at(const Episode& episode, std::uint64_t step);
 
 private:
-    diag::Result<std::unique_ptr<data::FrameSource>> open(const Episode& episode,
-                                                          std::uint64_t from);
-    diag::Result<std::unique_ptr<data::FrameSource>> open_dataset(const std::string& episode);
-    std::string dataset_episode(const Episode& episode) const;
+    diag::Result<report::Film> open(const Episode& episode, std::uint64_t from) const;
+    std::optional<diag::Failure> check_end(const Episode& episode) const;
     std::optional<diag::Failure> read_up_to(std::uint64_t step);
     void make_room(std::uint64_t step);
 
     FramesRequest request_;
     std::string episode_;  ///< whose frames the members below are
-    std::unique_ptr<data::FrameSource> source_;
-    std::string file_;                                   ///< of the source, for messages
-    bool can_skip_ = false;                              ///< the source may begin at any step
-    std::uint64_t next_ = 0;                             ///< step of the source's next frame
+    report::Film film_;
+    bool belongs_ = false;                               ///< the film has a frame for each step
     std::map<std::uint64_t, report::Picture> pictures_;  ///< by step
     std::size_t bytes_ = 0;
 };

@@ -6,12 +6,16 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <set>
+#include <utility>
 
-#include "data/arrays/archive.hpp"
-#include "data/arrays/npy_header.hpp"
+#include "data/datasets/dataset.hpp"
+#include "data/datasets/trace.hpp"
 #include "data/files/file.hpp"
-#include "data/frames/frames.hpp"
+#include "data/hdf5/hdf5.hpp"
+#include "data/recordings/image_arrays.hpp"
 #include "data/recordings/open.hpp"
+#include "data/text/number.hpp"
 #include "data/text/quote.hpp"
 #include "report/blob.hpp"
 
@@ -22,9 +26,12 @@ namespace {
 using diag::Code;
 using diag::Failure;
 
+namespace fs = std::filesystem;
+
 constexpr std::string_view kEpisode = "{episode}";
 constexpr std::size_t kMostPictures = 120;
 constexpr std::uint64_t kLargestFile = 64U << 20U;
+constexpr const char* kTooLarge = "a single picture is larger than the space for pictures";
 
 std::string big_endian(std::uint32_t number) {
     std::string bytes;
@@ -63,20 +70,56 @@ std::string png(const Picture& picture) {
            chunk("IDAT", up.size() < plain.size() ? up : plain) + chunk("IEND", "");
 }
 
-/// Returns evenly spaced steps, including the first and the last.
-std::vector<std::uint64_t> chosen_steps(std::uint64_t steps, std::size_t most) {
-    const std::size_t n = std::min<std::size_t>(steps, most);
-    std::vector<std::uint64_t> chosen;
+/// Orders a list so that each beginning of it is spread over all of it.
+std::vector<std::uint64_t> spread(const std::vector<std::uint64_t>& list) {
+    std::size_t stride = 1;
+    while (stride < list.size()) stride *= 2;
+    std::vector<std::uint64_t> result;
+    for (; stride > 0 && !list.empty(); stride /= 2)
+        for (std::size_t i = 0; i < list.size(); i += stride)
+            if (result.empty() || i % (2 * stride) != 0) result.push_back(list[i]);
+    return result;
+}
+
+/// Returns the steps of pictures, the most important first: as many as there is room for are shown.
+std::vector<std::uint64_t> steps_in_order(std::uint64_t steps,
+                                          const std::vector<std::uint64_t>& telling) {
+    std::vector<std::uint64_t> evenly;
+    const std::size_t n = std::min<std::size_t>(steps, kMostPictures);
     for (std::size_t i = 0; i < n; ++i)
-        chosen.push_back(n == 1 ? 0 : (i * (steps - 1) + (n - 1) / 2) / (n - 1));
-    return chosen;
+        evenly.push_back(n == 1 ? 0 : (i * (steps - 1) + (n - 1) / 2) / (n - 1));
+    std::vector<std::uint64_t> wanted = {0, steps - 1};
+    wanted.insert(wanted.end(), telling.begin(), telling.end());
+    const std::vector<std::uint64_t> others = spread(evenly);
+    wanted.insert(wanted.end(), others.begin(), others.end());
+    std::vector<std::uint64_t> order;
+    std::set<std::uint64_t> known;
+    for (const std::uint64_t step : wanted)
+        if (order.size() < kMostPictures && known.insert(step).second) order.push_back(step);
+    return order;
+}
+
+/// Returns the first `n` steps of an order, sorted.
+std::vector<std::uint64_t> first_of(std::vector<std::uint64_t> order, std::size_t n) {
+    order.resize(std::min(n, order.size()));
+    std::sort(order.begin(), order.end());
+    return order;
 }
 
 /// Returns the name of an episode: ep3 for "runs/ep3.npz", demo_7 for "set.h5:data/demo_7".
 std::string name_of(const std::string& episode) {
     const std::string file = data::trace_file(episode);
-    if (file.size() == episode.size()) return std::filesystem::path(file).stem().string();
-    return std::filesystem::path(episode.substr(file.size() + 1)).filename().string();
+    if (file.size() == episode.size()) return fs::path(file).stem().string();
+    return fs::path(episode.substr(file.size() + 1)).filename().string();
+}
+
+/// Returns the files that a pattern names for an episode, in order.
+std::vector<std::string> files_of(std::string pattern, const std::string& episode) {
+    const std::string name = data::literal(name_of(episode));
+    for (std::size_t at = 0; (at = pattern.find(kEpisode, at)) != std::string::npos;
+         at += name.size())
+        pattern.replace(at, kEpisode.size(), name);
+    return data::paths_matching(pattern).value_or(std::vector<std::string>{});
 }
 
 std::string not_one_a_step(std::uint64_t found, std::uint64_t steps) {
@@ -85,7 +128,7 @@ std::string not_one_a_step(std::uint64_t found, std::uint64_t steps) {
 }
 
 Failure of_file(const Failure& failure, const std::string& path) {
-    return {failure.code, path + ": " + failure.message};
+    return {failure.code, path.empty() ? failure.message : path + ": " + failure.message};
 }
 
 diag::Result<std::string> address_of(const std::string& path) {
@@ -96,145 +139,133 @@ diag::Result<std::string> address_of(const std::string& path) {
     return Failure{Code::not_pictures, path + ": expected a PNG or JPEG file"};
 }
 
-diag::Result<Pictures> from_files(const std::vector<std::string>& paths, std::uint64_t steps,
+diag::Result<Pictures> from_files(const std::vector<std::string>& paths,
+                                  const std::vector<std::uint64_t>& order,
                                   std::uint64_t most_bytes) {
     Pictures result;
-    if (paths.size() != steps) {
-        result.why = not_one_a_step(paths.size(), steps);
-        return result;
-    }
     // The size of the first determines how many fit.
     const auto first = address_of(paths[0]);
     if (!first) return first.failure();
-    const std::size_t most = std::min<std::uint64_t>(kMostPictures, most_bytes / first->size());
-    for (const std::uint64_t step : chosen_steps(steps, most)) {
+    for (const std::uint64_t step : first_of(order, most_bytes / first->size())) {
         auto file = address_of(paths[step]);
         if (!file) return file.failure();
         result.steps.push_back(step);
         result.files.push_back(std::move(*file));
     }
-    if (result.steps.empty()) result.why = "a single picture is larger than the space for pictures";
+    if (result.steps.empty()) result.why = kTooLarge;
     return result;
 }
 
-std::string sheet(const std::vector<Picture>& pictures, std::size_t stride) {
-    Picture all{pictures[0].width, 0, ""};
-    for (std::size_t i = 0; i < pictures.size(); i += stride) {
-        all.height += pictures[i].height;
-        all.pixels += pictures[i].pixels;
-    }
-    return address(all);
-}
-
-/// Puts as many of the pictures as fit on one sheet, evenly.
-Pictures on_a_sheet(const std::vector<Picture>& pictures, const std::vector<std::uint64_t>& steps,
-                    std::uint64_t most_bytes) {
+/// Puts as many of the pictures as fit on one sheet, the most important ones.
+Pictures on_a_sheet(const std::map<std::uint64_t, Picture>& pictures,
+                    const std::vector<std::uint64_t>& order, std::uint64_t most_bytes) {
     Pictures result;
-    result.width = pictures[0].width;
-    result.height = pictures[0].height;
-    for (std::size_t stride = 1; stride <= steps.size(); stride *= 2) {
-        std::string text = sheet(pictures, stride);
-        if (text.size() > most_bytes) continue;
-        result.files.push_back(std::move(text));
-        for (std::size_t i = 0; i < steps.size(); i += stride) result.steps.push_back(steps[i]);
-        return result;
+    result.width = pictures.begin()->second.width;
+    result.height = pictures.begin()->second.height;
+    for (std::size_t n = order.size(); n > 0; n /= 2) {
+        result.steps = first_of(order, n);
+        Picture all{result.width, 0, ""};
+        for (const std::uint64_t step : result.steps) {
+            all.height += pictures.at(step).height;
+            all.pixels += pictures.at(step).pixels;
+        }
+        result.files = {address(all)};
+        if (result.bytes() <= most_bytes) return result;
     }
-    result.why = "a single picture is larger than the space for pictures";
-    return result;
+    return {{}, {}, 0, 0, kTooLarge};
 }
 
-/// Decodes all frames, to count them.
-diag::Result<Pictures> from_video(const std::string& path, const Length& length,
-                                  std::uint64_t most_bytes) {
-    const auto decoded = data::open_video(path, {.rate = length.rate});
-    if (!decoded) return of_file(decoded.failure(), path);
-    const std::vector<std::uint64_t> chosen = chosen_steps(length.steps, kMostPictures);
-    std::vector<Picture> pictures;
+/// Reads all frames, to count them.
+diag::Result<Pictures> from_frames(Film& film, const Length& length,
+                                   const std::vector<std::uint64_t>& order,
+                                   std::uint64_t most_bytes) {
+    const std::set<std::uint64_t> wanted(order.begin(), order.end());
+    std::map<std::uint64_t, Picture> pictures;
     data::Frame frame;
     std::uint64_t count = 0;
     for (;; ++count) {
-        const auto more = (*decoded)->next(frame);
-        if (!more) return of_file(more.failure(), path);
+        const auto more = film.frames->next(frame);
+        if (!more) return of_file(more.failure(), film.path);
         if (!*more) break;
-        if (pictures.size() < chosen.size() && chosen[pictures.size()] == count)
-            pictures.push_back(shrunk(frame.rgb, frame.width, frame.height, 3, kMostPixels));
+        if (wanted.contains(count))
+            pictures.emplace(count, shrunk(frame.rgb, frame.width, frame.height, 3, kMostPixels));
     }
-    if (count == length.steps) return on_a_sheet(pictures, chosen, most_bytes);
-    Pictures result;
-    result.why = not_one_a_step(count, length.steps);
-    return result;
+    if (count == length.steps) return on_a_sheet(pictures, order, most_bytes);
+    return Pictures{{}, {}, 0, 0, not_one_a_step(count, length.steps)};
 }
 
-/// An array of bytes: T x H x W x 3, or T x H x W.
-struct Film {
-    std::uint64_t steps = 0;
-    std::uint32_t height = 0;
-    std::uint32_t width = 0;
-    std::uint32_t channels = 3;
+// ---- frames of data sets ------------------------------------------------------------------------
 
-    std::size_t bytes() const { return std::size_t{height} * width * channels; }
-};
-
-std::optional<Film> film_of(const data::NpyHeader& header) {
-    constexpr std::uint64_t kMostSide = 1U << 14U;
-    const auto& shape = header.shape;
-    const bool is_grey = shape.size() == 3;
-    if (!is_grey && (shape.size() != 4 || shape[3] != 3)) return std::nullopt;
-    if (header.element != data::Element::u8 || header.fortran_order) return std::nullopt;
-    if (shape[1] == 0 || shape[2] == 0 || shape[1] > kMostSide || shape[2] > kMostSide)
-        return std::nullopt;
-    return Film{shape[0], static_cast<std::uint32_t>(shape[1]),
-                static_cast<std::uint32_t>(shape[2]), is_grey ? 1U : 3U};
+std::string name_of_folder(const std::string& folder) {
+    std::error_code ignored;
+    return fs::canonical(folder, ignored).filename().string();
 }
 
-/// Reads the pictures of these steps and shrinks them.
-diag::Result<std::vector<Picture>> small_pictures(data::ByteSource& source, const Film& film,
-                                                  const std::vector<std::uint64_t>& steps) {
-    std::vector<Picture> pictures;
-    std::string frame(film.bytes(), '\0');
-    std::uint64_t at = 0;
-    for (const std::uint64_t step : steps) {
-        for (; at <= step; ++at) {
-            const auto read = source.read(frame.data(), frame.size());
-            if (!read) return read.failure();
-            if (*read < frame.size())
-                return Failure{Code::not_pictures, "the array ends before its last picture"};
-        }
-        pictures.push_back(shrunk(frame, film.width, film.height, film.channels, kMostPixels));
+/// Returns the episode of the data set that shows this one. `etlc embed` names it after the set:
+/// "pick-000003".
+diag::Result<std::string> dataset_episode(const std::string& set, const std::string& episode) {
+    if (const auto which = data::dataset_path(episode)) {
+        std::error_code ignored;
+        if (set.empty() || fs::equivalent(which->folder, set, ignored)) return episode;
+        return Failure{Code::no_frames,
+                       fmt::format("is an episode of another data set than {}", set)};
     }
-    return pictures;
+    const std::string name = name_of(episode);
+    const std::size_t end = name.find_last_not_of("0123456789") + 1;
+    const auto number = data::parse_whole<std::uint64_t>(std::string_view(name).substr(end));
+    if (!number)
+        return Failure{Code::no_frames,
+                       fmt::format("the name of the episode, {}, does not end with the number of "
+                                   "an episode of {}",
+                                   data::in_quotes(name), set)};
+    const std::string before = name.substr(0, end);
+    const std::string expected = name_of_folder(set) + "-";
+    if (before.ends_with('-') && before != expected)
+        return Failure{Code::no_frames,
+                       fmt::format("the episode {} is named after another data set than {}: "
+                                   "expected {}{}",
+                                   data::in_quotes(name), set, expected, name.substr(end))};
+    return data::episode_path(set, *number);
 }
 
-diag::Result<Pictures> from_array(const std::string& key, const std::string& episode,
-                                  std::uint64_t steps, std::uint64_t most_bytes) {
-    if (!episode.ends_with(".npz"))
-        return Failure{Code::not_pictures, "arrays of pictures are read only from .npz files"};
-    Pictures result;
-    const auto archive = data::Archive::open({episode, {}});
-    if (!archive) return archive.failure();
-    const auto& keys = archive->keys();
-    if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
-        result.why = fmt::format("has no array {}", data::in_quotes(key));
-        return result;
-    }
-    const auto source = archive->member(key);
-    if (!source) return source.failure();
-    const auto header = data::read_npy_header(**source);
-    if (!header) return header.failure();
-    const auto film = film_of(*header);
-    if (!film)
+diag::Result<Film> open_dataset_film(const FramesOption& option, const std::string& episode,
+                                     const Length& length) {
+    const auto of_set = dataset_episode(option.text, episode);
+    if (!of_set) return of_set.failure();
+    const auto found = data::find_episode(*of_set);
+    if (!found) return of_file({Code::no_frames, found.failure().message}, *of_set);
+    const auto camera = data::camera_of(*found->set, option.camera);
+    if (!camera) return of_file(camera.failure(), *of_set);
+    const auto stride = data::rows_a_step(*found->set, length.rate);
+    if (!stride) return of_file(stride.failure(), *of_set);
+    const std::uint64_t steps = (found->episode->length + *stride - 1) / *stride;
+    if (steps != length.steps)
+        return Failure{Code::no_frames,
+                       fmt::format("{}: {}", *of_set, not_one_a_step(steps, length.steps))};
+    Film film;
+    film.path = *of_set;
+    auto frames = data::open_clip(*found->set, *found->episode, *camera, *stride);
+    if (!frames) return of_file(frames.failure(), *of_set);
+    film.frames = std::move(*frames);
+    return film;
+}
+
+diag::Result<Film> open_array_film(const std::string& array, const std::string& episode,
+                                   std::uint64_t steps) {
+    const std::string file = data::trace_file(episode);
+    if (!file.ends_with(".npz") && !data::is_hdf5(file))
         return Failure{Code::not_pictures,
-                       fmt::format("array {} has shape {} of {}, expected T x H x W x 3 of uint8",
-                                   data::in_quotes(key), data::shape_text(header->shape),
-                                   data::name(header->element))};
-    if (film->steps != steps) {
-        result.why = not_one_a_step(film->steps, steps);
-        return result;
-    }
-    const std::vector<std::uint64_t> chosen = chosen_steps(steps, kMostPictures);
-    const auto pictures = small_pictures(**source, *film, chosen);
-    if (!pictures) return pictures.failure();
-    return on_a_sheet(*pictures, chosen, most_bytes);
+                       "arrays of pictures are read only from .npz and .h5 files"};
+    auto frames = data::open_image_array(episode, array, data::Grey::taken);
+    if (!frames)
+        return Failure{
+            frames.failure().code == Code::no_such_camera ? Code::no_frames : Code::not_pictures,
+            frames.failure().message};
+    if ((*frames)->count() != steps)
+        return Failure{Code::no_frames, not_one_a_step((*frames)->count().value_or(0), steps)};
+    Film film;
+    film.frames = std::move(*frames);
+    return film;
 }
 
 }  // namespace
@@ -256,28 +287,51 @@ bool check_pattern(const FramesOption& option, std::size_t episodes, diag::Sink&
     return false;
 }
 
-std::vector<std::string> files_of_frames(const FramesOption& option, const std::string& episode) {
-    std::string pattern = option.text;
-    const std::string name = data::literal(name_of(episode));
-    for (std::size_t at = 0; (at = pattern.find(kEpisode, at)) != std::string::npos;
-         at += name.size())
-        pattern.replace(at, kEpisode.size(), name);
-    return data::paths_matching(pattern).value_or(std::vector<std::string>{});
-}
-
 std::uint64_t Pictures::bytes() const {
     std::uint64_t sum = 0;
     for (const std::string& file : files) sum += file.size();
     return sum;
 }
 
+bool names_frames(const FramesOption& option, const std::string& episode) {
+    if (!option.text.empty()) return true;
+    if (!data::dataset_path(episode)) return false;
+    const auto found = data::find_episode(episode);
+    return found && !found->set->cameras().empty();
+}
+
+diag::Result<Film> open_film(const FramesOption& option, const std::string& episode,
+                             const Length& length, std::uint64_t from) {
+    if (option.text.empty() || data::is_dataset(option.text))
+        return open_dataset_film(option, episode, length);
+    if (!option.is_pattern()) return open_array_film(option.text, episode, length.steps);
+    Film film;
+    std::vector<std::string> paths = files_of(option.text, episode);
+    if (paths.size() == 1 && data::is_video(paths[0])) {
+        film.path = paths[0];
+        auto frames = data::open_video(paths[0], {.rate = length.rate, .skipped = from});
+        if (!frames) return of_file(frames.failure(), film.path);
+        film.frames = std::move(*frames);
+        film.next = from;
+        film.can_skip = true;
+        return film;
+    }
+    if (paths.size() != length.steps)
+        return Failure{Code::no_frames, not_one_a_step(paths.size(), length.steps)};
+    film.images = std::move(paths);
+    return film;
+}
+
 diag::Result<Pictures> pictures_of(const FramesOption& option, const std::string& episode,
-                                   const Length& length, std::uint64_t most_bytes) {
-    if (!option.is_pattern()) return from_array(option.text, episode, length.steps, most_bytes);
-    const std::vector<std::string> paths = files_of_frames(option, episode);
-    if (paths.size() == 1 && data::is_video(paths[0]))
-        return from_video(paths[0], length, most_bytes);
-    return from_files(paths, length.steps, most_bytes);
+                                   const Length& length, const std::vector<std::uint64_t>& telling,
+                                   std::uint64_t most_bytes) {
+    auto film = open_film(option, episode, length, 0);
+    if (!film && film.failure().code == Code::no_frames)
+        return Pictures{{}, {}, 0, 0, film.failure().message};
+    if (!film) return film.failure();
+    const std::vector<std::uint64_t> order = steps_in_order(length.steps, telling);
+    return film->frames ? from_frames(*film, length, order, most_bytes)
+                        : from_files(film->images, order, most_bytes);
 }
 
 std::string address(const Picture& picture) {

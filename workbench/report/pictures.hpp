@@ -1,24 +1,27 @@
-// Small camera pictures for the page: evenly chosen steps of an episode, and rows of targets.
-// Pictures from an array or a video come as one PNG, others as their own files. Each picture is
-// shown at its own step; an episode with other numbers of pictures and steps has none.
+// Camera pictures: the frames of an episode, which `etlc label` shows too, and small ones for the
+// page. Pictures from an array or a video come as one PNG, others as their own files. Each picture
+// is shown at its own step; an episode with other numbers of pictures and steps has none.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "check/model/model.hpp"
+#include "data/frames/frames.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::report {
 
-/// The value of --frames: an array of the episodes, or a pattern with {episode} of files, one per
-/// step, or of videos, one per episode.
+/// What --frames and --camera say: an array of the episodes; a pattern with {episode} of files, one
+/// per step, or of videos, one per episode; or the folder of a data set.
 struct FramesOption {
-    std::string text;  ///< as given; empty: none
+    std::string text;    ///< as given; empty: none, except for episodes of a data set
+    std::string camera;  ///< of the data set; empty: its only one
 
     bool is_pattern() const;
 };
@@ -40,16 +43,34 @@ struct Length {
     double rate = 0;
 };
 
+/// The frames of an episode: image files, one per step, or frames one after the other.
+struct Film {
+    std::vector<std::string> images;
+    std::unique_ptr<data::FrameSource> frames;
+    std::string path;        ///< of the frames, for messages; empty: of the episode
+    std::uint64_t next = 0;  ///< step of the next frame
+    bool can_skip = false;   ///< it may be opened at any step
+};
+
 /// Checks that a pattern names different pictures for each episode. Reports E0840 and returns false
 /// where it does not.
 bool check_pattern(const FramesOption& option, std::size_t episodes, diag::Sink& sink);
 
-/// Returns the files that a pattern names for an episode, in order.
-std::vector<std::string> files_of_frames(const FramesOption& option, const std::string& episode);
+/// Returns whether the option names frames of an episode, though perhaps none that belong to it.
+bool names_frames(const FramesOption& option, const std::string& episode);
 
-/// Reads the pictures of an episode. Failures (a file or an array without pictures) do not name it.
+/// Opens the frames of an episode at a step, or where it cannot skip at the first one. Frames that
+/// do not belong to the episode are E0840: none, other numbers of them and steps (for a video only
+/// its end tells), an episode of another data set. Other failures are about a file or an array.
+diag::Result<Film> open_film(const FramesOption& option, const std::string& episode,
+                             const Length& length, std::uint64_t from);
+
+/// Reads pictures of an episode: of the first and the last step, of `telling` ones, the first of
+/// them first, as many as there is room for, and then of evenly chosen ones. Failures (a file or an
+/// array without pictures) do not name the episode.
 diag::Result<Pictures> pictures_of(const FramesOption& option, const std::string& episode,
-                                   const Length& length, std::uint64_t most_bytes);
+                                   const Length& length, const std::vector<std::uint64_t>& telling,
+                                   std::uint64_t most_bytes);
 
 /// An 8-bit RGB picture.
 struct Picture {

@@ -128,7 +128,7 @@ public:
         const double seconds = scene_.plan.model->step_seconds;
         auto pictures =
             pictures_of(request_.frames, path, {tracks->frames, seconds > 0 ? 1 / seconds : 0},
-                        shelf_.share_of_pictures());
+                        telling_steps(*tracks), shelf_.share_of_pictures());
         if (!pictures) return pictures.failure();
         packed.row.pictures = std::move(*pictures);
         return packed;

@@ -53,6 +53,22 @@ std::uint32_t code_of(const Verdict& verdict) {
     return status + (verdict.final() ? kFinal : 0);
 }
 
+std::vector<std::uint64_t> telling_steps(const Tracks& tracks) {
+    std::vector<std::uint64_t> steps;
+    for (const Why& why : tracks.reasons) {
+        if (why.critical) steps.push_back(why.critical->first);
+        steps.push_back(std::min(why.step, tracks.frames - 1));
+    }
+    for (const Why& why : tracks.reasons)
+        for (const Mark& mark : why.samples) steps.insert(steps.end(), {mark.first, mark.last});
+    for (const Codes& codes : tracks.codes) {
+        if (codes.of == "nearest") continue;
+        for (std::size_t step = 1; step < codes.values.size(); ++step)
+            if (codes.values[step] != codes.values[step - 1]) steps.push_back(step);
+    }
+    return steps;
+}
+
 TrackReader::TrackReader(const Scene& scene)
     : scene_(scene),
       leaks_(*scene.plan.model, {}),

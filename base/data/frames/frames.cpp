@@ -76,6 +76,13 @@ private:
 
 }  // namespace
 
+std::string in_colour(std::string_view grey) {
+    std::string rgb;
+    rgb.reserve(3 * grey.size());
+    for (const char value : grey) rgb.append(3, value);
+    return rgb;
+}
+
 bool is_video(const std::string& path) {
     constexpr std::array<std::string_view, 6> kEndings = {".mp4", ".mkv",  ".avi",
                                                           ".mov", ".webm", ".gif"};

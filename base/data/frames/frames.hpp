@@ -23,11 +23,16 @@ struct Frame {
     std::string rgb;  ///< height x width x 3 bytes, row by row from the top
 };
 
+/// Returns red, green and blue of grey values.
+std::string in_colour(std::string_view grey);
+
 class FrameSource {
 public:
     virtual ~FrameSource() = default;
     /// Reads the next frame; false at the end.
     virtual diag::Result<bool> next(Frame& frame) = 0;
+    /// Returns the number of frames; nothing where it takes reading all of them.
+    virtual std::optional<std::uint64_t> count() const { return std::nullopt; }
 };
 
 /// The frames of a video that are wanted, counted from 0 in the order in which they are shown.

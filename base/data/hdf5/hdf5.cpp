@@ -138,7 +138,8 @@ public:
         frame.height = static_cast<std::uint32_t>(shape_[1]);
         frame.width = static_cast<std::uint32_t>(shape_[2]);
         frame.rgb.clear();
-        const std::size_t size = std::size_t{3} * frame.height * frame.width;
+        const bool is_grey = shape_.size() == 3;
+        const std::size_t size = std::size_t{frame.height} * frame.width * (is_grey ? 1 : 3);
         while (frame.rgb.size() < size) {
             const auto tag = records_->next();
             if (!tag) return tag.failure();
@@ -147,9 +148,12 @@ public:
                 return records_->nonsense();
             frame.rgb += bytes;
         }
+        if (is_grey) frame.rgb = in_colour(frame.rgb);
         ++taken_;
         return true;
     }
+
+    std::optional<std::uint64_t> count() const override { return shape_[0]; }
 
 private:
     std::shared_ptr<Records> records_;
@@ -224,15 +228,18 @@ diag::Result<std::unique_ptr<Trace>> open_hdf5_trace(const std::string& path,
 
 diag::Result<std::unique_ptr<FrameSource>> open_hdf5_images(const std::string& path,
                                                             const std::string& group,
-                                                            const std::string& name) {
-    auto records = start(path, {"images", path, group, name}, Code::no_such_camera);
+                                                            const std::string& name,
+                                                            bool with_grey) {
+    auto records = start(path, {with_grey ? "grey_images" : "images", path, group, name},
+                         Code::no_such_camera);
     if (!records) return records.failure();
     const auto tag = (*records)->next();
     if (!tag) return tag.failure();
     const auto shapes = parse_shapes((*records)->bytes(), 1);
     if (*tag != Tag::shapes || !shapes) return (*records)->nonsense();
     const std::vector<std::uint64_t>& shape = (*shapes)[0].dimensions;
-    if (shape.size() != 4 || shape[1] == 0 || shape[2] == 0 || shape[3] != 3 ||
+    const bool has_form = (shape.size() == 4 && shape[3] == 3) || (with_grey && shape.size() == 3);
+    if (!has_form || shape[1] == 0 || shape[2] == 0 ||
         std::max(shape[1], shape[2]) > frames::kMaxExtent ||
         shape[1] * shape[2] > frames::kMaxPixels)
         return Failure{Code::trace_shape,

@@ -25,10 +25,11 @@ diag::Result<std::unique_ptr<Trace>> open_hdf5_trace(const std::string& path,
                                                      const std::string& group,
                                                      const std::vector<Channel>& channels);
 
-/// Opens images, steps x rows x columns x 3 of uint8; an empty name stands for the only dataset of
-/// images in the group.
+/// Opens images, steps x rows x columns x 3 of uint8, or `with_grey` steps x rows x columns; an
+/// empty name stands for the only dataset of images in colour in the group.
 diag::Result<std::unique_ptr<FrameSource>> open_hdf5_images(const std::string& path,
                                                             const std::string& group,
-                                                            const std::string& name);
+                                                            const std::string& name,
+                                                            bool with_grey);
 
 }  // namespace etlc::data

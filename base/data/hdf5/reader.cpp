@@ -271,13 +271,21 @@ void read(hid_t file, const std::string& path, std::vector<Channel>& channels) {
 
 // ---- images -------------------------------------------------------------------------------------
 
-bool holds_images(hid_t dataset) {
+bool holds_bytes(hid_t dataset) {
     const hid_t type = H5Dget_type(dataset);
+    return H5Tget_class(type) == H5T_INTEGER && H5Tget_size(type) == 1 &&
+           H5Tget_sign(type) == H5T_SGN_NONE;
+}
+
+bool holds_images(hid_t dataset) {
     const hid_t space = H5Dget_space(dataset);
     hsize_t shape[H5S_MAX_RANK] = {};
-    return H5Tget_class(type) == H5T_INTEGER && H5Tget_size(type) == 1 &&
-           H5Tget_sign(type) == H5T_SGN_NONE && H5Sget_simple_extent_ndims(space) == 4 &&
+    return holds_bytes(dataset) && H5Sget_simple_extent_ndims(space) == 4 &&
            H5Sget_simple_extent_dims(space, shape, nullptr) == 4 && shape[3] == 3;
+}
+
+bool holds_grey_images(hid_t dataset) {
+    return holds_bytes(dataset) && H5Sget_simple_extent_ndims(H5Dget_space(dataset)) == 3;
 }
 
 /// Finds the datasets of images in a group and below it.
@@ -313,21 +321,24 @@ std::string only_images(hid_t group) {
          "has the datasets of images " + names + "; name one: --camera " + found[0]);
 }
 
-void send_images(hid_t file, const std::string& path, const std::string& name) {
+void send_images(hid_t file, const std::string& path, const std::string& name, bool with_grey) {
     const hid_t group = open_object(file, path);
     if (group < 0) fail(Cause::channel, "no group '" + path + "'" + listed(file));
     Channel channel;
     channel.name = name.empty() ? only_images(group) : name;
     open_channel(group, channel);
-    if (!holds_images(channel.dataset))
+    const bool is_grey = with_grey && holds_grey_images(channel.dataset);
+    if (!is_grey && !holds_images(channel.dataset))
         fail(Cause::elements, "dataset " + channel.quoted() +
-                                  " holds no images, expected (steps, rows, columns, 3) of uint8");
+                                  " holds no images, expected (steps, rows, columns, 3)" +
+                                  (with_grey ? ", or (steps, rows, columns) of grey, " : " ") +
+                                  "of uint8");
     send(Tag::shapes, shape_line(channel));
     constexpr hsize_t kMostBytes = 256U << 20U;
     const auto& shape = channel.shape;
     if (shape[1] > kMostBytes || shape[2] > kMostBytes || shape[1] * shape[2] > kMostBytes / 3)
         quit(0);  // etlc says why
-    const hsize_t size = shape[1] * shape[2] * 3;
+    const hsize_t size = shape[1] * shape[2] * (is_grey ? 1 : 3);
     std::vector<char> image(size);
     const hid_t memory_space = H5Screate_simple(1, &size, nullptr);
     for (hsize_t step = 0; step < shape[0]; ++step) {
@@ -360,8 +371,8 @@ std::vector<Channel> parse_channels(char** words, int count) {
 
 int main(int argc, char** argv) {
     const std::string command = argc >= 4 ? argv[1] : "";
-    const bool is_known =
-        command == "list" || command == "read" || (command == "images" && argc == 5);
+    const bool is_images = command == "images" || command == "grey_images";
+    const bool is_known = command == "list" || command == "read" || (is_images && argc == 5);
     if (!is_known) return 2;
     limit_resources();
     ::setenv("HDF5_USE_FILE_LOCKING", "FALSE",
@@ -370,8 +381,8 @@ int main(int argc, char** argv) {
         const hid_t file = open_file(argv[2]);
         if (command == "list") {
             list(file, "", parts_of(argv[3]), 0);
-        } else if (command == "images") {
-            send_images(file, argv[3], argv[4]);
+        } else if (is_images) {
+            send_images(file, argv[3], argv[4], command == "grey_images");
         } else {
             std::vector<Channel> channels = parse_channels(argv + 4, argc - 4);
             read(file, argv[3], channels);

@@ -22,11 +22,16 @@ namespace {
 using diag::Code;
 using diag::Failure;
 
+std::string expected_images(Grey grey) {
+    return grey == Grey::taken ? "(steps, rows, columns, 3), or (steps, rows, columns) of grey"
+                               : "(steps, rows, columns, 3)";
+}
+
 bool holds_images(const NpyHeader& header) {
     return header.element == Element::u8 && header.shape.size() == 4 && header.shape[3] == 3;
 }
 
-std::optional<Failure> check_images(const NpyHeader& header) {
+std::optional<Failure> check_images(const NpyHeader& header, Grey grey) {
     if (header.element != Element::u8)
         return Failure{
             Code::trace_elements,
@@ -35,13 +40,13 @@ std::optional<Failure> check_images(const NpyHeader& header) {
         return Failure{Code::malformed_trace_array,
                        "is in Fortran order, expected C order: save numpy.ascontiguousarray of it"};
     const auto& shape = header.shape;
-    const bool fits = holds_images(header) && shape[1] > 0 && shape[2] > 0 &&
+    const bool has_form = holds_images(header) || (grey == Grey::taken && header.shape.size() == 3);
+    const bool fits = has_form && shape[1] > 0 && shape[2] > 0 &&
                       std::max(shape[1], shape[2]) <= frames::kMaxExtent &&
                       shape[1] * shape[2] <= frames::kMaxPixels;
     if (fits) return std::nullopt;
-    return Failure{
-        Code::trace_shape,
-        fmt::format("has shape {}, expected (steps, rows, columns, 3)", shape_text(header.shape))};
+    return Failure{Code::trace_shape, fmt::format("has shape {}, expected {}", shape_text(shape),
+                                                  expected_images(grey))};
 }
 
 /// The images of an .npz file.
@@ -54,7 +59,8 @@ public:
         if (taken_ == header_.shape[0]) return false;
         frame.height = static_cast<std::uint32_t>(header_.shape[1]);
         frame.width = static_cast<std::uint32_t>(header_.shape[2]);
-        frame.rgb.resize(std::size_t{3} * frame.height * frame.width);
+        const bool is_grey = header_.shape.size() == 3;
+        frame.rgb.resize(std::size_t{frame.height} * frame.width * (is_grey ? 1 : 3));
         const auto got = source_->read(frame.rgb.data(), frame.rgb.size());
         if (!got) return of_trace(in_array(got.failure(), name_));
         if (*got < frame.rgb.size())
@@ -62,6 +68,7 @@ public:
                              fmt::format("ends in image {}, expected {}", taken_,
                                          diag::counted(header_.shape[0], "image"))},
                             name_);
+        if (is_grey) frame.rgb = in_colour(frame.rgb);
         if (++taken_ < header_.shape[0]) return true;
         char more = 0;
         const auto rest = source_->read(&more, 1);  // the checksum comes with the end
@@ -71,6 +78,8 @@ public:
                             name_);
         return true;
     }
+
+    std::optional<std::uint64_t> count() const override { return header_.shape[0]; }
 
 private:
     std::unique_ptr<ByteSource> source_;
@@ -102,7 +111,7 @@ diag::Result<std::string> camera_in(const Archive& archive, const std::string& n
 }
 
 diag::Result<std::unique_ptr<FrameSource>> open_npz(const std::string& path,
-                                                    const std::string& name) {
+                                                    const std::string& name, Grey grey) {
     const auto archive = Archive::open({path, {}, false});
     if (!archive) return of_trace(archive.failure());
     const auto camera = camera_in(*archive, name);
@@ -111,7 +120,7 @@ diag::Result<std::unique_ptr<FrameSource>> open_npz(const std::string& path,
     if (!member) return Failure{Code::no_such_camera, member.failure().message};
     const auto header = read_npy_header(**member);
     if (!header) return of_trace(in_array(header.failure(), *camera));
-    if (auto failure = check_images(*header)) return in_array(*failure, *camera);
+    if (auto failure = check_images(*header, grey)) return in_array(*failure, *camera);
     return std::unique_ptr<FrameSource>(
         std::make_unique<ArchiveFrames>(std::move(*member), *header, *camera));
 }
@@ -119,10 +128,11 @@ diag::Result<std::unique_ptr<FrameSource>> open_npz(const std::string& path,
 }  // namespace
 
 diag::Result<std::unique_ptr<FrameSource>> open_image_array(const std::string& path,
-                                                            const std::string& name) {
+                                                            const std::string& name, Grey grey) {
     const std::string file = trace_file(path);
-    if (!is_hdf5(file)) return open_npz(path, name);
-    return open_hdf5_images(file, path.substr(std::min(file.size() + 1, path.size())), name);
+    if (!is_hdf5(file)) return open_npz(path, name, grey);
+    return open_hdf5_images(file, path.substr(std::min(file.size() + 1, path.size())), name,
+                            grey == Grey::taken);
 }
 
 }  // namespace etlc::data

@@ -85,7 +85,7 @@ bool label(const source::File& file, const Request& request, diag::Sink& sink) {
     if (request.label.proposals) return print_proposals(file, *model, *desk, request, sink);
     if (!report::check_pattern(request.report.frames, desk->episodes().size(), sink)) return false;
 
-    label::Frames frames({request.report.frames, request.label.camera, model->step_seconds});
+    label::Frames frames({request.report.frames, model->step_seconds});
     label::PageRequest page{model->name, file.path(), model->step_seconds, {}};
     for (const label::Episode& episode : desk->episodes())
         page.has_frames.push_back(frames.has(episode));

@@ -122,7 +122,6 @@ struct Request : pipeline::Options {
     } report;
 
     struct Label {
-        std::string camera;      ///< of a data set
         std::uint32_t port = 0;  ///< 0: any free one
         bool proposals = false;  ///< print proposals in place of serving the page
     } label;

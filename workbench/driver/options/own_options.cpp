@@ -46,7 +46,7 @@ Takes part() {
 }
 
 Takes frames() {
-    return text("ARRAY|PATTERN",
+    return text("ARRAY|FOLDER|PATTERN",
                 in(&Call::report, &Call::Report::frames, &report::FramesOption::text));
 }
 
@@ -196,9 +196,12 @@ std::vector<Option> make_own_options() {
 
         // etlc report
         {Commands(report) | label, "--frames", frames(),
-         "camera frames: an array of the episodes (T x H x W x 3 uint8), or a pattern of PNG or "
-         "JPEG files, one a step, or of videos, in which {episode} stands for the episode's name: "
-         "'camera/{episode}/*.png'"},
+         "camera frames: an array of the episodes (T x H x W x 3 uint8, or T x H x W of grey), the "
+         "folder of a data set, or a pattern of PNG or JPEG files, one a step, or of videos, in "
+         "which {episode} stands for the episode's name: 'camera/{episode}/*.png'"},
+        {Commands(report) | label, "--camera",
+         text("NAME", in(&Call::report, &Call::Report::frames, &report::FramesOption::camera)),
+         "the camera of a data set whose folder --frames names, or that holds the episodes"},
         {report, "--size", page_size(),
          "size of the page; what does not fit is left out, starting with the best episodes, and "
          "the page says so"},
@@ -209,8 +212,6 @@ std::vector<Option> make_own_options() {
         // etlc label
         {label, "--labels", label_table(),
          "table of labels to write, a .csv file (default: labels.csv beside the episodes)"},
-        {label, "--camera", text("NAME", in(&Call::label, &Call::Label::camera)),
-         "the camera of a data set whose folder --frames names, or that holds the episodes"},
         {label, "--port", number<std::uint32_t>(in(&Call::label, &Call::Label::port), 1, 65535),
          "port of the page (default: any free one)"},
         {label, "--proposals", flag(in(&Call::label, &Call::Label::proposals)),

@@ -186,8 +186,8 @@ std::vector<Option> make_options() {
          texts("FILE...", in(&Call::labels, &episodes::LabelSources::tables)),
          "tables of labels, .csv files (default: labels.csv beside the episodes, if it exists)"},
         {kReadEpisodes, "--label-by", label_by(),
-         "folder: the name of an episode's folder is the predicate that holds in it, and in no "
-         "other"},
+         "folder: a folder with the name of a predicate labels the episodes in it and below it: it "
+         "holds in these, and in no other"},
         {kReadRecordings, "--map", several(form("NAME=OTHER", read_names)),
          "name of an input in the files: --map z=obs/z"},
     };
