@@ -7,6 +7,7 @@ import ctypes.util
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -189,6 +190,16 @@ def seconds_are_steps(made):
     halves = ["runs/ep0*"], ["runs/ep1*"]
     by_steps = results("timed.etl", *halves, "--labels", "first.csv", "second.csv")
     expect_same(results("timed.etl", *halves, "--labels", "seconds.csv"), by_steps, "seconds")
+    # As spreadsheets write it.
+    text = pathlib.Path("seconds.csv").read_text().replace("\n", "\r\n")
+    semicolons = re.sub(r"(\d)\.(\d)", r"\1,\2", text.replace(",", ";"))
+    for bytes_ in ((semicolons + ";;;\r\n").encode("utf-8-sig"),
+                   ("sep=;\r\n" + semicolons).encode(),
+                   (text.replace(",", "\t") + "\t\t\t\r\n").encode("utf-16")):
+        pathlib.Path("seconds.csv").write_bytes(bytes_)
+        report = call("calibrate", "timed.etl", "--data", *halves[0], "--labels", "seconds.csv",
+                      "--folds", 3)
+        assert report == by_steps["report"], report
     assert "[E0822]" in call("calibrate", "dock.etl", "--data", "runs", "--labels", "seconds.csv",
                              status=1)
 
@@ -214,20 +225,25 @@ def fits_agree(made):
 
 
 def folders_agree(made):
+    """A folder labels the episodes in folders below it, too; one above all episodes labels none."""
     halves = []
     for half, numbers in (("a", range(6)), ("b", range(6, EPISODES))):
-        for folder in ("at_bay", "elsewhere"):
-            os.makedirs(f"{half}/{folder}")
-        halves.append([f"{half}/*/*.npz"])
+        for folder in ("at_bay/monday", "elsewhere"):
+            os.makedirs(f"close/{half}/{folder}")
+        halves.append([f"close/{half}/*/*.npz", f"close/{half}/at_bay/monday/*.npz"])
         for number in numbers:
-            folder = "at_bay" if number % 3 else "elsewhere"
+            folder = ("elsewhere", "at_bay", "at_bay/monday")[number % 3]
             z = made[number][0]
             label = np.full(len(z), number % 3 > 0)
-            npz(f"{half}/{folder}/{number}", {"z": z, "truth.at_bay": label})
+            npz(f"close/{half}/{folder}/{number}", {"z": z, "truth.at_bay": label})
     expected = results("one.etl", *halves)
-    for path in pathlib.Path().glob("[ab]/*/*.npz"):
+    for path in pathlib.Path("close").rglob("*.npz"):
         npz(path.with_suffix(""), {"z": np.load(path)["z"]})
     expect_same(results("one.etl", *halves, "--label-by", "folder"), expected, "folders")
+    # The folder "close" is a predicate, but all episodes lie below it.
+    said = call("calibrate", "dock.etl", "--data", "close/a/elsewhere", "close/b/elsewhere",
+                "--label-by", "folder", status=1)
+    assert "the episodes lie in 'a', 'b' and 'elsewhere', and none of these is a predicate" in said
 
 
 def groups_of_files_agree(made):

@@ -131,6 +131,50 @@ TEST(Csv, Sound) {
     }
 }
 
+/// Returns a text in UTF-16 with its byte order mark, and a character beyond the first 65536.
+std::string utf16(const std::string& text, bool is_little) {
+    std::string bytes;
+    const auto add = [&](unsigned unit) {
+        const std::string big = {static_cast<char>(unit / 256), static_cast<char>(unit % 256)};
+        bytes += is_little ? std::string(big.rbegin(), big.rend()) : big;
+    };
+    add(0xfeff);
+    for (const char c : text) add(static_cast<unsigned char>(c));
+    for (const unsigned unit : {0x20acU, 0xe9U, 0xd83dU, 0xde00U}) add(unit);
+    return bytes;
+}
+
+TEST(Csv, AsSpreadsheetsWriteIt) {
+    const std::vector<std::string> steps{"1 2|0.5|1", "-|-|0"};
+    const std::string commas = "z[0],z[1],grip,held\r\n1,2,0.5,1\r\n,,,0\r\n";
+    const auto with = [&](char separator, const std::string& half) {
+        std::string bytes = commas;
+        std::replace(bytes.begin(), bytes.end(), ',', separator);
+        bytes.replace(bytes.find("0.5"), 3, half);
+        return bytes;
+    };
+    const std::string bom = "\xef\xbb\xbf";
+    for (const std::string& bytes :
+         {commas, commas + "\r\n\r\n", with(';', "0,5"), with(';', "0.5"), bom + with(';', "0,5"),
+          "sep=;\r\n" + with(';', "0,5"), bom + "sep=,\n" + commas, "sep=\t\n" + with('\t', "0.5"),
+          with('\t', "0.5"), with(';', "\"0,5\""), "\"z[0]\"" + with(';', "0,5").substr(4)}) {
+        const Read got = read(bytes);
+        EXPECT_FALSE(got.failure) << bytes << got.failure->message;
+        EXPECT_EQ(got.steps, steps) << bytes;
+    }
+    for (const bool is_little : {true, false}) {
+        const std::string unicode =
+            utf16("z[0]\tz[1]\tgrip\theld\tnote\n1\t2\t0.5\t1\t", is_little);
+        const Read got = read(unicode);
+        EXPECT_FALSE(got.failure) << got.failure->message;
+        EXPECT_EQ(got.steps, (std::vector<std::string>{"1 2|0.5|1"}));
+        CsvReader reader(from_memory(unicode));
+        ASSERT_TRUE(reader.next());
+        ASSERT_TRUE(reader.next());
+        EXPECT_EQ(reader.cell(4), "\xe2\x82\xac\xc3\xa9\xf0\x9f\x98\x80");
+    }
+}
+
 TEST(Csv, OneColumnAndEmptyLines) {
     const Read got = read("grip\n1\n\n2\n", {{"grip", Channel::Kind::scalar, 1}});
     EXPECT_FALSE(got.failure);
@@ -159,8 +203,22 @@ std::vector<Broken> broken() {
     return {
         {"empty", "", Code::malformed_csv, 0, 0,
          "is empty, expected a row with the names of the columns"},
-        {"UTF-16", std::string("\xff\xfez\0", 4), Code::malformed_csv, 0, 0,
-         "is UTF-16, expected UTF-8"},
+        {"half a character of UTF-16", std::string("\xff\xfez\0y", 5), Code::malformed_csv, 0, 0,
+         "is UTF-16 that is damaged: save it as UTF-8"},
+        {"half a pair of UTF-16", std::string("\xfe\xff\xd8\x01\0y", 6), Code::malformed_csv, 0, 0,
+         "is UTF-16 that is damaged: save it as UTF-8"},
+        {"decimal comma between tabs", "z[0]\tz[1]\tgrip\theld\n1\t2\t0,5\t1\n", Code::not_a_number,
+         2, 5, "column 'grip' holds '0,5', expected a number with a decimal point"},
+        {"comma and point", "z[0];z[1];grip;held\n1.5;2;0,5;1\n", Code::not_a_number, 2, 7,
+         "column 'grip' holds '0,5', expected a number with a decimal point, as before it"},
+        {"point and comma", "z[0];z[1];grip;held\n1,5;2;0.5;1\n", Code::not_a_number, 2, 7,
+         "column 'grip' holds '0.5', expected a number with a decimal comma, as before it"},
+        {"thousands", "z[0];z[1];grip;held\n1.000,5;2;0;1\n", Code::not_a_number, 2, 1,
+         "column 'z[0]' holds '1.000,5', expected a number"},
+        {"two commas", "z[0];z[1];grip;held\n1,000,5;2;0;1\n", Code::not_a_number, 2, 1,
+         "column 'z[0]' holds '1,000,5', expected a number"},
+        {"semicolon after a quote", "z[0];z[1];grip;held\n\"1\"x;2;0;1\n", Code::malformed_csv, 2,
+         4, "'x' after a closing quote, expected a semicolon or the end of the line"},
         {"absent", "z[0],z[1],gripp,held\n", Code::no_such_channel, 1, 1,
          "no column 'grip'; did you mean 'gripp'?"},
         {"absent, nothing near", many + "\n", Code::no_such_channel, 1, 1,
@@ -176,8 +234,10 @@ std::vector<Broken> broken() {
         {"too few cells", head + "1,2,0.5,1\n1,2,0.5\n", Code::malformed_csv, 3, 1,
          "row has 3 cells, the header has 4"},
         {"too many cells", head + "1,2,0.5,1,\n", Code::malformed_csv, 2, 1,
-         "row has 5 cells, the header has 4"},
-        {"empty line", head + "\n", Code::malformed_csv, 2, 1, "row has 1 cell, the header has 4"},
+         "row has 5 cells, the header has 4; where a comma is the decimal point, semicolons "
+         "separate cells"},
+        {"empty line", head + "\n\n1,2,0.5,1\n", Code::malformed_csv, 2, 1,
+         "is an empty line before the last row; a step without samples has 4 empty cells"},
         {"no number", head + "1,2,0.5,1\n1, abc,0.5,1\n", Code::not_a_number, 3, 4,
          "column 'z[1]' holds 'abc', expected a number"},
         {"no number after a line break in quotes", "n,z[0],z[1],grip,held\n\"a\nb\",1,2,?,1\n",
@@ -185,7 +245,7 @@ std::vector<Broken> broken() {
         {"no number after UTF-8", "n,z[0],z[1],grip,held\n\xc3\xbc,1,2,?,1\n", Code::not_a_number,
          2, 7, "column 'grip' holds '?', expected a number"},
         {"decimal comma", head + "1,2,\"0,5\",1\n", Code::not_a_number, 2, 5,
-         "column 'grip' holds '0,5', expected a number"},
+         "column 'grip' holds '0,5', expected a number with a decimal point"},
         {"two numbers", head + "1 2,2,0.5,1\n", Code::not_a_number, 2, 1,
          "column 'z[0]' holds '1 2', expected a number"},
         {"hexadecimal", head + "0x1,2,0.5,1\n", Code::not_a_number, 2, 1,

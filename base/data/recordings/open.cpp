@@ -1,11 +1,15 @@
 #include "data/recordings/open.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "data/datasets/trace.hpp"
 #include "data/files/file.hpp"
 #include "data/hdf5/hdf5.hpp"
+#include "data/text/quote.hpp"
 #include "data/traces/trace_formats.hpp"
 
 namespace etlc::data {
@@ -19,6 +23,21 @@ std::size_t group_mark(const std::string& path) {
     for (std::size_t at = path.find(':'); at != std::string::npos; at = path.find(':', at + 1))
         if (is_hdf5(path.substr(0, at))) return at;
     return std::string::npos;
+}
+
+/// Returns "; did you mean 'run_01.csv'?" where there is no such file, but one of a near name.
+std::string file_meant(const std::string& file) {
+    constexpr std::size_t kMost = 1000;  // an edit distance is computed to each
+    std::vector<std::string> names;
+    std::error_code error;
+    if (std::filesystem::exists(file, error)) return "";
+    const std::filesystem::path path(file);
+    const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    for (std::filesystem::directory_iterator it(folder, error), end;
+         !error && it != end && names.size() < kMost; it.increment(error))
+        if (is_trace(it->path().string())) names.push_back(it->path().filename().string());
+    std::sort(names.begin(), names.end());
+    return suggestion(path.filename().string(), names);
 }
 
 using Opened = diag::Result<std::unique_ptr<Trace>>;
@@ -92,7 +111,13 @@ diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path,
                                                 const std::vector<Channel>& channels) {
     if (path == kStandardInput) return open_csv_trace(standard_input(), channels);
     if (dataset_path(path)) return open_dataset_trace(path, channels);
-    if (const Format* format = format_of(trace_file(path))) return format->open(path, channels);
+    if (const Format* format = format_of(trace_file(path))) {
+        auto opened = format->open(path, channels);
+        if (opened) return opened;
+        diag::Failure failure = opened.failure();
+        failure.message += file_meant(trace_file(path));
+        return failure;
+    }
     return diag::Failure{
         diag::Code::unknown_trace_format,
         with_dataset_meant("unknown kind of trace, expected " + trace_endings(), path)};

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
+#include "data/text/number.hpp"
 #include "data/text/quote.hpp"
 
 namespace etlc::data {
@@ -16,12 +20,105 @@ std::uint32_t begins_character(char c) {
     return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U ? 1 : 0;
 }
 
-/// The bytes that end a cell without quotes are below those of numbers and letters.
-bool ends_plain(char c) {
-    return static_cast<unsigned char>(c) <= ',' && (c == ',' || c == '\n' || c == '\r' || c == '"');
+/// The bytes that end a cell without quotes are below those of numbers and letters, but for `;`.
+bool ends_plain(char c, char separator) {
+    return static_cast<unsigned char>(c) <= ';' &&
+           (c == separator || c == '\n' || c == '\r' || c == '"');
 }
 
+/// Returns what separates the cells of a header: commas if it has any, else semicolons or tabs.
+char separator_of(std::string_view header) {
+    std::string plain;
+    bool is_quoted = false;
+    for (const char c : header) {
+        if (c == '"') is_quoted = !is_quoted;
+        if (!is_quoted) plain += c;
+    }
+    for (const char c : {',', ';', '\t'})
+        if (plain.find(c) != std::string::npos) return c;
+    return ',';
+}
+
+/// UTF-8 of a source in UTF-16.
+class Utf16 final : public ByteSource {
+public:
+    /// `begin`: bytes of the source that were read before.
+    Utf16(std::unique_ptr<ByteSource> source, std::string begin, bool is_little)
+        : source_(std::move(source)), units_(std::move(begin)), is_little_(is_little) {}
+
+    diag::Result<std::size_t> read(char* to, std::size_t n) override {
+        while (text_.size() < n && !is_over_) {
+            char bytes[4096];
+            const auto got = source_->read(bytes, sizeof bytes);
+            if (!got) return got.failure();
+            units_.append(bytes, *got);
+            is_over_ = *got == 0;
+            if (!decode())
+                return Failure{Code::malformed_csv, "is UTF-16 that is damaged: save it as UTF-8"};
+            if (*got < sizeof bytes && !text_.empty()) break;  // a pipe has no more now
+        }
+        n = std::min(n, text_.size());
+        std::copy_n(text_.data(), n, to);
+        text_.erase(0, n);
+        return n;
+    }
+
+    std::uint64_t size() const override { return source_->size(); }
+
+private:
+    unsigned unit(std::size_t at) const {
+        const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(units_[i]); };
+        return byte(at + (is_little_ ? 1 : 0)) * 256U + byte(at + (is_little_ ? 0 : 1));
+    }
+
+    /// Decodes all characters that are complete; false where one is not, at the end, or is none.
+    bool decode() {
+        std::size_t at = 0;
+        while (at + 2 <= units_.size()) {
+            unsigned long code = unit(at);
+            const bool is_first = code >= 0xd800 && code < 0xdc00;
+            if (code >= 0xdc00 && code < 0xe000) return false;
+            if (is_first && at + 4 > units_.size()) break;
+            if (is_first) {
+                const unsigned second = unit(at + 2);
+                if (second < 0xdc00 || second >= 0xe000) return false;
+                code = 0x10000 + (code - 0xd800) * 0x400 + (second - 0xdc00);
+            }
+            append(code);
+            at += is_first ? 4 : 2;
+        }
+        units_.erase(0, at);
+        return !is_over_ || units_.empty();
+    }
+
+    void append(unsigned long code) {
+        const auto add = [&](unsigned long byte) { text_ += static_cast<char>(byte); };
+        if (code < 0x80) return add(code);
+        if (code < 0x800) {
+            add(0xc0 + code / 0x40);
+        } else {
+            if (code < 0x10000) add(0xe0 + code / 0x1000);
+            if (code >= 0x10000) add(0xf0 + code / 0x40000);
+            if (code >= 0x10000) add(0x80 + code / 0x1000 % 0x40);
+            add(0x80 + code / 0x40 % 0x40);
+        }
+        add(0x80 + code % 0x40);
+    }
+
+    std::unique_ptr<ByteSource> source_;
+    std::string units_;  ///< not yet decoded
+    std::string text_;
+    bool is_little_;
+    bool is_over_ = false;
+};
+
 }  // namespace
+
+std::string other_cells(std::size_t row, std::size_t header) {
+    return fmt::format(
+        "row has {}, the header has {}{}", diag::counted(row, "cell"), header,
+        row > header ? "; where a comma is the decimal point, semicolons separate cells" : "");
+}
 
 CsvReader::CsvReader(std::unique_ptr<ByteSource> source) : source_(std::move(source)) {}
 
@@ -30,8 +127,7 @@ std::string_view CsvReader::cell(std::size_t i) const {
 }
 
 diag::Result<bool> CsvReader::next() {
-    if (!started_) skip_byte_order_mark();
-    started_ = true;
+    if (!std::exchange(started_, true)) begin();
     row_.clear();
     cells_.clear();
     row_line_ = line_;
@@ -40,7 +136,7 @@ diag::Result<bool> CsvReader::next() {
         read_cell();
         check_length();
         if (failure_ || take_line_end()) break;
-        advance();  // the comma
+        advance();  // the separator
     }
     if (failure_) return *failure_;
     return true;
@@ -68,11 +164,11 @@ void CsvReader::advance() {
     }
 }
 
-/// Consumes the line end and returns true at the end of a row; returns false before a comma.
+/// Consumes the line end and returns true at the end of a row; returns false before a separator.
 bool CsvReader::take_line_end() {
     const int c = peek();
     if (c == kEnd || c == kError) return true;
-    if (c == ',') return false;
+    if (c == separator_) return false;
     if (c == '\r') {
         const std::uint32_t column = column_;
         advance();
@@ -110,10 +206,13 @@ void CsvReader::read_quoted() {
     }
     cell.end = row_.size();
     const int c = peek();
-    if (c != ',' && c != '\r' && c != '\n' && c >= 0) {
+    if (c != separator_ && c != '\r' && c != '\n' && c >= 0) {
         const char byte = static_cast<char>(c);
-        fail(fmt::format("{} after a closing quote, expected a comma or the end of the line",
-                         in_quotes({&byte, 1})),
+        fail(fmt::format("{} after a closing quote, expected {} or the end of the line",
+                         in_quotes({&byte, 1}),
+                         separator_ == ','   ? "a comma"
+                         : separator_ == ';' ? "a semicolon"
+                                             : "a tab"),
              line_, column_);
     }
 }
@@ -124,7 +223,8 @@ void CsvReader::read_plain() {
         const char* const begin = buffer_.data() + at_;
         const char* const filled = buffer_.data() + filled_;
         const char* end = begin;
-        for (; end != filled && !ends_plain(*end); ++end) column_ += begins_character(*end);
+        for (; end != filled && !ends_plain(*end, separator_); ++end)
+            column_ += begins_character(*end);
         row_.append(begin, end);
         at_ += static_cast<std::size_t>(end - begin);
         if (end != filled) break;
@@ -147,12 +247,70 @@ void CsvReader::fail_length() {
          1);
 }
 
-void CsvReader::skip_byte_order_mark() {
-    const int first = peek();
-    if ((first == 0xff || first == 0xfe) && filled_ >= 2 &&
-        static_cast<unsigned char>(buffer_[1]) == (first == 0xff ? 0xfe : 0xff))
-        return fail("is UTF-16, expected UTF-8", 0, 0);
-    if (filled_ >= 3 && std::string_view(buffer_.data(), 3) == "\xef\xbb\xbf") at_ = 3;
+/// Reads more into the buffer; false at the end, and where the buffer is full.
+bool CsvReader::fill() {
+    if (failure_ || filled_ == buffer_.size()) return false;
+    const auto got = source_->read(buffer_.data() + filled_, buffer_.size() - filled_);
+    if (!got) failure_ = got.failure();
+    if (got) filled_ += *got;
+    return got && *got > 0;
+}
+
+/// Looks at the first line, for how the file is written.
+void CsvReader::begin() {
+    const auto bytes = [&] { return std::string_view(buffer_.data(), filled_); };
+    while (filled_ < 2 && fill()) {
+    }
+    const bool is_little = bytes().starts_with("\xff\xfe");
+    if (is_little || bytes().starts_with("\xfe\xff")) {
+        source_ =
+            std::make_unique<Utf16>(std::move(source_), std::string(bytes().substr(2)), is_little);
+        filled_ = 0;
+    }
+    while (bytes().find('\n') == std::string_view::npos && fill()) {
+    }
+    if (bytes().starts_with("\xef\xbb\xbf")) at_ = 3;
+    const std::string_view rest = bytes().substr(at_);
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    std::string_view line = rest.substr(0, end);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    constexpr std::string_view kSeparator = "sep=";
+    const bool is_said = line.size() == 5 && line.starts_with(kSeparator) &&
+                         std::string_view(",;\t").find(line[4]) != std::string_view::npos;
+    separator_ = is_said ? line[4] : separator_of(line);
+    if (!is_said) return;
+    at_ += std::min(end + 1, rest.size());
+    line_ = 2;
+}
+
+bool CsvReader::empty() const {
+    return std::all_of(cells_.begin(), cells_.end(),
+                       [](const Cell& cell) { return cell.begin == cell.end; });
+}
+
+std::optional<double> CsvReader::number(std::size_t i) {
+    const std::string_view text = cell(i);
+    if (separator_ != ';') return parse_number(text);
+    const std::size_t comma = text.find(',');
+    const bool has_comma = comma != std::string_view::npos;
+    const bool has_point = text.find('.') != std::string_view::npos;
+    if (has_comma ? has_point || has_points_ : has_point && has_commas_) return std::nullopt;
+    has_commas_ = has_commas_ || has_comma;
+    has_points_ = has_points_ || has_point;
+    if (!has_comma) return parse_number(text);
+    std::string decimal(text);
+    decimal[comma] = '.';
+    return parse_number(decimal);
+}
+
+std::string CsvReader::expected_number(std::size_t i) const {
+    const bool has_comma = cell(i).find(',') != std::string_view::npos;
+    const bool has_point = cell(i).find('.') != std::string_view::npos;
+    if (has_comma && (separator_ != ';' || has_points_))
+        return "a number with a decimal point" +
+               std::string(separator_ == ';' ? ", as before it" : "");
+    if (has_point && has_commas_) return "a number with a decimal comma, as before it";
+    return "a number";
 }
 
 void CsvReader::fail(std::string message, std::uint32_t line, std::uint32_t column) {

@@ -126,13 +126,23 @@ public:
     bool has(std::size_t channel) const override { return has_[channel]; }
 
     diag::Result<bool> next(Sample& sample) override {
-        const auto more = rows_->next();
+        auto more = rows_->next();
+        const std::uint32_t line = rows_->row_line();
+        bool has_gap = false;
+        while (more && *more && columns_ > 1 && rows_->cells() == 1 && rows_->empty()) {
+            has_gap = true;
+            more = rows_->next();
+        }
         if (!more) return of_trace(more.failure());
         if (!*more) return false;
-        if (rows_->cells() != columns_)
+        if (has_gap)
             return Failure{Code::malformed_csv,
-                           fmt::format("row has {}, the header has {}",
-                                       diag::counted(rows_->cells(), "cell"), columns_),
+                           fmt::format("is an empty line before the last row; a step without "
+                                       "samples has {} empty cells",
+                                       columns_),
+                           line, 1};
+        if (rows_->cells() != columns_)
+            return Failure{Code::malformed_csv, other_cells(rows_->cells(), columns_),
                            rows_->row_line(), 1};
         sample.values.resize(channels_.size());
         sample.present = has_;
@@ -146,23 +156,24 @@ public:
     }
 
 private:
-    std::optional<Failure> read_cell(const Slot& slot, Sample& sample) const {
+    std::optional<Failure> read_cell(const Slot& slot, Sample& sample) {
         if (rows_->empty(slot.column)) {
             sample.present[slot.channel] = false;
             return {};
         }
         const bool boolean = channels_[slot.channel].kind == Channel::Kind::boolean;
         const std::string_view cell = rows_->cell(slot.column);
-        auto value = parse_number(cell);
+        auto value = rows_->number(slot.column);
         if (!value && boolean) value = parse_bool(cell);
         const bool sound =
             value && (!boolean || !std::isfinite(*value) || *value == 0 || *value == 1);
         if (!sound)
             return Failure{
                 Code::not_a_number,
-                fmt::format("column {} holds {}, expected {}",
-                            in_quotes(column_name(channels_[slot.channel], slot.element)),
-                            in_quotes(cell), boolean ? "0 or 1, True or False" : "a number"),
+                fmt::format(
+                    "column {} holds {}, expected {}",
+                    in_quotes(column_name(channels_[slot.channel], slot.element)), in_quotes(cell),
+                    boolean ? "0 or 1, True or False" : rows_->expected_number(slot.column)),
                 rows_->line(slot.column), rows_->column(slot.column)};
         sample.values[slot.channel][slot.element] = std::isfinite(*value) ? *value : kNaN;
         return {};

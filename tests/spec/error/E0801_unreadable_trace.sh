@@ -8,4 +8,5 @@ target goal = [[1, 2]];
 monitor m = F (l2(z, goal) <= 1 && grip > 0.5 && held);
 END
 mkdir folder.csv
-for trace in no_such.csv no_such.npz folder.csv; do "$ETLC" run t.etl --trace $trace; done
+touch run_01.csv
+for trace in no_such.csv no_such.npz folder.csv run_1.csv; do "$ETLC" run t.etl --trace $trace; done

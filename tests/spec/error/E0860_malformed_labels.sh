@@ -16,5 +16,7 @@ calibrate_with 'episode,predicate,start,end,group' 'a,,1,3,x'
 : > labels.csv; "$ETLC" calibrate hand.etl --data .
 sed -i '2i rate 10 Hz;' hand.etl
 calibrate_with 'episode,predicate,start_s,end_s' 'a,held,0.13,0.17' 'b,held,0,0.4'
+calibrate_with 'episode;predicate;start_s;end_s' 'a;held;0,1;0.3'
+calibrate_with 'episode,predicate,start_s,end_s' 'a,held,0,1,0,3'
 echo "exit status $?"
 ls

@@ -93,13 +93,20 @@ std::string folder_of(const std::string& episode) {
     return fs::path(file).parent_path().string();
 }
 
-std::string name_of_folder_of(const std::string& episode) {
+std::vector<std::string> folders_of(const std::string& episode) {
     const EpisodePath parts = parts_of(episode);
-    const fs::path inside(parts.is_number ? "" : parts.group);
-    if (inside.has_parent_path()) return inside.parent_path().filename().string();
     std::error_code ignored;
     const fs::path file = fs::absolute(parts.file, ignored).lexically_normal();
-    return (parts.is_number ? file : file.parent_path()).filename().string();
+    std::vector<std::string> folders;
+    const auto add_all = [&](const fs::path& path) {
+        for (const fs::path& part : path)
+            if (!part.empty()) folders.push_back(part.string());
+    };
+    add_all(parts.is_number ? file : file.parent_path());
+    const fs::path groups = fs::path(parts.is_number ? "" : parts.group).parent_path();
+    if (!groups.empty()) folders.push_back(file.filename().string());
+    add_all(groups);
+    return folders;
 }
 
 void find_named(const std::vector<std::string>& episodes, Named& names) {

@@ -11,8 +11,9 @@ namespace etlc::episodes {
 /// Returns the folder that an episode lies in; for an episode of a data set, the data set.
 std::string folder_of(const std::string& episode);
 
-/// Returns the name of the folder, or of the group of an .h5 file, that an episode lies in.
-std::string name_of_folder_of(const std::string& episode);
+/// Returns the names of the folders that an episode lies in, from the root to its own: for an
+/// episode of an .h5 file its groups too, behind the file; for one of a data set, the data set.
+std::vector<std::string> folders_of(const std::string& episode);
 
 /// The indices of the episodes that have a name: of one where the name is its whole path, of two
 /// where it is ambiguous.

@@ -41,6 +41,10 @@ struct LabelledSteps {
 /// outside are false.
 using EpisodeLabels = std::map<std::string, std::vector<LabelledSteps>>;
 
+/// Returns the step at or after a time. A time within a tenth of a step of one is that step, as for
+/// the rows of data sets: tables have rounded decimals.
+std::uint64_t step_at(double seconds, double step_seconds);
+
 class LabelSet {
 public:
     /// Reads the labels of these episodes. Steps of seconds are those of the models. Returns null

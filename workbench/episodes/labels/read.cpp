@@ -55,16 +55,16 @@ std::vector<std::string> predicate_names(const std::vector<const check::Model*>&
     return names;
 }
 
-/// Returns the step at or after a time. A time within a tenth of a step of one is that step, as for
-/// the rows of data sets: tables have rounded decimals.
+}  // namespace
+
 std::uint64_t step_at(double seconds, double step_seconds) {
-    constexpr double kRounding = 0.1;
+    // Of a decimal that is exactly a tenth away, as 0.17 s is from step 5 at 30 Hz, the quotient in
+    // double is a little more or less: 5.1000000000000005.
+    constexpr double kRounding = 0.1 + 1e-6;
     constexpr double kMost = 9e15;
     return static_cast<std::uint64_t>(
         std::clamp(std::ceil(seconds / step_seconds - kRounding), 0.0, kMost));
 }
-
-}  // namespace
 
 /// Reads the sources of a call one after the other.
 class LabelReader {
@@ -98,30 +98,39 @@ public:
         }
     }
 
+    /// A folder labels the episodes in it, and in folders below it. One that all episodes lie
+    /// below, and none lies in, tells none from another: it may be anywhere above the recordings.
     void read_folders() {
         const std::set<std::string> known(predicates_.begin(), predicates_.end());
+        std::vector<std::vector<std::string>> folders;
+        for (const std::string& episode : episodes_) folders.push_back(folders_of(episode));
+        const std::size_t common = depth_in_common(folders);
+        std::set<std::string> around;
+        for (std::vector<std::string>& of : folders) {
+            of.erase(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(common));
+            around.insert(of.begin(), of.end());
+        }
         std::set<std::string> labelled;
-        std::set<std::string> folders;
-        for (const std::string& episode : episodes_) folders.insert(name_of_folder_of(episode));
-        std::set_intersection(folders.begin(), folders.end(), known.begin(), known.end(),
+        std::set_intersection(around.begin(), around.end(), known.begin(), known.end(),
                               std::inserter(labelled, labelled.end()));
         if (labelled.empty()) {
             sink_.report(data::in_file(
                 {Code::nothing_to_label,
                  fmt::format("the episodes lie in {}, and none of these is a predicate; there are "
                              "{}",
-                             data::listed({folders.begin(), folders.end()}),
+                             data::listed({around.begin(), around.end()}),
                              data::listed({known.begin(), known.end()}))},
                 "--label-by folder"));
             return;
         }
-        for (const std::string& episode : episodes_) {
-            const std::string folder = name_of_folder_of(episode);
-            for (const std::string& predicate : labelled)
-                result_->of_[episode][predicate].push_back(
-                    {0, LabelledSteps::kToTheEnd, folder == predicate ? Label::yes : Label::no,
-                     "--label-by folder"});
-        }
+        for (std::size_t e = 0; e < episodes_.size(); ++e)
+            for (const std::string& predicate : labelled) {
+                const bool is_inside =
+                    std::find(folders[e].begin(), folders[e].end(), predicate) != folders[e].end();
+                result_->of_[episodes_[e]][predicate].push_back({0, LabelledSteps::kToTheEnd,
+                                                                 is_inside ? Label::yes : Label::no,
+                                                                 "--label-by folder"});
+            }
     }
 
     /// Returns the labels if none is in error.
@@ -134,6 +143,19 @@ public:
 
 private:
     static constexpr std::size_t kMostErrors = 10;
+
+    /// Returns the number of folders that all episodes lie below, and none lies in.
+    static std::size_t depth_in_common(const std::vector<std::vector<std::string>>& folders) {
+        std::size_t common = folders.empty() ? 0 : folders[0].size();
+        for (const std::vector<std::string>& of : folders) {
+            const auto at =
+                std::mismatch(of.begin(), of.end(), folders[0].begin(), folders[0].end());
+            common = std::min<std::size_t>(common, at.first - of.begin());
+        }
+        const bool is_own = std::any_of(folders.begin(), folders.end(),
+                                        [&](const auto& of) { return of.size() == common; });
+        return is_own && common > 0 ? common - 1 : common;
+    }
 
     bool has_too_many() const { return sink_.errors() >= kMostErrors; }
 
@@ -190,12 +212,14 @@ private:
         }
     }
 
+    /// Names an episode that is near, or else some that there are.
     static std::string meant_by(const std::string& name, const std::vector<std::string>& episodes) {
         constexpr std::size_t kMost = 1000;  // an edit distance is computed to each
-        std::vector<std::string> stems;
-        for (std::size_t e = 0; e < std::min(episodes.size(), kMost); ++e)
-            stems.push_back(fs::path(episodes[e]).stem().string());
-        return data::suggestion(name, stems);
+        std::vector<std::string> names = episodes;
+        names.resize(std::min(names.size(), kMost));
+        names = shortest_names(names);
+        const std::string meant = data::suggestion(fs::path(name).stem().string(), names);
+        return meant.empty() ? "; there are " + data::listed(names) : meant;
     }
 
     void add(const LabelRow& row, const LabelTable& table, const std::string& path,

@@ -80,16 +80,14 @@ diag::Result<LabelColumns> label_columns(const data::CsvReader& header) {
 /// Reads the rows of a table, one at a time.
 class LabelRows {
 public:
-    LabelRows(const data::CsvReader& cells, const LabelColumns& columns)
+    LabelRows(data::CsvReader& cells, const LabelColumns& columns)
         : cells_(cells), columns_(columns) {}
 
     diag::Result<LabelRow> row() const {
         LabelRow row;
         row.line = cells_.row_line();
         if (cells_.cells() != columns_.count)
-            return Failure{Code::malformed_csv,
-                           fmt::format("row has {}, the header has {}",
-                                       diag::counted(cells_.cells(), "cell"), columns_.count),
+            return Failure{Code::malformed_csv, data::other_cells(cells_.cells(), columns_.count),
                            row.line, 1};
         row.episode = cells_.cell(columns_.episode);
         if (row.episode.empty()) return fail(columns_.episode, "names no episode");
@@ -128,10 +126,11 @@ private:
         if (cells_.empty(column)) return std::nullopt;
         const std::string_view cell = cells_.cell(column);
         if (columns_.in_seconds) {
-            const auto seconds = data::parse_number(cell);
+            const auto seconds = cells_.number(column);
             if (!seconds || !std::isfinite(*seconds) || *seconds < 0)
-                return fail(column, fmt::format("found {}, expected a number of seconds from 0",
-                                                data::in_quotes(cell)));
+                return fail(column,
+                            fmt::format("found {}, expected {} from 0, in seconds",
+                                        data::in_quotes(cell), cells_.expected_number(column)));
             bound = *seconds;
             return std::nullopt;
         }
@@ -144,7 +143,7 @@ private:
         return std::nullopt;
     }
 
-    const data::CsvReader& cells_;
+    data::CsvReader& cells_;
     const LabelColumns& columns_;
 };
 
@@ -167,6 +166,7 @@ diag::Result<LabelTable> parse_labels(std::unique_ptr<data::ByteSource> source) 
         const auto more = reader.next();
         if (!more) return data::of_trace(more.failure());
         if (!*more) return table;
+        if (reader.empty()) continue;  // cleared in a spreadsheet
         auto row = rows.row();
         if (!row) return row.failure();
         table.rows.push_back(std::move(*row));
