@@ -57,7 +57,7 @@ void step_through(const std::string& path, const std::vector<data::Channel>& cha
 }
 
 void look(const std::string& path) {
-    auto images = data::open_hdf5_images(path, "", "");
+    auto images = data::open_hdf5_images(path, "", "", true);
     if (!images) return fuzz::require_printable(images.failure().message);
     data::Frame frame;
     for (int image = 0; image < 3; ++image) {

@@ -132,7 +132,7 @@ def reload(labeller):
     assert labeller.value("view.episode") == episode
     assert labeller.value("JSON.stringify(store.labels)") == labels
     assert rows(labeller.table) == before
-    labeller.page.wait("store.proposals.size === 3")
+    labeller.page.wait("store.proposals.size >= 2")  # 2 once etlc has learned from the fourth
 
 
 def frames_are_exact(labeller):

@@ -131,12 +131,12 @@ def telling_steps(browser):
 
 def frames_that_do_not_belong():
     """Frames of another length, and those of another data set, are refused."""
-    report = [ETLC, "report", "far.etl", "--data", "far.npz", "--no-truths", "-o", "no.html"]
+    report = [ETLC, "report", "far.etl", "--no-truths", "-o", "no.html", "--data"]
     np.savez("short.npz", **{**np.load("far.npz"), "camera": np.zeros((999, 2, 2), np.uint8)})
     for words, code, said in (
-            (["--frames", "x"], "E0841", "has elements of float64, expected uint8"),
-            (["--frames", "top"], "E0840", "top"),
-            (["--data", "short.npz", "--frames", "camera"], "E0840",
+            (["far.npz", "--frames", "x"], "E0841", "has elements of float64, expected uint8"),
+            (["far.npz", "--frames", "top"], "E0840", "top"),
+            (["short.npz", "--frames", "camera"], "E0840",
              "found 999 pictures, expected 1000, one per step")):
         done = subprocess.run([*report, *words], capture_output=True, text=True)
         assert done.returncode == 1 and f"[{code}]" in done.stderr, (words, done.stderr)

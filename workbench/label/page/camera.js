@@ -8,7 +8,7 @@ function showPictures() {
     return;
   }
   if (document.getElementById("frame")) {
-    drawFrame(null, "");  // that of the episode before
+    drawFrame(null, "…");  // not that of the episode before
     return;
   }
   fill("pictures", element("figure", {}, element("canvas", { id: "frame" }),
