@@ -241,8 +241,9 @@ def accepts_what_is_shown(service):
                   [3], 3):
         status, said = act(service, action="accept", episode=2, marks=marks)
         assert status == 400, (marks, said)
-    status, said = act(service, action="accept", episode=2, marks=[[[5, 9, 1], [20, STEPS, 2]], None])
-    assert status == 200 and said["labels"] == [[[5, 9, 1], [20, STEPS, 2]], None], said
+    shown = [[[5, 9, 1], [20, STEPS, 2]], None]
+    status, said = act(service, action="accept", episode=2, marks=shown)
+    assert status == 200 and said["labels"] == shown, said
     assert act(service, action="undo")[0] == 200
 
 

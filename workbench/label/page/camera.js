@@ -30,8 +30,8 @@ async function fetchFrame(place) {
   return createImageBitmap(await answer.blob());
 }
 
-// Draws the frame that is wanted last; those in between are left out where they come too slowly, and
-// so is one of an episode that is no longer shown.
+// Draws the frame that is wanted last; those in between are left out where they come too slowly,
+// and so is one of an episode that is no longer shown.
 async function moveCamera() {
   camera.wanted = `${view.episode}/${view.step}`;
   if (camera.busy || !document.getElementById("frame")) return;

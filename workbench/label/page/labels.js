@@ -1,6 +1,6 @@
-// The labels, which etlc keeps: every key goes to it at once, with the episode that it is about, and
-// is shown once it is on disk. Until then it waits here, in its order, and the page says so. Answers
-// may come late: they never change what the keys that follow are about.
+// The labels, which etlc keeps: every key goes to it at once, with the episode that it is about,
+// and is shown once it is on disk. Until then it waits here, in its order, and the page says so.
+// Answers may come late: they never change what the keys that follow are about.
 
 const store = {
   page: Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(16)).join(""),
@@ -61,7 +61,7 @@ function sayRefusal({ kind, error }) {
   return kind === "disk";
 }
 
-// Shows the labels after a key. Only undo and redo change the episode, if nobody has gone on since.
+// Shows the labels after a key. Only undo and redo change the episode, if nobody has gone on.
 function takeAnswer(key, json) {
   if (json.version < store.version) return;
   // More than one change has been made since the last answer: refresh() asks for all of them.
