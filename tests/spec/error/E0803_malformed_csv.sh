@@ -16,7 +16,7 @@ row '1,"2"x,0.5,1\n'
 row '1,2",0.5,1\n'
 row '1,2,0.5,1\r1,2,0.5,1\r'
 : > trace.csv; "$ETLC" run t.etl --trace trace.csv
-printf '\377\376z\000' > trace.csv; "$ETLC" run t.etl --trace trace.csv
+printf '\377\376z\000x' > trace.csv; "$ETLC" run t.etl --trace trace.csv
 { echo 'z[0],z[1],grip,held'; head -c 5000000 /dev/zero |
     tr '\0' ','; } > trace.csv; "$ETLC" run t.etl --trace trace.csv
 ls

@@ -129,7 +129,7 @@ private:
             const auto seconds = cells_.number(column);
             if (!seconds || !std::isfinite(*seconds) || *seconds < 0)
                 return fail(column,
-                            fmt::format("found {}, expected {} from 0, in seconds",
+                            fmt::format("found {}, expected seconds from 0: {}",
                                         data::in_quotes(cell), cells_.expected_number(column)));
             bound = *seconds;
             return std::nullopt;
