@@ -71,8 +71,8 @@ def videos(folder):
             said = f"two.mp4: found {word} than {STEPS} pictures, expected {STEPS}, one per step"
             assert said in frame(service, 1, 0), frame(service, 1, 0)
             (folder / "films" / "two.mp4").unlink()
-            assert "found 0 pictures" in frame(service, 1, 0)
             assert (frame(service, 0, 0) == frames[0]).all()
+            assert "found 0 pictures" in frame(service, 1, 0)
         film.rename(folder / "gone.mp4")
         assert "found 0 pictures" in frame(service, 0, 50)
         (folder / "gone.mp4").rename(film)
