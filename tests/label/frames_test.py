@@ -118,7 +118,7 @@ def data_set(folder):
     assert "data:image/png" in (folder / "page.html").read_text()
     # Neither frames of an episode of another length, nor of another data set.
     for name, said in (("pick-000001", "found 20 pictures, expected 90, one per step"),
-                       ("pick-000007", "pick:7: "),
+                       ("pick-000007", "is not an episode of the data set"),
                        ("place-000002", "is named after another data set than pick: "
                         "expected pick-000002")):
         (folder / "demos" / "pick-000002.npz").rename(folder / "demos" / f"{name}.npz")
