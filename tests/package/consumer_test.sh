@@ -37,6 +37,9 @@ if /usr/bin/python3 -c 'import numpy' 2>"$box/log"; then
 monitor = etlc.Monitor(text="spec t; input x : f32; monitor m = F x > 1;")
 print(monitor.monitors, etlc._library.library._name, etlc._process.command_path())')
     expect "$said" "('m',) $(echo "$box"/moved/lib*/libetlc.so.1) $box/moved/bin/etlc"
+    expect "$(env -u ETLC_COMMAND PYTHONPATH="$box/moved/lib/python3/dist-packages" \
+        PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -m etlc --version)" \
+        "$("$box/moved/bin/etlc" --version)"
     mv "$box/moved" "$box/prefix"
 fi
 
