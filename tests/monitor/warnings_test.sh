@@ -20,6 +20,7 @@ used::Verdicts step_once(used::Monitor& used_monitor, const used::Inputs& used_i
 }
 etlmon::Flag flag_of(bool used_on);
 etlmon::Flag flag_of(bool used_on) { return used_on; }
+#ifdef VIEWED
 struct ThreeFloats {
   float elements[3];
   constexpr const float* data() const { return elements; }
@@ -27,6 +28,7 @@ struct ThreeFloats {
 };
 etlmon::Vector<float, 3> view_of(const ThreeFloats& used_floats);
 etlmon::Vector<float, 3> view_of(const ThreeFloats& used_floats) { return used_floats; }
+#endif
 #ifdef RECORDED
 bool write_first(const used::Monitor& used_monitor, void (*used_sink)(const uint8_t*, size_t));
 bool write_first(const used::Monitor& used_monitor, void (*used_sink)(const uint8_t*, size_t)) {
@@ -66,6 +68,11 @@ globals() {
         grep -vxF "$(tr -s ' ' '\n' <<<"$reserved")" | LC_ALL=C sort -u |
         sed 's/.*/extern int &;/' >"$box/globals.hpp"
     [ "$(wc -l <"$box/globals.hpp")" -gt 1000 ] || fail "no names"
+    defined=()
+    ! grep -q 'etlmon::Vector<' "$box/monitor.hpp" || defined+=(-DVIEWED)
+    ! grep -q 'bool write_incident' "$box/monitor.hpp" || defined+=(-DRECORDED)
+    ! grep -q 'using Shadow = ' "$box/monitor.hpp" || defined+=(-DRETARGETED)
+    ! grep -q 'using Targets = ' "$box/monitor.hpp" || defined+=(-DSTORED)
 }
 reserved='alignas alignof auto bool break case char class const const_cast constexpr continue
   decltype default delete do double else enum explicit extern false float for friend if inline int
@@ -74,25 +81,22 @@ reserved='alignas alignof auto bool break case char class const const_cast const
   volatile while mutable protected reinterpret_cast used asm min max
   typedef memcpy atanf sqrt sqrtf log free'
 silent() {  # COMPILER WARNING...
-    "$@" -std=c++17 -O2 -Werror -I "$source/runtime/include" -I "$box" -c "$box/use.cpp" \
-        -o "$box/use.o" || fail "$1 warns of $spec, $values, targets as $targets"
+    "$@" "${defined[@]}" -std=c++17 -O2 -Werror -I "$source/runtime/include" -I "$box" \
+        -c "$box/use.cpp" -o "$box/use.o" || fail "$1 warns of $spec, $values, targets as $targets"
 }
 
 spec=examples/firmware_loop/gauge.etl values=--retargetable targets=f32
 "$etlc" "$source/$spec" --retargetable --namespace used -o "$box/monitor.hpp"
 globals
-silent "$gxx" -DRETARGETED "${gcc_warnings[@]}"
-silent "$clangxx" -DRETARGETED "${clang_warnings[@]}"
+silent "$gxx" "${gcc_warnings[@]}"
+silent "$clangxx" "${clang_warnings[@]}"
 while read -r spec targets options; do
     for values in "--values robustness" "--values boolean" --explain; do
         "$etlc" "$source/$spec" $values --targets-as "$targets" --namespace used \
             $options -o "$box/monitor.hpp" 2>/dev/null
         globals
-        defined=()
-        [[ $options != *--recorder* ]] || defined+=(-DRECORDED)
-        [[ $options != *--inline-targets* ]] || defined+=(-DSTORED)
-        silent "$gxx" "${defined[@]}" "${gcc_warnings[@]}"
-        silent "$clangxx" "${defined[@]}" "${clang_warnings[@]}"
+        silent "$gxx" "${gcc_warnings[@]}"
+        silent "$clangxx" "${clang_warnings[@]}"
     done
 done <<'END'
 examples/dubins/dubins.etl f32
