@@ -334,7 +334,7 @@ ETLC_EXPORT etlc_status etlc_load(etlc_session session, const void *bytes, size_
 
 /* Opens a batch of 1 to 2^32 `environments` with the spec of a session, which may be closed before
  * the batch. All begin before their first step, with the thresholds of etlc_open(). There is no
- * history and no recorder. Allocates memory; ETLC_OUT_OF_MEMORY where it takes more than there is. */
+ * history and no recorder. Allocates memory; ETLC_OUT_OF_MEMORY where there is too little. */
 ETLC_EXPORT etlc_status etlc_open_batch(etlc_session session, uint64_t environments,
                                         etlc_session *batch);
 
