@@ -3,7 +3,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "driver/manual/manual.hpp"
 
@@ -61,6 +64,42 @@ std::string row(const OptionHelp& option) {
     return fmt::format("| `{}` | {} |\n", cell(form_of(option)), text);
 }
 
+constexpr int kSeveral = 3;  ///< so many commands have an option in common
+
+/// Returns the rows of options, each with the number of commands that have it, in the order of the
+/// commands.
+std::vector<std::pair<std::string, int>> counted(const std::vector<CommandHelp>& commands) {
+    std::vector<std::pair<std::string, int>> rows;
+    for (const CommandHelp& command : commands)
+        for (const OptionHelp& option : command.options) {
+            const std::string text = row(option);
+            const auto same = [&](const auto& other) { return other.first == text; };
+            const auto found = std::find_if(rows.begin(), rows.end(), same);
+            if (found == rows.end())
+                rows.emplace_back(text, 1);
+            else
+                ++found->second;
+        }
+    return rows;
+}
+
+std::string section(const CommandHelp& command, const std::set<std::string>& shared) {
+    const std::string about = command.text.substr(0, command.text.find("\nOther commands:"));
+    std::vector<std::string> also;
+    std::string own;
+    for (const OptionHelp& option : command.options) {
+        const std::string text = row(option);
+        if (shared.count(text) == 0)
+            own += text;
+        else
+            also.push_back(
+                fmt::format("`{}`", option.names.empty() ? option.value : option.names.back()));
+    }
+    std::string text = fmt::format("\n## {}\n\n{}\n", command.name, wrapped(about));
+    if (!own.empty()) text += "\n| option | |\n| --- | --- |\n" + own;
+    return text + '\n' + wrapped(fmt::format("Also {}.", fmt::join(also, ", "))) + '\n';
+}
+
 }  // namespace
 
 std::string command_line_page() {
@@ -69,13 +108,17 @@ std::string command_line_page() {
 The options of every command, as `--help` and `man etlc` list them.
 This page is made from the table of options; a test keeps the two equal, and `ETLC_UPDATE=1`
 rewrites it. [diagnostics.md](diagnostics.md) has the exit statuses.
+
+## Options of several commands
+
+| option | |
+| --- | --- |
 )";
-    for (const CommandHelp& command : all_help()) {
-        const std::string first = command.text.substr(0, command.text.find("\nOther commands:"));
-        text += fmt::format("\n## {}\n\n{}\n\n| option | |\n| --- | --- |\n", command.name,
-                            wrapped(first));
-        for (const OptionHelp& option : command.options) text += row(option);
-    }
+    const std::vector<CommandHelp> commands = all_help();
+    std::set<std::string> shared;
+    for (const auto& [line, count] : counted(commands))
+        if (count >= kSeveral) text += *shared.insert(line).first;
+    for (const CommandHelp& command : commands) text += section(command, shared);
     return text;
 }
 
