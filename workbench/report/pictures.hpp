@@ -17,8 +17,8 @@
 
 namespace etlc::report {
 
-/// What --frames and --camera say: an array of the episodes; a pattern with {episode} of files, one
-/// per step, or of videos, one per episode; or the folder of a data set.
+/// The values of --frames and --camera: an array of the episodes; a pattern with {episode} of
+/// files, one per step, or of videos, one per episode; or the folder of a data set.
 struct FramesOption {
     std::string text;    ///< as given; empty: none, except for episodes of a data set
     std::string camera;  ///< of the data set; empty: its only one
