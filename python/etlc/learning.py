@@ -176,12 +176,12 @@ def embed(
         write_reference: a folder for the reference frames, which `Monitor.encoder_agrees` is about.
         onnxruntime: the library that runs the spec's networks, or its folder; by default
             the one of the environment, pip, npm or the system.
-        encoder_command: a command that encodes (docs/encoders.md), in place of the spec's network.
+        encoder_command: a command that encodes (docs/recordings.md), in place of the spec's network.
         encoder_timeout: stop an encoder that does nothing for this many seconds.
         encoder: what encodes, in this process, in place of the spec's network: a function from an
             image, uint8 (rows, columns, 3), to a vector of floats, such as one that calls a model
             of torch; or one for each encoder of the spec, by name. The file that the spec names
-            keeps a hash of the model; another model is refused (docs/encoders.md).
+            keeps a hash of the model; another model is refused (docs/recordings.md).
         warnings_are_errors: whether a warning fails the command.
 
     Returns:

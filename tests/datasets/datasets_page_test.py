@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""datasets_page_test.py ETLC DATASETS.MD ENCODERS.MD HDF5: runs the specs and commands of that page
-on data sets made here."""
+"""datasets_page_test.py ETLC RECORDINGS.MD HDF5: runs the specs and commands of the section about
+data sets, on some made here."""
 import os
 import pathlib
 import re
@@ -13,10 +13,10 @@ import numpy as np
 import lerobot
 
 ETLC = os.path.abspath(sys.argv[1])
-PAGE = pathlib.Path(sys.argv[2]).read_text()
-ENCODER = re.search(r"```python\n(.*?)```", pathlib.Path(sys.argv[3]).read_text(),
-                    re.DOTALL).group(1)
-HDF5 = os.path.abspath(sys.argv[4])
+WHOLE = pathlib.Path(sys.argv[2]).read_text()
+PAGE = re.search(r"^## Data sets.*?(?=^## )", WHOLE, re.DOTALL | re.MULTILINE).group(0)
+ENCODER = re.search(r"```python\n(import struct.*?)```", WHOLE, re.DOTALL).group(1)
+HDF5 = os.path.abspath(sys.argv[3])
 SPECS = re.findall(r"```\n(spec (\w+);.*?)```", PAGE, re.DOTALL)
 COMMANDS = re.findall(r"^    (etlc (?:.*\\\n)*.*)$", PAGE, re.MULTILINE)
 WARNING = re.search(r"^pick: warning: .*$", PAGE, re.MULTILINE).group(0)

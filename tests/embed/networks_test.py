@@ -180,7 +180,7 @@ monitor m = F x <= 1;
 
 def what_is_not_run_is_named():
     spec("t.etl", 32, 32)
-    out = "--encoder-cmd (docs/encoders.md)"
+    out = "--encoder-cmd (docs/recordings.md)"
 
     def save(make, **options):
         g = Graph()

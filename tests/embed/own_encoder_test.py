@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""own_encoder_test.py ETLC ENCODERS.MD: the encoder of that page makes targets of images and
+"""own_encoder_test.py ETLC RECORDINGS.MD: the encoder of that page makes targets of images and
 episodes of recordings, and `etlc run` reports from which step on these show the same as the
 images."""
 import csv
@@ -14,7 +14,8 @@ import numpy as np
 from PIL import Image
 
 ETLC = os.path.abspath(sys.argv[1])
-CODE = re.search(r"```python\n(.*?)```", pathlib.Path(sys.argv[2]).read_text(), re.DOTALL).group(1)
+PAGE = pathlib.Path(sys.argv[2]).read_text()
+CODE = re.search(r"```python\n(import struct.*?)```", PAGE, re.DOTALL).group(1)
 SPEC = """
 spec look;
 rate 10 Hz;

@@ -15,7 +15,7 @@ from onnx import TensorProto, helper, numpy_helper
 from PIL import Image
 
 ETLC = os.path.abspath(sys.argv[1])
-PAGE = pathlib.Path(sys.argv[2]).read_text()
+PAGE = pathlib.Path(sys.argv[2]).read_text().partition("## Data sets")[0]
 SPEC = re.search(r"```\n(spec look;.*?)```", PAGE, re.DOTALL).group(1)
 KEEPING = re.search(r"```python\n(import zipfile.*?)```", PAGE, re.DOTALL).group(1)
 COMMANDS = re.findall(r"^    (etlc .*)$", PAGE, re.MULTILINE)

@@ -708,8 +708,9 @@ monitor arrives = F near;
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         path = Path(folder.name)
-        page = (SPECS.parent.parent / "docs" / "encoders.md").read_text()
-        (path / "encoder.py").write_text(re.search(r"```python\n(.*?)```", page, re.S)[1])
+        page = (SPECS.parent.parent / "docs" / "recordings.md").read_text()
+        code = re.search(r"```python\n(import struct.*?)```", page, re.S)[1]
+        (path / "encoder.py").write_text(code)
         (path / "look.etl").write_text("""spec look;
 rate 10 Hz;
 encoder mine = load("encoder.py");

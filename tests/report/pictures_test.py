@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""pictures_test.py ETLC ENCODERS.MD: from images and a video to a page that shows, at every step,
+"""pictures_test.py ETLC RECORDINGS.MD: from images and a video to a page that shows, at every step,
 the frame of the camera and the image of the nearest row of each target. The encoder is that of the
 page about encoders."""
 import os
@@ -15,7 +15,8 @@ from PIL import Image
 from browser import Browser
 
 ETLC = os.path.abspath(sys.argv[1])
-CODE = re.search(r"```python\n(.*?)```", pathlib.Path(sys.argv[2]).read_text(), re.DOTALL).group(1)
+PAGE = pathlib.Path(sys.argv[2]).read_text()
+CODE = re.search(r"```python\n(import struct.*?)```", PAGE, re.DOTALL).group(1)
 SPEC = """
 spec look;
 rate 10 Hz;

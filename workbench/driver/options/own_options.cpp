@@ -140,7 +140,7 @@ std::vector<Option> make_own_options() {
         {embed, "--write-reference", text("FOLDER", in(&Call::embed, &Call::Embed::references)),
          "folder for the reference frames, .png files, by which a robot checks its encoder"},
         {embed, "--pipe", text("ENCODER", in(&Call::embed, &Call::Embed::pipe)),
-         "encode frames of standard input with this encoder, in the format of docs/encoders.md"},
+         "encode frames of standard input with this encoder, in the format of docs/recordings.md"},
         {kEncode, "--onnxruntime",
          text("PATH", in(&Call::embed, &Call::Embed::running, &embed::Running::onnxruntime)),
          "ONNX Runtime, which runs the models: the library or its folder (default: "
@@ -148,7 +148,7 @@ std::vector<Option> make_own_options() {
         {kEncode, "--encoder-cmd",
          text("COMMAND", in(&Call::embed, &Call::Embed::running, &embed::Running::command)),
          "command that encodes frames on its standard input to embeddings on its standard output "
-         "(docs/encoders.md)",
+         "(docs/recordings.md)",
          Option::Need::none, "--onnxruntime"},
         {kEncode, "--encoder-timeout", encoder_timeout(),
          "seconds after which an encoder that neither reads nor writes is stopped"},

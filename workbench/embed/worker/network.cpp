@@ -87,7 +87,7 @@ struct Network::Parts {
         refuse(kRefused, doing + " by ONNX Runtime " + version + ": " +
                              said(ort::error_message(&status)) +
                              "; run the model by a command of your own instead: --encoder-cmd "
-                             "(docs/encoders.md)");
+                             "(docs/recordings.md)");
     }
 
     /// Returns what a call creates; ends the process with `doing` in the message where it fails.
