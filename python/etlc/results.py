@@ -51,7 +51,7 @@ class Evaluation(Ambiguous):
     Its truth value raises AmbiguousError.
 
     Attributes:
-        data: the figures of `etlc evaluate --json`, for programs (docs/evaluation.md); empty for
+        data: the figures of `etlc evaluate --json`, for programs (docs/calibration.md); empty for
             a shard, whose part of the result is a file.
         report: the printed tables, for people.
         diagnostics: the warnings.

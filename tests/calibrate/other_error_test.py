@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """other_error_test.py ETLC: the report of `etlc calibrate` counts the other error of every
 demonstration with the thresholds that a call on the other demonstrations gives. The counts here are
-plain loops from the definitions, and the intervals are drawn as docs/evaluation.md says. On broken
+plain loops from the definitions, and the intervals are drawn as docs/calibration.md says. On broken
 variants it counts what `etlc evaluate --variants` does."""
 import json
 import os

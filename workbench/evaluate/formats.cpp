@@ -1,4 +1,4 @@
-// Evaluations as JSON for programs and as CSV for spreadsheets; docs/evaluation.md lists the keys.
+// Evaluations as JSON for programs and as CSV for spreadsheets; docs/calibration.md lists the keys.
 // An undefined figure is null in JSON and an empty cell in CSV. With several specs, the spec is the
 // first column.
 #include <fmt/format.h>
