@@ -176,7 +176,7 @@ def embed(
         write_reference: a folder for the reference frames, which `Monitor.encoder_agrees` is about.
         onnxruntime: the library that runs the spec's networks, or its folder; by default
             the one of the environment, pip, npm or the system.
-        encoder_command: a command that encodes (docs/recordings.md), in place of the spec's network.
+        encoder_command: a command that encodes (docs/recordings.md), in place of the network.
         encoder_timeout: stop an encoder that does nothing for this many seconds.
         encoder: what encodes, in this process, in place of the spec's network: a function from an
             image, uint8 (rows, columns, 3), to a vector of floats, such as one that calls a model
