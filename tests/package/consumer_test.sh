@@ -144,7 +144,8 @@ if "$cmake" --install "$demo" --prefix "$box/early" >"$box/log" 2>&1; then
 fi
 grep -q "^ *cmake --build $demo" "$box/log" && [ ! -e "$box/early" ] ||
     { cat "$box/log"; fail "installed before it was built: $(ls "$box")"; }
-/usr/bin/python3 - "$demo" <<'END' >"$box/missing" || fail "what is installed: $(cat "$box/missing")"
+/usr/bin/python3 - "$demo" <<'END' >"$box/missing" || \
+    fail "what is installed: $(cat "$box/missing")"
 import pathlib, re, sys
 
 folder = pathlib.Path(sys.argv[1])
