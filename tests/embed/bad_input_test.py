@@ -307,14 +307,15 @@ while head := sys.stdin.buffer.read(8):
         os.remove("out/v.npz")
     # Commands that exit or hang while a pipe holds less than the remaining input.
     make_video("large.mp4", "-c:v", "libx264", frames=20, size="640x480")
-    for command, words in (("exit 3", ["exit status 3"]), ("sleep 60", ["said nothing for 1"]),
-                           ("head -c 100000 > /dev/null; exit 4", ["exit status 4"]),
-                           ("exec 0<&-; sleep 60", ["'net'"]),
-                           ("cat", ["dimension"]), ("yes", ["dimension"]),
-                           ("printf '\\001\\000\\000\\000'; cat > /dev/null",
-                            ["dimension 1, the inputs by it have 4"])):
+    for command, wait, words in (("exit 3", "250", ["exit status 3"]),
+                                 ("sleep 250", "1", ["said nothing for 1"]),
+                                 ("head -c 100000 > /dev/null; exit 4", "250", ["exit status 4"]),
+                                 ("exec 0<&-; sleep 250", "1", ["'net'"]),
+                                 ("cat", "250", ["dimension"]), ("yes", "250", ["dimension"]),
+                                 ("printf '\\001\\000\\000\\000'; cat > /dev/null", "250",
+                                  ["dimension 1, the inputs by it have 4"])):
         said = call(ETLC, "embed", "t.etl", "--data", "large.mp4", "-o", "out", "--encoder-cmd",
-                    command, "--encoder-timeout", "1", status=1)[1]
+                    command, "--encoder-timeout", wait, status=1)[1]
         assert all(word in said for word in words) and "E101" in said, (command, said)
         assert not os.listdir("out") and not os.path.exists("t.embedded.npz"), command
     call(ETLC, "embed", "t.etl", "--data", "v.mp4", "-o", "out", *good)

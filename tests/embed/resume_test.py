@@ -28,16 +28,19 @@ input charge : f32;
 target bay = images("bay") by net;
 monitor docked = F (min l2(z, bay) <= 1 && charge > 0);
 """
-# It adds a line to the file that $LOG names when it starts, and for each frame.
+# It adds a line to the file that $LOG names when it starts, and for each frame. Before frame $HOLD
+# it waits until it must have been stopped.
 ENCODE = """import os, struct, sys, time
 log = open(os.environ["LOG"], "a", buffering=1)
 print("start", file=log)
 sys.stdout.buffer.write(struct.pack("<I", 2))
 sys.stdout.flush()
+seen = 0
 while head := sys.stdin.buffer.read(8):
+    seen += 1
     height, width = struct.unpack("<II", head)
     pixels = sys.stdin.buffer.read(3 * height * width)
-    time.sleep(float(os.environ.get("PAUSE", "0")))
+    time.sleep(20 if seen == int(os.environ["HOLD"]) else float(os.environ.get("PAUSE", "0")))
     print("frame", file=log)
     sys.stdout.buffer.write(struct.pack("<2f", pixels[0], pixels[-1]))
     sys.stdout.flush()
@@ -97,26 +100,34 @@ def content(folder):
     return {path.name: path.read_bytes() for path in pathlib.Path(folder).iterdir()}
 
 
+def wait_for_frames(log, frames, running):
+    while running.poll() is None:
+        if os.path.exists(log) and pathlib.Path(log).read_text().count("frame") >= frames:
+            return
+        time.sleep(0.001)
+
+
 def interrupted_calls_go_on():
-    begin = time.monotonic()
+    """Calls end at any moment; one that ends by itself is a call that was not interrupted."""
     _, frames = call(words("one"))
     whole = content("one")
-    lasts = time.monotonic() - begin
     assert sorted(whole) == [f"ep{number:02}.npz" for number in range(EPISODES)]
     assert frames == EPISODES * STEPS
     partly = 0
     for moment in range(10):
         shutil.rmtree("many", ignore_errors=True)
         os.environ["LOG"] = f"log{moment}"  # an encoder may outlive etlc for an instant
+        os.environ["HOLD"] = "29" if moment == 7 else "0"
         running = subprocess.Popen(words("many"), stdout=subprocess.DEVNULL,
                                    stderr=subprocess.DEVNULL, start_new_session=True)
-        time.sleep(numbers.uniform(0, lasts))
+        wait_for_frames(f"log{moment}", 4 * moment, running)
+        time.sleep(numbers.uniform(0, 0.004))
         if moment % 2 == 0:
             running.kill()
         else:
             os.killpg(running.pid, signal.SIGINT)  # as a terminal does
         running.wait()
-        os.environ["LOG"] = "log"
+        os.environ["LOG"], os.environ["HOLD"] = "log", "0"
         found = content("many") if os.path.exists("many") else {}
         assert found.items() <= whole.items(), "each file is whole"
         partly += 0 < len(found) < EPISODES
@@ -131,11 +142,10 @@ def interrupted_calls_go_on():
 def episodes_appear_one_by_one():
     """The encoder waits for the first episode before it goes on with the last frame."""
     pathlib.Path("waits.py").write_text(ENCODE.replace("    print", f"""
-    seen = globals().get("seen", 0) + 1
     while seen == {TARGETS + EPISODES * STEPS} and not os.path.exists("soon/ep00.npz"):
         time.sleep(0.01)
     print""", 1))
-    call(words("soon", command="/usr/bin/python3 -IS waits.py"), timeout=60)
+    call(words("soon", command="/usr/bin/python3 -IS waits.py"))
 
 
 def what_changed_is_encoded_again():
@@ -270,7 +280,7 @@ def progress_is_seen_on_terminals():
 
 with tempfile.TemporaryDirectory() as place:
     os.chdir(place)
-    os.environ |= {"LOG": "log", "PAUSE": PAUSE, "ETLC_EMBEDDER": "./decode.sh"}
+    os.environ |= {"LOG": "log", "PAUSE": PAUSE, "HOLD": "0", "ETLC_EMBEDDER": "./decode.sh"}
     pathlib.Path("decode.sh").write_text(DECODE)
     os.chmod("decode.sh", 0o755)
     pathlib.Path("look.etl").write_text(SPEC)

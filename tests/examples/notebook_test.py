@@ -22,7 +22,7 @@ def executed(box):
     subprocess.run(
         [sys.executable, "-B", "-m", "nbconvert", "--to", "notebook", "--execute",
          "rollouts.ipynb", "--output", "done.ipynb"],
-        cwd=box / "python", check=True, capture_output=True, timeout=250,
+        cwd=box / "python", check=True, capture_output=True,
     )  # fmt: skip
     return json.loads((box / "python" / "done.ipynb").read_text())
 

@@ -20,7 +20,7 @@ namespace {
 using Embedding = std_msgs_msg_dds__Float32MultiArray_;
 using DiagnosticArray = diagnostic_msgs_msg_dds__DiagnosticArray_;
 
-constexpr int kMostRounds = 200;  // of 50 ms
+constexpr int kMostRounds = 5000;  // of 50 ms; long, since a busy machine is slow
 
 dds_entity_t checked(dds_return_t result, const char* what) {
     if (result >= 0) return result;

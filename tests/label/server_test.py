@@ -22,7 +22,7 @@ ETLC = sys.argv[1]
 
 
 def request(service, path, method="GET", body=None, **headers):
-    connection = http.client.HTTPConnection("127.0.0.1", service.port, timeout=60)
+    connection = http.client.HTTPConnection("127.0.0.1", service.port)
     connection.request(method, path, body, headers)
     answer = connection.getresponse()
     content = answer.read()
@@ -90,7 +90,7 @@ def nonsense(service):
 
 def refused(folder, message, *words):
     done = subprocess.run([ETLC, "label", "stack.etl", "--data", "demos", *words], cwd=folder,
-                          capture_output=True, text=True, timeout=60)
+                          capture_output=True, text=True)
     assert done.returncode == 1 and message in done.stderr, done.stderr
 
 
@@ -269,16 +269,14 @@ def ends_together(folder):
     with Service(ETLC, folder) as service:
         [listener] = children(service.process.pid)
         os.kill(listener, signal.SIGKILL)
-        assert service.process.wait(60) == 1
+        assert service.process.wait() == 1
         said = service.process.stderr.read()
         assert "etlc-serve was stopped by signal 9" in said, said
     with Service(ETLC, folder) as service:
         [listener] = children(service.process.pid)
         service.process.send_signal(signal.SIGINT)
-        service.process.wait(60)
-        end = time.monotonic() + 60
+        service.process.wait()
         while pathlib.Path(f"/proc/{listener}/exe").exists():  # a zombie has no program
-            assert time.monotonic() < end, "etlc-serve goes on"
             time.sleep(0.02)
 
 

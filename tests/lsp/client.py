@@ -4,7 +4,6 @@ It implements the protocol itself, so that it can also send invalid messages.
 """
 import json
 import os
-import select
 import subprocess
 
 
@@ -17,7 +16,6 @@ class Client:
         self.buffer = b""
         self.last_id = 0
         self.notes = []  # notifications not yet read
-        self.patience = 20  # seconds that a message may take
         if capabilities is not None:
             self.initialized = self.ask("initialize", {"capabilities": capabilities})
             self.tell("initialized", {})
@@ -41,8 +39,6 @@ class Client:
                 if len(rest) >= length:
                     self.buffer = rest[length:]
                     return json.loads(rest[:length])
-            ready, _, _ = select.select([self.process.stdout], [], [], self.patience)
-            assert ready, f"no answer in {self.patience} s"
             data = os.read(self.process.stdout.fileno(), 1 << 16)
             if not data:
                 return None
@@ -106,7 +102,7 @@ class Client:
 
     def wait(self):
         self.process.stdin.close()
-        status = self.process.wait(timeout=20)
+        status = self.process.wait()
         self.process.stdout.close()
         return status
 

@@ -1,6 +1,7 @@
 """planning_test.py ETLC: the server answers while it plans, and plans only the newest text.
 
-The monitors need a whole second of planning: none fits the limits, and rewritings are tried.
+The monitors need a whole second of planning on any machine: none fits the limits, and rewritings
+are tried. Times are only compared with each other.
 """
 import sys
 import time
@@ -18,12 +19,6 @@ def spec(monitors=100):
     return "\n".join(lines) + "\n"
 
 
-def patient_client():
-    client = Client(ETLC)
-    client.patience = 300  # with sanitizers planning takes long
-    return client
-
-
 def published(client):
     return client.note("textDocument/publishDiagnostics")
 
@@ -35,7 +30,7 @@ def is_planned(found):
 
 def at_peace(text):
     """Returns the findings of a server that is left in peace, and the seconds that it takes."""
-    client = patient_client()
+    client = Client(ETLC)
     start = time.monotonic()
     client.open(text)
     first = published(client)
@@ -49,13 +44,19 @@ def at_peace(text):
 def answers_meanwhile():
     expected, seconds = at_peace(spec())
     assert seconds > 2 * PAUSE, f"planning takes only {seconds} s, so this test would see nothing"
-    client = patient_client()
+    client = Client(ETLC)
     text = client.open(spec())
     assert not is_planned(published(client))
-    time.sleep(PAUSE + (seconds - PAUSE) / 4)
-    hover = text.ask("hover", "y : f32")
-    assert "float32" in hover["contents"]["value"], hover
-    assert client.notes == [], "the answer came after the plan"
+    begun, longest, answers = time.monotonic(), 0, 0
+    while client.notes == []:
+        asked = time.monotonic()
+        hover = text.ask("hover", "y : f32")
+        assert "float32" in hover["contents"]["value"], hover
+        longest = max(longest, time.monotonic() - asked)
+        answers += 1
+    waited = time.monotonic() - begun
+    assert longest < waited / 2, f"of {waited} s, an answer took {longest} s"
+    assert answers > 5, answers
     assert published(client)["diagnostics"] == expected
     assert client.end() == 0
 
@@ -63,24 +64,28 @@ def answers_meanwhile():
 def newest_text_wins():
     after = spec().replace("F[0, 399]", "F[0, 398]").replace("heavy", "heavier")
     expected, seconds = at_peace(after)
-    client = patient_client()
+    client = Client(ETLC)
     text = client.open(spec())
     published(client)
     time.sleep(PAUSE + (seconds - PAUSE) / 4)
     text.replace(spec(99) + "monitor")  # it has an error, so that it has no plan
     time.sleep(seconds / 8)
     text.replace(after)
+    versions = []
     while True:
         found = published(client)
-        assert found["version"] > 1 and not (is_planned(found) and found["version"] < 3), found
-        if is_planned(found):
+        versions.append(found["version"])
+        assert versions == sorted(versions), versions
+        if is_planned(found) and found["version"] == 3:
             break
+        # The first text may have been planned before the others came.
+        assert not is_planned(found) or found["version"] == 1, found
     assert found["diagnostics"] == expected
     assert client.end() == 0
 
 
 def ends_meanwhile():
-    client = patient_client()
+    client = Client(ETLC)
     text = client.open(spec())
     published(client)
     # A monitor's budget waits for the plan, and the end does not.
@@ -95,7 +100,7 @@ def ends_meanwhile():
 
 
 def budgets_wait():
-    client = patient_client()
+    client = Client(ETLC)
     small = "spec a;\ninput x : f32;\nmonitor m = G x > 0;\nmonitor n = F x > 0;\n"
     text = client.open(small)
     for name in "m =", "n =", "m =":

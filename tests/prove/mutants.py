@@ -180,7 +180,7 @@ def say(program, rows, finishes):
     path = program.with_suffix(".rows")
     path.write_text(rows)
     return subprocess.run([program, path, str(finishes)], capture_output=True, text=True,
-                          check=False, timeout=60).stdout
+                          check=False).stdout
 
 
 def run_of(header, stem):

@@ -15,7 +15,7 @@ import urllib.request
 
 import websocket
 
-PATIENCE = 120  # seconds; long, since a busy machine is slow
+PATIENCE = 280  # seconds; long, since a busy machine is slow
 
 
 class Browser:

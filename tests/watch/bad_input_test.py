@@ -7,12 +7,11 @@ import signal
 import socket
 import sys
 import tempfile
-import time
 
 from PIL import Image
 
-from camera import BY_COMMAND, DARK, LIGHT, SPEC, Camera, Watch, at_rate, make_encoder, \
-    make_project, run, write_video
+from camera import BY_COMMAND, DARK, LIGHT, RATE, SPEC, Camera, Clock, Watch, at_rate, \
+    make_encoder, make_project, run, write_video
 
 ETLC = sys.argv[1]
 
@@ -54,25 +53,21 @@ def sources(folder):
             what=["30 frames a second, expected a multiple of the 7 steps", "[E1011]"])
 
 
-def another_size(folder):
+def another_size(folder, clock):
     """A stream whose frames change their size ends the call, after the summary."""
     def jpeg(size):
         file = io.BytesIO()
         Image.new("RGB", size, (200, 200, 200)).save(file, "jpeg")
         return file.getvalue()
-    path = pathlib.Path(folder, "sizes")
-    os.mkfifo(path)
-    watch = Watch(ETLC, folder, "--video", "sizes")
-    with open(path, "wb", buffering=0) as pipe:
-        for number in range(60):
-            pipe.write(jpeg((64, 48) if number < 40 else (32, 24)))
-            time.sleep(1 / 30)
-    lines, errors, status = watch.end()
+    camera = Camera(clock, folder, at_rate([(64, 48)] * 40 + [(32, 24)] * 20), head=b"",
+                    frame_of=jpeg)
+    lines, errors, status = Watch(clock, ETLC, folder, "--video", "camera").end()
+    os.unlink(camera.path)
     assert status == 1 and "from 64 x 48 to 32 x 24" in errors and "[E1010]" in errors, errors
     assert any(line.startswith("seen: satisfied for good") for line in lines), lines
 
 
-def encoders(folder):
+def encoders(folder, clock):
     """What makes the embeddings is what made those of the spec, or nothing is watched."""
     path = pathlib.Path(folder)
     video = ("look.etl", "--video", "video.mp4")
@@ -96,12 +91,19 @@ def encoders(folder):
     assert "0 steps" in ended.stdout, ended
     # One that does not write what it has is waited for, and Ctrl-C ends that.
     (path / "encode.py").write_text(script.replace("embeddings.write(z", "bytes(z"))
-    watch = Watch(ETLC, folder, "--video", "video.mp4", *BY_COMMAND)
-    time.sleep(1)
+    clock.hold()
+    watch = Watch(clock, ETLC, folder, "--video", "video.mp4", *BY_COMMAND)
+    clock.advance(1)
     _, errors, status = watch.stop(signal.SIGINT)
     assert status == 0 and not errors, (status, errors)
-    refused(folder, 1, *video, *BY_COMMAND, "--encoder-timeout", "1",
-            what=["no embedding of a frame for 1 second", "flush", "[E1013]"])
+    watch = Watch(clock, ETLC, folder, *video[1:], *BY_COMMAND, "--encoder-timeout", "9")
+    clock.advance(8.9)
+    assert watch.process.poll() is None
+    clock.advance(1.2)
+    _, errors, status = watch.end()
+    assert status == 1, status
+    for part in "no embedding of a frame for 9 seconds", "flush", "[E1013]":
+        assert part in errors, errors
 
 
 def calls(folder):
@@ -134,25 +136,27 @@ def calls(folder):
     refused(folder, 1, *video, "--record", "file/x", what=["file/x", "cannot be made", "[E0901]"])
 
 
-def a_reader_that_goes(folder):
+def a_reader_that_goes(folder, clock):
     """Nobody reads the lines any more: the call ends, as any other does."""
-    Camera(folder, at_rate([DARK, LIGHT] * 300))
-    watch = Watch(ETLC, folder, "--video", "camera")
+    Camera(clock, folder, at_rate([DARK, LIGHT] * 300))
+    watch = Watch(clock, ETLC, folder, "--video", "camera")
     watch.line()
     watch.process.stdout.close()
-    assert watch.process.wait(timeout=20) != 0
+    begun = clock.now
+    assert watch.process.wait() != 0
+    assert clock.now - begun < 100 / RATE, "it ends long before the source"
     watch.process.stderr.close()
 
 
 def main():
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder, Clock(folder) as clock:
         write_video(folder, [DARK] * 5 + [LIGHT] * 5)
         make_project(folder, ETLC)
         sources(folder)
-        another_size(folder)
+        another_size(folder, clock)
         calls(folder)
-        a_reader_that_goes(folder)
-        encoders(folder)
+        a_reader_that_goes(folder, clock)
+        encoders(folder, clock)
 
 
 main()

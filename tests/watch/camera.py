@@ -1,9 +1,11 @@
-"""A camera for tests: a named pipe into which a thread writes grey frames at its own times, and
-`etlc watch` as a process."""
+"""A camera for tests: a named pipe into which grey frames come at their times, `etlc watch` as a
+process, and the clock of both."""
 import os
 import pathlib
 import re
+import select
 import signal
+import struct
 import subprocess
 import sys
 import threading
@@ -56,8 +58,7 @@ def make_encoder(folder, seconds=0.0, shift=0, times=1):
 
 
 def run(etlc, folder, *words, **more):
-    return subprocess.run([etlc, *words], cwd=folder, capture_output=True, text=True, timeout=120,
-                          **more)
+    return subprocess.run([etlc, *words], cwd=folder, capture_output=True, text=True, **more)
 
 
 def write_video(folder, levels, rate=RATE):
@@ -96,33 +97,147 @@ def y4m_frame(level):
     return b"FRAME\n" + bytes([level]) * (WIDTH * HEIGHT) + bytes([128]) * (WIDTH * HEIGHT // 2)
 
 
-def wait_until(end):
-    """Waits for a time without the delays of a long sleep."""
-    while (left := end - time.monotonic()) > 0:
-        time.sleep(left if left > 0.002 else 0)
-
-
 class Camera:
-    """Writes a frame for each of `frames`, at its time: (seconds, level)."""
+    """A named pipe into which frames come, each of `frames` at its time: (seconds, level), or
+    (seconds, bytes) of another format without a head."""
 
-    def __init__(self, folder, frames, rate=RATE):
+    def __init__(self, clock, folder, frames, rate=RATE, head=None, frame_of=y4m_frame):
         self.path = os.path.join(folder, "camera")
         os.mkfifo(self.path)
-        self.frames, self.rate = frames, rate
-        self.begun = None  # when the first frame was written
-        self.thread = threading.Thread(target=self._write, daemon=True)
+        self.head = y4m_head(rate) if head is None else head
+        self.frames = [(seconds, frame_of(level)) for seconds, level in frames]
+        self.begun = self.pipe = None
+        self.written = 0
+        clock.add(self)
+
+    def write(self, now):
+        """Writes what has come up to this time; a reader that has gone is no matter."""
+        if self.pipe is None:
+            try:
+                self.pipe = os.open(self.path, os.O_WRONLY | os.O_NONBLOCK)
+            except OSError:
+                return  # nobody has opened the pipe to read it
+            os.set_blocking(self.pipe, True)
+            os.write(self.pipe, self.head)
+            self.begun = now
+        while self.written < len(self.frames) and self.due() <= now:
+            try:
+                os.write(self.pipe, self.frames[self.written][1])
+            except BrokenPipeError:
+                self.written = len(self.frames) - 1
+            self.written += 1
+            if self.written == len(self.frames):
+                os.close(self.pipe)
+
+    def due(self):
+        """Returns the time of the next frame; 0 before the pipe is read, and after the last."""
+        if self.begun is None or self.written == len(self.frames):
+            return 0
+        return self.begun + self.frames[self.written][0]
+
+
+class Clock:
+    """The clock by which the processes of a test wait, and the times of its camera. It moves on
+    when all of them have nothing to do but wait, so a slow machine changes nothing."""
+
+    NUMBERS = 128  # of the file: the time, and those that threads wait for
+
+    def __init__(self, folder):
+        self.path = os.path.join(folder, "clock")
+        self.now = 1000.0
+        self.file = os.open(self.path, os.O_CREAT | os.O_RDWR)
+        os.truncate(self.file, 8 * self.NUMBERS)
+        self._set()
+        self.cameras, self.processes = [], []
+        self.lock = threading.RLock()
+        self.is_free, self.is_over = True, False
+        self.thread = threading.Thread(target=self._run, daemon=True)
         self.thread.start()
 
-    def _write(self):
-        try:
-            with open(self.path, "wb", buffering=0) as pipe:
-                pipe.write(y4m_head(self.rate))
-                self.begun = time.monotonic()
-                for seconds, level in self.frames:
-                    wait_until(self.begun + seconds)
-                    pipe.write(y4m_frame(level))
-        except BrokenPipeError:
+    def _set(self):
+        os.pwrite(self.file, struct.pack("=q", round(1e9 * self.now)), 0)
+
+    def add(self, camera):
+        with self.lock:
+            self.cameras.append(camera)
+
+    def start(self, *command, **more):
+        """Starts a process that waits by this clock."""
+        process = subprocess.Popen(command, env={
+            **os.environ, "LD_PRELOAD": os.environ["ETLC_CLOCK_LIBRARY"], "ETLC_CLOCK": self.path},
+            **more)
+        with self.lock:
+            self.processes = [one for one in self.processes if one.poll() is None] + [process]
+        return process
+
+    def advance(self, seconds):
+        """Moves the clock on, and waits until the processes have nothing left to do."""
+        with self.lock:
+            end = self.now + seconds
+            while self.now < end:
+                self.settle()
+                numbers = struct.unpack(f"={self.NUMBERS}q", os.pread(self.file, 1024, 0))
+                ends = [end, *(one / 1e9 for one in numbers), *(one.due() for one in self.cameras)]
+                self.now = min(one for one in ends if one > self.now)
+                self._set()
+                for camera in self.cameras:
+                    camera.write(self.now)
+            self.settle()
+
+    def settle(self):
+        """Waits until every thread of the processes waits for something: two looks see the same
+        counts, so that none ran between them."""
+        while (before := self._waits()) is None or before != self._waits():
+            time.sleep(0.0005)
+
+    def hold(self):
+        """From now on only advance() moves the clock."""
+        self.is_free = False
+        with self.lock:
             pass
+
+    def _run(self):
+        try:
+            while not self.is_over:
+                if self.is_free and any(one.poll() is None for one in self.processes):
+                    self.advance(1 / RATE)
+                time.sleep(0.0005)  # for others to take the lock
+        except BaseException:
+            for process in self.processes:  # their ends are failures of the test, which waits
+                process.kill()
+            raise
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.is_over = True
+        self.thread.join()
+        os.close(self.file)
+
+    def _waits(self):
+        """Returns how often each thread has waited; None where one is at work."""
+        counts = {}
+        todo = [str(process.pid) for process in self.processes if process.poll() is None]
+        for process in todo:
+            try:
+                for thread in os.listdir(f"/proc/{process}/task"):
+                    folder = f"/proc/{process}/task/{thread}"
+                    status = content(folder + "/status")
+                    if status.startswith(b"Name:\tetlc-serve"):  # a browser keeps it at work
+                        continue
+                    if status[status.index(b"\nState:") + 8:][:1] not in b"SZ":
+                        return None
+                    counts[thread] = status[status.index(b"\nvoluntary_ctxt"):]
+                    todo += content(folder + "/children").decode().split()
+            except OSError:
+                return None  # it has ended meanwhile
+        return counts
+
+
+def content(path):
+    with open(path, "rb", buffering=0) as file:
+        return file.read()
 
 
 def at_rate(levels, rate=RATE, begin=0.0):
@@ -139,33 +254,37 @@ def blinking(count, longest=7):
     return levels[:count]
 
 
-def at_last(test, tries=3):
-    """Runs a test of times up to three times: another program may delay a frame, whose step then
-    has no sample. A fault of etlc fails each time."""
-    for left in reversed(range(tries)):
-        try:
-            return test()
-        except AssertionError:
-            if left == 0:
-                raise
-
-
 class Watch:
-    def __init__(self, etlc, folder, *words, stdin=None):
-        self.process = subprocess.Popen([etlc, "watch", "look.etl", *words], cwd=folder,
-                                        stdin=stdin, stdout=subprocess.PIPE,
-                                        stderr=subprocess.PIPE, text=True)
+    def __init__(self, clock, etlc, folder, *words, stdin=None):
+        self.process = clock.start(etlc, "watch", "look.etl", *words, cwd=folder, stdin=stdin,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.clock, self.text = clock, ""
+
+    def _read(self):
+        piece = os.read(self.process.stdout.fileno(), 1 << 16).decode()
+        self.text += piece
+        return piece != ""
 
     def line(self):
-        return self.process.stdout.readline().rstrip("\n")
+        """Waits for the next line, and returns it; "" at the end."""
+        while "\n" not in self.text and self._read():
+            pass
+        line, _, self.text = self.text.partition("\n")
+        return line
+
+    def lines_so_far(self):
+        """Returns the lines that it has written and that were not read yet."""
+        while select.select([self.process.stdout], [], [], 0)[0] and self._read():
+            pass
+        *lines, self.text = self.text.split("\n")
+        return lines
 
     def lines_until(self, beginning):
-        """Reads lines up to the one that begins so; returns (time of arrival, line)."""
+        """Reads lines up to the one that begins so, and returns them."""
         lines = []
-        while not lines or not lines[-1][1].startswith(beginning):
-            line = self.line()
-            assert line, (lines, self.end())
-            lines.append((time.monotonic(), line))
+        while not lines or not lines[-1].startswith(beginning):
+            lines.append(self.line())
+            assert lines[-1], (lines, self.end())
         return lines
 
     def lines_containing(self, part):
@@ -182,7 +301,7 @@ class Watch:
         raise AssertionError(f"no process {name}")
 
     def write(self, text):
-        self.process.stdin.write(text)
+        self.process.stdin.write(text.encode())
         self.process.stdin.flush()
 
     def stop(self, number=signal.SIGINT):
@@ -191,5 +310,6 @@ class Watch:
 
     def end(self):
         """Returns the lines that are left, the messages and the exit status."""
-        out, err = self.process.communicate(timeout=120)
-        return out.splitlines(), err, self.process.returncode
+        self.clock.is_free = True
+        out, err = self.process.communicate()
+        return (self.text + out.decode()).splitlines(), err.decode(), self.process.returncode

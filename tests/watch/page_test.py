@@ -2,17 +2,20 @@
 """page_test.py ETLC BROWSER_FOLDER: the page of `etlc watch` in headless Chromium: the frame and
 the verdict on it belong together at every moment; two pages, a pause of the source, its end."""
 import os
+import re
 import signal
 import sys
 import tempfile
 
-from camera import Camera, Watch, at_rate, blinking, make_project
+from camera import RATE, Camera, Clock, Watch, at_rate, make_project
 
 sys.path.insert(0, sys.argv[2])
 from browser import Browser  # noqa: E402
 
 ETLC = sys.argv[1]
 
+# A page that shows a step is told of those that follow.
+SHOWS_A_STEP = "document.getElementById('readout').dataset.step !== undefined"
 # What the page shows at one moment: the grey of the frame, its step, and the table.
 SHOWN = """(() => {
   const canvas = document.getElementById('frame');
@@ -27,63 +30,89 @@ SHOWN = """(() => {
 })()"""
 
 
-def check(shown):
-    """Returns whether a frame is shown; then all that is said is said of it."""
-    if not shown["frame"]:
-        return False
-    assert shown["frame"] == shown["step"], shown
-    grey = shown["grey"] / 255
-    assert abs(float(shown["distance"]) - 3 ** 0.5 * (1 - grey)) < 0.02, shown
+def grey(frame):
+    """No two frames near each other are alike, and light ones follow dark ones."""
+    return 20 + frame % 40 if frame % 2 == 0 else 200 - frame % 40
+
+
+def check(shown, step):
+    """All that is shown is of this step."""
+    assert shown["frame"] == shown["step"] == str(step), (step, shown)
+    light = shown["grey"] / 255
+    assert abs(float(shown["distance"]) - 3 ** 0.5 * (1 - light)) < 0.02, shown
     is_light = shown["grey"] > 128
     assert shown["light"] == ("yes" if is_light else "no"), shown
     assert shown["now"] == ("satisfied" if is_light else "violated"), shown
-    return True
 
 
-def watch_together(page, moments):
-    """Looks at the page at many moments; returns the steps and greys that were seen."""
-    steps, greys = [], set()
-    while len(steps) < moments:
-        shown = page.value(SHOWN)
-        if check(shown) and (not steps or shown["frame"] != steps[-1]):
-            steps.append(shown["frame"])
-            greys.add(shown["grey"] > 128)
-    return steps, greys
+class Film:
+    """What is watched, frame by frame: every one changes a verdict, so that it has a line."""
+
+    def __init__(self, clock, watch):
+        self.clock, self.watch = clock, watch
+        self.step = None
+
+    def go_on(self, what="now (?:violated|satisfied)"):
+        """Shows frames until a line says this; returns its step."""
+        while not (found := [one for line in self.watch.lines_so_far()
+                             if (one := re.match(rf"step (\d+) .*: {what}", line))]):
+            self.clock.advance(1 / RATE)
+        self.step = int(found[-1][1])
+        return self.step
+
+    def show(self, frames, *pages):
+        """Shows frames one by one, and checks what each page shows of each."""
+        greys = set()
+        for _ in range(frames):
+            step = self.go_on()
+            for page in pages:
+                page.wait(f"document.getElementById('readout').dataset.step === '{step}'")
+                shown = page.value(SHOWN)
+                check(shown, step)
+                greys.add(shown["grey"])
+        assert len(greys) > frames / 2, greys
 
 
 def main():
-    with tempfile.TemporaryDirectory() as folder, Browser() as browser:
+    with tempfile.TemporaryDirectory() as folder, Clock(folder) as clock, Browser() as browser:
         make_project(folder, ETLC)
-        frames = at_rate(blinking(600)) + at_rate(blinking(900), begin=22)
-        Camera(folder, frames)
-        watch = Watch(ETLC, folder, "--video", "camera", "--page")
-        address = watch.line()
+        clock.hold()
+        levels = [grey(frame) for frame in range(400)]
+        Camera(clock, folder, at_rate(levels[:120]) + at_rate(levels[120:], begin=6))
+        watch = Watch(clock, ETLC, folder, "--video", "camera", "--page")
+        while not (lines := watch.lines_so_far()):
+            clock.advance(1 / RATE)
+        address = lines[0]
         assert address.startswith("http://127.0.0.1:"), address
+        film = Film(clock, watch)
+        film.go_on()
         page = browser.page(address)
-        steps, greys = watch_together(page, 60)
-        assert greys == {False, True}, greys
+        page.wait(SHOWS_A_STEP)
+        film.show(60, page)
         page.wait("document.querySelectorAll('.lane').length === 4")
         page.wait("document.querySelectorAll('.lane.monitor .strip').length > 2")
 
         other = browser.page(address)  # both go on
-        watch_together(other, 20)
-        watch_together(page, 20)
+        other.wait(SHOWS_A_STEP)
+        film.show(20, page, other)
 
         page.click("#hold")
-        held = page.value(SHOWN)["step"]
-        watch_together(other, 10)
-        assert page.value(SHOWN)["step"] == held
+        held = film.step
+        film.show(10, other)
+        check(page.value(SHOWN), held)
         page.click("#hold")
-        page.wait(f"Number(document.getElementById('readout').dataset.step) > {held}")
+        film.show(1, page, other)
 
         # The source pauses for two seconds, and the steps go on without frames.
+        step = film.go_on("now unknown")
         page.wait("document.getElementById('picture-step').textContent.startsWith('no frame')")
         shown = page.value(SHOWN)
+        assert shown["step"] == str(step) and shown["frame"] == "", shown
         assert shown["distance"] == "missing" and shown["now"] == "unknown", shown
-        page.wait("document.getElementById('frame').dataset.step !== ''")
-        watch_together(page, 20)
+        film.show(20, page)
 
         os.kill(watch.child("etlc-serve"), signal.SIGKILL)
+        clock.advance(1)
         watch.lines_containing("the page has ended: etlc-serve was stopped by signal 9")
         lines, errors, status = watch.stop()
         assert status == 0 and not errors, (status, errors)

@@ -113,6 +113,18 @@ TEST(StepClock, StepsGoOnWhileNoFrameComes) {
     EXPECT_GT(*clock.next_overdue(), at(13 * kStep));
 }
 
+/// Who waits for the time at which a step is overdue need not wait again.
+TEST(StepClock, AStepIsOverdueWhenItSays) {
+    for (const double rate : {1.0, 7.0, 24.0, 29.97, 30.0, 60.0, 144.0, 1000.0}) {
+        StepClock clock(1 / rate);
+        for (int frame = 0; frame < 200; ++frame) {
+            clock.take(at(frame / rate * 1.3));
+            StepClock later = clock;
+            EXPECT_GE(later.overdue(*clock.next_overdue()), 1U) << rate << ", frame " << frame;
+        }
+    }
+}
+
 TEST(StepClock, WithoutARateEveryFrameIsAStep) {
     StepClock clock(0);
     for (const double frame : {0.0, 0.0, 0.1, 7.0, 7.001}) {

@@ -74,7 +74,7 @@ void StepClock::follow(double distance, std::uint64_t steps) {
 
 std::optional<StepClock::Time> StepClock::next_overdue() const {
     if (step_ == 0 || !last_) return std::nullopt;
-    return *last_ + steps_long(2 + kOnItsWay, step_);
+    return *last_ + steps_long(2 + kOnItsWay, step_) + std::chrono::microseconds(1);  // to round
 }
 
 std::uint64_t StepClock::overdue(Time now) {
