@@ -66,7 +66,7 @@ int Camera::patience() const {
     using namespace std::chrono;
     constexpr std::int64_t kLongest = 1000;
     const auto next = clock_.next_overdue();
-    if (!next) return kLongest;
+    if (!next || frames_->is_over()) return kLongest;
     const auto left = ceil<milliseconds>(*next - steady_clock::now()).count();
     return static_cast<int>(std::clamp<std::int64_t>(left, 0, kLongest));
 }
