@@ -101,10 +101,10 @@ def alarms_in_a_row():
 def two_in_one_folder():
     """Two calls that began with the same files keep all incidents of both."""
     spec = "spec look; input x : f32; repeating monitor now = G x >= 0;"
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder, Clock(folder) as clock:
         pathlib.Path(folder, "look.etl").write_text(spec)
-        both = [Watch(ETLC, folder, "--trace", "-", "--record", "kept", "--recorder", "1,1,4",
-                      stdin=subprocess.PIPE) for _ in range(2)]
+        both = [Watch(clock, ETLC, folder, "--trace", "-", "--record", "kept", "--recorder",
+                      "1,1,4", stdin=subprocess.PIPE) for _ in range(2)]
         for watch in both:
             watch.write("x\n1\n")
             watch.line()
