@@ -104,7 +104,9 @@ TEST(Layout, IntervalsAndUnitsStayWhole) {
             for (const std::string& whole : wholes)
                 EXPECT_NE(text.find(whole), std::string::npos) << whole << " in\n" << text;
         const std::string room = letters(2 * n) + " F[0, 8 s] ";
-        for (const std::string& cut : {quoted(room + letters(160)), shortened(room + letters(60))})
+        const std::vector<std::string> cuts = {emit::quoted(room + letters(160)),
+                                               shortened(room + letters(60))};
+        for (const std::string& cut : cuts)
             EXPECT_EQ(cut.find('[') != std::string::npos, cut.find("8 s]") != std::string::npos)
                 << cut;
     }
