@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The inline namespace of the runtime, named after the compiler and its flags. Takes: the
 // compiler's macros. Gives: ETLMON_BUILD, the inline namespace that holds all of the runtime and of
-// every generated class: v0_2_gcc12_x86v3, v0_2_clang14_x86v1_O0. The linker keeps one copy of an
-// inline function of a given name. Without this namespace, a unit could run instructions that
+// every generated class: v0_2_0_gcc12_x86v3, v0_2_0_clang14_x86v1_O0. The linker keeps one copy of
+// an inline function of a given name. Without this namespace, a unit could run instructions that
 // another unit was compiled for, or get results of its -ffast-math. Keeps true: functions of the
 // same name are interchangeable, in results and in instructions. docs/runtime.md, "Flags, and who
 // shares code", lists flags that define no macro.
@@ -17,9 +17,11 @@
 
 #define ETLMON_JOIN(a, b, c, d, e, f) ETLMON_JOIN_TOKENS(a, b, c, d, e, f)
 #define ETLMON_JOIN_TOKENS(a, b, c, d, e, f) a##b##c##d##e##f
+#define ETLMON_BUILD_VERSION \
+  ETLMON_JOIN(v, ETLMON_VERSION_MAJOR, _, ETLMON_VERSION_MINOR, _, ETLMON_VERSION_PATCH)
 
 #if defined(ETLMON_STANDALONE)
-// ---- A short name, for a runtime that is pasted into a header: v0_2, or v0_2_avx2_fast. Units
+// ---- A short name, for a runtime that is pasted into a header: v0_2_0, or v0_2_0_avx2_fast. Units
 // with other vector instructions, or with -ffast-math, get another name.
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
 #define ETLMON_BUILD_MATH _fast
@@ -37,9 +39,8 @@
 #else
 #define ETLMON_BUILD_MACHINE
 #endif
-#define ETLMON_BUILD                                                                  \
-  ETLMON_JOIN(v, ETLMON_VERSION_MAJOR, _, ETLMON_VERSION_MINOR, ETLMON_BUILD_MACHINE, \
-              ETLMON_BUILD_MATH)
+#define ETLMON_BUILD \
+  ETLMON_JOIN(ETLMON_BUILD_VERSION, ETLMON_BUILD_MACHINE, ETLMON_BUILD_MATH, , , )
 
 #else
 // ETLMON_IS is 1 for a macro that expands to 1, or to version 1.0 of a RISC-V extension, and
@@ -172,10 +173,9 @@
 #define ETLMON_BUILD_KERNELS
 #endif
 
-#define ETLMON_BUILD                                                                              \
-  ETLMON_JOIN(ETLMON_JOIN(v, ETLMON_VERSION_MAJOR, _, ETLMON_VERSION_MINOR, , ),                  \
-              ETLMON_BUILD_COMPILER, ETLMON_BUILD_MACHINE, ETLMON_BUILD_SPEED, ETLMON_BUILD_MATH, \
-              ETLMON_BUILD_KERNELS)
+#define ETLMON_BUILD                                                             \
+  ETLMON_JOIN(ETLMON_BUILD_VERSION, ETLMON_BUILD_COMPILER, ETLMON_BUILD_MACHINE, \
+              ETLMON_BUILD_SPEED, ETLMON_BUILD_MATH, ETLMON_BUILD_KERNELS)
 #endif
 
 // ---- Function attributes.

@@ -43,11 +43,11 @@ ETLMON_INLINE uint64_t little_endian(const uint8_t* bytes) noexcept {
 /// The four lanes, and the hash that they are merged into.
 class XxhLanes {
  public:
-  constexpr explicit XxhLanes(uint64_t seed) noexcept
-      : a_(seed + kXxhPrime1 + kXxhPrime2),
-        b_(seed + kXxhPrime2),
-        c_(seed),
-        d_(seed - kXxhPrime1) {}
+  constexpr explicit XxhLanes(uint64_t etlmon_seed) noexcept
+      : a_(etlmon_seed + kXxhPrime1 + kXxhPrime2),
+        b_(etlmon_seed + kXxhPrime2),
+        c_(etlmon_seed),
+        d_(etlmon_seed - kXxhPrime1) {}
   /// Adds a multiple of 32 bytes.
   void add(const uint8_t* bytes, size_t size) noexcept {
     for (; size >= 32; size -= 32, bytes += 32) {

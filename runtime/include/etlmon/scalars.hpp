@@ -32,7 +32,7 @@ class Flag {
  public:
   constexpr Flag() noexcept = default;
   template <class Type, typename detail::If<detail::Same<Type, bool>::value>::type = 0>
-  constexpr Flag(Type on) noexcept : state_(on ? kOn : kOff) {}
+  constexpr Flag(Type etlmon_on) noexcept : state_(etlmon_on ? kOn : kOff) {}
 
   constexpr bool present() const noexcept { return state_ != kNone; }
   constexpr bool value() const noexcept { return state_ == kOn; }  ///< false if missing

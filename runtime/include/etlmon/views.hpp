@@ -51,13 +51,13 @@ template <class Element, size_t Dim>
 class Vector {
  public:
   constexpr Vector() noexcept = default;
-  constexpr Vector(const Element (&elements)[Dim]) noexcept : data_(elements) {}
+  constexpr Vector(const Element (&etlmon_elements)[Dim]) noexcept : data_(etlmon_elements) {}
 
   /// Views std::array<Element, Dim>, std::span<Element, Dim> and similar types, with data() and a
   /// size known at compile time, which must be Dim.
   template <class Array, class = detail::ReadsAs<Element, Array>,
             typename detail::If<detail::holds<Array, Dim>(0)>::type = 0>
-  constexpr Vector(const Array& elements) noexcept : data_(elements.data()) {}
+  constexpr Vector(const Array& etlmon_elements) noexcept : data_(etlmon_elements.data()) {}
   // Compilers quote these lines for a std::vector or a wrong number of elements. clang-format off
   template <class Array, class = detail::ReadsAs<Element, Array>,
             typename detail::If<!detail::holds<Array, Dim>(0)>::type = 0>

@@ -94,9 +94,9 @@ ETLMON_INLINE const float* joined(float (&to)[Dim], Part<Dims>... parts) noexcep
   static_assert((Dims + ...) == Dim, "the dimensions of the parts add up");
   if (((parts.elements == nullptr) || ...)) return nullptr;
   uint32_t at = 0;
-  const auto append = [&](const float* from, uint32_t n) noexcept {
-    for (uint32_t i = 0; i < n; ++i) to[at + i] = from[i];
-    at += n;
+  const auto append = [&](const float* etlmon_from, uint32_t etlmon_count) noexcept {
+    for (uint32_t i = 0; i < etlmon_count; ++i) to[at + i] = etlmon_from[i];
+    at += etlmon_count;
   };
   (append(parts.elements, Dims), ...);
   return to;

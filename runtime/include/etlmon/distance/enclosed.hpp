@@ -18,8 +18,9 @@ inline namespace ETLMON_BUILD {
 /// The numbers [low, high] at which a comparison may change; a threshold is a single number.
 struct Cut {
   float low, high;
-  constexpr Cut(float at) noexcept : low(at), high(at) {}
-  constexpr Cut(float least, float greatest) noexcept : low(least), high(greatest) {}
+  constexpr Cut(float etlmon_at) noexcept : low(etlmon_at), high(etlmon_at) {}
+  constexpr Cut(float etlmon_low, float etlmon_high) noexcept
+      : low(etlmon_low), high(etlmon_high) {}
 };
 
 /// The distance to the float32 rows is in [low, high]; `measured` is reported.

@@ -31,8 +31,8 @@ ETLMON_INLINE uint32_t greatest_magnitude(Elements x, uint32_t n) noexcept {
 template <bool Short>
 class RescaledL2 {
  public:
-  RescaledL2(const float* z, const float*, uint32_t dimension) noexcept
-      : z_(z), dimension_(dimension) {}
+  RescaledL2(const float* etlmon_z, const float*, uint32_t etlmon_dimension) noexcept
+      : z_(etlmon_z), dimension_(etlmon_dimension) {}
   static constexpr bool known() noexcept { return true; }
 
   template <class Elements>
@@ -57,8 +57,9 @@ class RescaledL2 {
 template <class Metric>
 class RescaledRoot {
  public:
-  RescaledRoot(const float* z, const float* weights, uint32_t dimension) noexcept
-      : z_(z), weights_(weights), dimension_(dimension) {}
+  RescaledRoot(const float* etlmon_z, const float* etlmon_weights,
+               uint32_t etlmon_dimension) noexcept
+      : z_(etlmon_z), weights_(etlmon_weights), dimension_(etlmon_dimension) {}
   static constexpr bool known() noexcept { return true; }
 
   template <class Elements>
@@ -117,14 +118,14 @@ class RescaledRoot {
 template <class Metric>
 class RescaledDirection {
  public:
-  RescaledDirection(const float* z, const float*, uint32_t dimension) noexcept
-      : z_(z), dimension_(dimension) {
-    const uint32_t greatest = greatest_magnitude(z, dimension);
+  RescaledDirection(const float* etlmon_z, const float*, uint32_t etlmon_dimension) noexcept
+      : z_(etlmon_z), dimension_(etlmon_dimension) {
+    const uint32_t greatest = greatest_magnitude(z_, dimension_);
     if (greatest == 0) return;
     down_ = power_of_two(greatest).down;
     float square = 0.0f;
-    for (uint32_t i = 0; i < dimension; ++i) {
-      const float x = rounded(z[i] * down_);
+    for (uint32_t i = 0; i < dimension_; ++i) {
+      const float x = rounded(z_[i] * down_);
       square += x * x;
     }
     known_ =
@@ -155,8 +156,8 @@ class RescaledDirection {
 template <class Metric, bool Short>
 class Unscaled {
  public:
-  Unscaled(const float* z, const float*, uint32_t dimension) noexcept
-      : z_(z), dimension_(dimension) {}
+  Unscaled(const float* etlmon_z, const float*, uint32_t etlmon_dimension) noexcept
+      : z_(etlmon_z), dimension_(etlmon_dimension) {}
   static constexpr bool known() noexcept { return true; }
   template <class Elements>
   uint32_t row(Elements g) const noexcept {

@@ -47,8 +47,9 @@ class Targets {
 
   constexpr Targets() noexcept = default;
   /// Reads all bytes once, for the checksum.
-  Targets(const uint8_t* bytes, size_t size) noexcept : state_(check(bytes, size)) {
-    if (ready()) rows_ = reinterpret_cast<const float*>(reinterpret_cast<uintptr_t>(bytes));
+  Targets(const uint8_t* etlmon_bytes, size_t etlmon_size) noexcept
+      : state_(check(etlmon_bytes, etlmon_size)) {
+    if (ready()) rows_ = reinterpret_cast<const float*>(reinterpret_cast<uintptr_t>(etlmon_bytes));
   }
 
   constexpr bool ready() const noexcept { return state_ == TargetsState::ready; }

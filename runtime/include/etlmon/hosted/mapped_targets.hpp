@@ -22,9 +22,9 @@ inline namespace ETLMON_BUILD {
 template <class Targets>
 class MappedTargets {
  public:
-  explicit MappedTargets(const char* path) noexcept {
+  explicit MappedTargets(const char* etlmon_path) noexcept {
     // open() of a pipe would wait for a writer.
-    const int file = ::open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    const int file = ::open(etlmon_path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0) {
       error_ = errno;
       return;

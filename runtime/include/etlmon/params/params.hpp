@@ -173,8 +173,9 @@ class Params {
 
   constexpr Params() noexcept = default;
   /// Reads all bytes once.
-  Params(const uint8_t* bytes, size_t size) noexcept : state_(check(bytes, size)) {
-    if (ready()) numbers_ = as_floats(bytes);
+  Params(const uint8_t* etlmon_bytes, size_t etlmon_size) noexcept
+      : state_(check(etlmon_bytes, etlmon_size)) {
+    if (ready()) numbers_ = as_floats(etlmon_bytes);
   }
 
   constexpr bool ready() const noexcept { return state_ == ParamsState::ready; }

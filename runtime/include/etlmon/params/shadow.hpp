@@ -22,7 +22,7 @@ template <class Monitor, class Inputs, class Verdicts, uint32_t monitors>
 class Shadow {
  public:
   constexpr Shadow() noexcept = default;
-  constexpr explicit Shadow(const Monitor& active) noexcept : active_(active) {}
+  constexpr explicit Shadow(const Monitor& etlmon_active) noexcept : active_(etlmon_active) {}
 
   /// The active monitor and the candidate. Call restart_M() and the like on both.
   Monitor& active() noexcept { return active_; }

@@ -17,7 +17,7 @@ class Lazy {
   using Result = decltype(static_cast<const Find*>(nullptr)->operator()());
 
  public:
-  explicit Lazy(Find find) noexcept : find_(find) {}
+  explicit Lazy(Find etlmon_find) noexcept : find_(etlmon_find) {}
   Lazy(const Lazy&) = delete;
   Lazy& operator=(const Lazy&) = delete;
 

@@ -144,8 +144,12 @@ template <class Sense, class Reading>
 void pending_at_each(const typename detail::As<Reading>::Type* f, const Reading* g, Reading* out,
                      uint32_t n, uint32_t low, uint32_t high,
                      decltype(Reading::lower) unseen) noexcept {
-  const auto gain = [](Reading a, Reading b) noexcept { return Sense::gain(a, b); };
-  const auto keep = [](Reading a, Reading b) noexcept { return Sense::keep(a, b); };
+  const auto gain = [](Reading etlmon_a, Reading etlmon_b) noexcept {
+    return Sense::gain(etlmon_a, etlmon_b);
+  };
+  const auto keep = [](Reading etlmon_a, Reading etlmon_b) noexcept {
+    return Sense::keep(etlmon_a, etlmon_b);
+  };
   Reading beyond = Sense::template nothing<Reading>();
   Sense::open_end(beyond) = unseen;
   for (uint32_t p = 0; p < n; ++p)
@@ -170,7 +174,7 @@ BasicReading<Value> pending_from_start(Value& best, Value& held,
                                        const BasicReading<Value>* g, uint32_t n, uint32_t step,
                                        uint32_t horizon, uint32_t low, uint32_t high,
                                        typename Lattice<Value>::End unseen) noexcept {
-  const auto open = [&](uint32_t position) { return low <= position && position <= high; };
+  const auto open = [&](uint32_t etlmon_at) { return low <= etlmon_at && etlmon_at <= high; };
   uint32_t p = 0;
   uint32_t position = step + 1 - n;
   if (step >= horizon) {

@@ -92,7 +92,7 @@ namespace detail {
 template <class Sink>
 class IncidentWriter {
  public:
-  explicit IncidentWriter(Sink& sink) noexcept : sink_(sink) {}
+  explicit IncidentWriter(Sink& etlmon_sink) noexcept : sink_(etlmon_sink) {}
 
   void byte(uint8_t x) {
     block_[count_++] = x;
@@ -165,7 +165,7 @@ class RecorderIn {
  public:
   constexpr RecorderIn() noexcept { end_episode(); }
   /// Uses storage whose sizes are known at run time.
-  explicit RecorderIn(Storage&& storage) noexcept : kept_(static_cast<Storage&&>(storage)) {
+  explicit RecorderIn(Storage&& etlmon_kept) noexcept : kept_(static_cast<Storage&&>(etlmon_kept)) {
     end_episode();
   }
 

@@ -32,13 +32,13 @@ struct SourcedKey {
   int64_t order;
 
   SourcedKey() noexcept = default;
-  constexpr SourcedKey(Key key, Rank rank) noexcept
-      : order(
-            static_cast<int64_t>(static_cast<uint64_t>(static_cast<uint32_t>(key)) << 32 | rank)) {}
-  constexpr SourcedKey(Key key) noexcept
-      : SourcedKey(key, key == kTop      ? kUnseen + kItself
-                        : key == kBottom ? kUnseen - kItself - 1
-                                         : kUnseen) {}
+  constexpr SourcedKey(Key etlmon_key, Rank etlmon_rank) noexcept
+      : order(static_cast<int64_t>(static_cast<uint64_t>(static_cast<uint32_t>(etlmon_key)) << 32 |
+                                   etlmon_rank)) {}
+  constexpr SourcedKey(Key etlmon_key) noexcept
+      : SourcedKey(etlmon_key, etlmon_key == kTop      ? kUnseen + kItself
+                               : etlmon_key == kBottom ? kUnseen - kItself - 1
+                                                       : kUnseen) {}
   static constexpr SourcedKey of(int64_t order) noexcept {
     SourcedKey result(0);
     result.order = order;
@@ -58,9 +58,9 @@ struct Sourced {
   SourcedKey high;
 
   Sourced() noexcept = default;
-  constexpr Sourced(SourcedKey low_end, SourcedKey high_end) noexcept
-      : low(low_end), high(high_end) {}
-  constexpr Sourced(Value value) noexcept : low(value.low), high(value.high) {}
+  constexpr Sourced(SourcedKey etlmon_low, SourcedKey etlmon_high) noexcept
+      : low(etlmon_low), high(etlmon_high) {}
+  constexpr Sourced(Value etlmon_value) noexcept : low(etlmon_value.low), high(etlmon_value.high) {}
 };
 static_assert(sizeof(Sourced) == 16 && alignof(Sourced) == 4, "twice a value");
 
@@ -93,7 +93,8 @@ struct SourcedRegister {
   struct End {
     uint64_t order;
     End() noexcept = default;
-    constexpr End(Key key) noexcept : order(static_cast<uint64_t>(SourcedKey(key).order)) {}
+    constexpr End(Key etlmon_key) noexcept
+        : order(static_cast<uint64_t>(SourcedKey(etlmon_key).order)) {}
     constexpr operator SourcedKey() const noexcept {
       return SourcedKey::of(static_cast<int64_t>(order));
     }

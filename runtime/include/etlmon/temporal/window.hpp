@@ -131,8 +131,8 @@ typename Ends::Element window_push_highs(const typename Ends::Element* lows,
   constexpr uint32_t kNowhere = Parting::kNowhere;
   const bool odd = n % 2 != 0;
   const uint32_t places = n & ~uint32_t{1};
-  const auto suffix = [&](uint32_t slot) noexcept {
-    return (parting.oldest == kNowhere ? lows : highs)[2 + slot];
+  const auto suffix = [&](uint32_t etlmon_slot) noexcept {
+    return (parting.oldest == kNowhere ? lows : highs)[2 + etlmon_slot];
   };
   const auto middle = [&]() noexcept { return (parting.middle == kNowhere ? lows : highs)[0]; };
 
