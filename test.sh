@@ -29,7 +29,7 @@ failed=0
 run_tests() {
     local log=build/$1/ctest.log total bad
     ctest --test-dir "build/$1" --parallel "$(nproc)" --output-on-failure \
-        --no-tests=error --timeout 900 >"$log" 2>&1 || cat "$log"
+        --no-tests=error --timeout 1200 >"$log" 2>&1 || cat "$log"
     read -r bad total < <(
         sed -nE 's/.*tests passed, ([0-9]+) tests failed out of ([0-9]+)/\1 \2/p' "$log"
     ) || { bad=1 total=1; }

@@ -42,7 +42,8 @@ sliding monitor Status = F[0, 3] (far * far > 1 S[1, 4] min l2([near, far], inte
 END
 cp "$source/tests/spec/ok/adaptive.etl" "$source/tests/spec/ok/adaptive.thresholds.json" .
 limits=(--max-state 16777216 --max-code 16777216 --max-work 67108864)
-forms=(plain boolean explained recorded narrow retargeted alone)
+# Each line is compiled as one source: a standalone header has a runtime of its own.
+groups=('plain boolean explained recorded narrow retargeted' alone)
 header() {  # FORM OPTION...
     "$etlc" all.etl "${limits[@]}" --namespace "$1::small" -o "$1.hpp" "${@:2}" 2>words.txt ||
         { cat words.txt; fail "$1"; }
@@ -113,31 +114,33 @@ cat >platform.h <<'END'
 #define foreach(a, b) for (a : b)
 #define forever for (;;)
 END
-for form in "${forms[@]}" stored; do
-    cat >use.cpp <<END
-#include "platform.h"
-#include "$form.hpp"
+letters=()
+for letter in {A..Z}; do letters+=("-D$letter=1"); done
+for forms in "${groups[@]}"; do
+    [ "$forms" = alone ] || forms+=" stored"
+    # shellcheck disable=SC2086
+    {
+        echo '#include "platform.h"'
+        printf '#include "%s.hpp"\n' $forms
+        cat <<'END'
 small initial_of(interface Point);
 interface Point { small near letter; };
 #if B101 != 5 || Always != 2 || !defined(slots) || !defined(far) || !defined(foreach)
 #error "a macro is gone"
 #endif
 END
+    } >use.cpp
     for compiler in "$@"; do
         "$compiler" -std=c++17 -Wall -Wextra -Werror -I "$runtime" -fsyntax-only use.cpp ||
-            fail "$compiler: $form.hpp among the macros of a platform"
+            fail "$compiler: a header among the macros of a platform"
     done
-done
 
-# ---- a program that has every single capital letter as a macro
-
-letters=()
-for letter in {A..Z}; do letters+=("-D$letter=1"); done
-for form in "${forms[@]}" stored; do
-    echo "#include \"$form.hpp\"" >use.cpp
+    # A program that has every single capital letter as a macro.
+    # shellcheck disable=SC2086
+    printf '#include "%s.hpp"\n' $forms >use.cpp
     for compiler in "$@"; do
         "$compiler" "${letters[@]}" -std=c++17 -Wall -Wextra -Werror -I "$runtime" -fsyntax-only \
-            use.cpp || fail "$compiler: $form.hpp where capital letters are macros"
+            use.cpp || fail "$compiler: a header where capital letters are macros"
     done
 done
 
@@ -153,20 +156,22 @@ done
 
 # ---- at namespace scope
 
-for form in "${forms[@]}" adaptive; do
-    space=$form
-    [ "$form" = adaptive ] || space=$form::small
-    {
+for forms in "${groups[@]}"; do
+    [ "$forms" = alone ] || forms+=" adaptive"
+    for form in $forms; do
+        space=$form
+        [ "$form" = adaptive ] || space=$form::small
         echo "#include \"$form.hpp\""
         [ "$form" != retargeted ] || echo "AT_COMPILE_TIME $space::Shadow shadow;"
-        echo "AT_COMPILE_TIME $space::Monitor monitor;"
-    } >global.cpp
+        echo "AT_COMPILE_TIME $space::Monitor monitor_$form;"
+    done >global.cpp
     for compiler in "$@"; do
         "$compiler" -std=c++20 -DAT_COMPILE_TIME=constinit -Wall -Wextra -Werror -I "$runtime" \
-            -fsyntax-only global.cpp || fail "$compiler: $form is not initialised at compile time"
+            -fsyntax-only global.cpp ||
+            fail "$compiler: a monitor is not initialised at compile time"
         "$compiler" -std=c++17 -DAT_COMPILE_TIME= -O0 -I "$runtime" -c global.cpp -o global.o
         if objdump -h global.o | grep -E '\.init_array|\.ctors'; then
-            fail "$compiler: $form is initialised by code"
+            fail "$compiler: a monitor is initialised by code"
         fi
     done
     for prefix in arm-none-eabi- riscv64-unknown-elf-; do
@@ -177,30 +182,31 @@ for form in "${forms[@]}" adaptive; do
         "${prefix}g++" "${flags[@]}" -std=c++17 -DAT_COMPILE_TIME= -Os -ffreestanding \
             -fno-exceptions -fno-rtti -I "$runtime" -c global.cpp -o global.o
         if "${prefix}objdump" -h global.o | grep -E '\.init_array|\.ctors'; then
-            fail "$prefix: $form is initialised by code"
+            fail "$prefix: a monitor is initialised by code"
         fi
     done
 done
 
 # ---- the same as one made at run time, and as one that was reset
 
-for form in "${forms[@]}"; do
-    cat >same.cpp <<END
+for forms in "${groups[@]}"; do
+    cat >same.cpp <<'END'
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <new>
 
-#include "$form.hpp"
-namespace small = $form::small;
-small::Monitor global;
+END
+    printf '#include "%s.hpp"\n' $forms >>same.cpp
+    cat >>same.cpp <<'END'
 unsigned state = 1;
 float number() {
     state = state * 1664525u + 1013904223u;
     return static_cast<float>(state >> 20) / 1024.0f - 2.0f;
 }
-small::Inputs inputs(float (&z)[2]) {
-    small::Inputs in;
+template <class Inputs>
+Inputs inputs(float (&z)[2]) {
+    Inputs in;
     if (number() > -1.5f) in.near = number();
     if (number() > -1.5f) in.far = number();
     if (number() > -1.5f) in.slots = number() > 0;
@@ -210,28 +216,39 @@ small::Inputs inputs(float (&z)[2]) {
     if (number() > -1.5f) in.hyper = z;
     return in;
 }
-int main() {
-    alignas(small::Monitor) static unsigned char room[sizeof(small::Monitor)];
+template <class Monitor, class Inputs>
+bool are_same(const char* form, Monitor& global) {
+    alignas(Monitor) static unsigned char room[sizeof(Monitor)];
     std::memset(room, 0xa5, sizeof room);
-    small::Monitor& made = *new (room) small::Monitor;
-    if (std::memcmp(&global, &made, small::Monitor::kStateBytes) != 0) return 1;
+    Monitor& made = *new (room) Monitor;
+    if (std::memcmp(&global, &made, Monitor::kStateBytes) != 0) return false;
     for (int episode = 0; episode < 30; ++episode) {
-        small::Monitor fresh;
+        Monitor fresh;
         float z[2];
         for (int step = 0; step < 60; ++step) {
-            const small::Inputs in = inputs(z);
+            const Inputs in = inputs<Inputs>(z);
             const auto expected = named(fresh.step(in));
             const auto found = named(made.step(in));
             if (step % 17 == 16) fresh.restart_signals(), made.restart_signals();
             for (std::size_t m = 0; m < sizeof expected.entries / sizeof *expected.entries; ++m)
                 if (std::memcmp(&expected.entries[m].verdict, &found.entries[m].verdict,
                                 sizeof expected.entries[m].verdict) != 0)
-                    return std::printf("%d %d %s\n", episode, step, expected.entries[m].name);
+                    return std::printf("%s %d %d %s\n", form, episode, step,
+                                       expected.entries[m].name), false;
         }
         made.reset();
     }
+    return true;
 }
 END
+    for form in $forms; do echo "$form::small::Monitor monitor_$form;"; done >>same.cpp
+    echo 'int main() {' >>same.cpp
+    for form in $forms; do
+        cat <<END
+    if (!are_same<$form::small::Monitor, $form::small::Inputs>("$form", monitor_$form)) return 1;
+END
+    done >>same.cpp
+    echo '}' >>same.cpp
     "$1" -std=c++17 -O1 -I "$runtime" same.cpp -o same
-    ./same || fail "$form: constructed, and reset, monitors differ"
+    ./same || fail "constructed, and reset, monitors differ"
 done

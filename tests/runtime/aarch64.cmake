@@ -33,4 +33,4 @@ add_custom_command(OUTPUT test_kernels_aarch64
 add_custom_target(kernels_aarch64 ALL DEPENDS test_kernels_aarch64)
 add_test(NAME test_kernels_aarch64
   COMMAND ${ETLC_QEMU_AARCH64} ${CMAKE_CURRENT_BINARY_DIR}/test_kernels_aarch64 --gtest_brief=1)
-set_tests_properties(test_kernels_aarch64 PROPERTIES TIMEOUT 600 COST 90)
+set_tests_properties(test_kernels_aarch64 PROPERTIES COST 90)

@@ -93,5 +93,5 @@ foreach(compiler IN LISTS kernel_compilers)
   get_filename_component(name ${compiler} NAME)
   add_test(NAME runtime_headers.${name}
     COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/headers.sh ${PROJECT_SOURCE_DIR} ${compiler})
-  set_tests_properties(runtime_headers.${name} PROPERTIES TIMEOUT 900 COST 50)
+  set_tests_properties(runtime_headers.${name} PROPERTIES COST 50)
 endforeach()
