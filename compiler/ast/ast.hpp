@@ -334,50 +334,14 @@ struct Monitor {
 using Declaration = std::variant<Rate, Constant, Encoder, Input, Projection, Target, Predicate,
                                  Truth, Let, Monitor>;
 
-/// The names in a declaration that may stand for numbers.
-struct Amounts {
-    bool any = false;                   ///< some name stands where only a number may
-    std::vector<std::string> operands;  ///< names in expressions, of inputs or constants
-};
-
-/// A declaration. Trees of several states of a text share it as long as none changes it.
-class SharedDeclaration {
-public:
-    SharedDeclaration(Declaration declaration, Amounts amounts)
-        : content_(std::make_shared<Content>(std::move(declaration), std::move(amounts))) {}
-
-    const Declaration& operator*() const { return content_->declaration; }
-    operator const Declaration&() const { return **this; }
-    const Amounts& amounts() const { return content_->amounts; }
-    /// Returns the declaration, or a copy of it if others share it, to change it.
-    Declaration& changed() {
-        if (content_.use_count() > 1) content_ = std::make_shared<Content>(*content_);
-        return content_->declaration;
-    }
-
-private:
-    struct Content {
-        Content(Declaration written, Amounts named)
-            : declaration(std::move(written)), amounts(std::move(named)) {}
-        Declaration declaration;
-        Amounts amounts;
-    };
-    std::shared_ptr<Content> content_;
-};
-
 struct Spec {
     Name name;  ///< empty if missing or unreadable, which has been reported
-    std::vector<SharedDeclaration> declarations;
+    std::vector<Declaration> declarations;
     /// Names in declarations that could not be read. check/ takes them as declared, so that one
     /// broken line does not make every use of its name an error. The reserved word `rate` stands
     /// for a `rate` or `period` declaration.
     std::vector<Name> unreadable;
 };
-
-/// Moves all spans of a declaration by `bytes`, where what is before it in the file grew by them.
-void shift(Declaration& declaration, std::int64_t bytes);
-/// The same for a name.
-void shift(Name& name, std::int64_t bytes);
 
 /// Prints a spec in canonical form, one declaration a line, for `--emit ast`; parsing the text
 /// gives the same tree.

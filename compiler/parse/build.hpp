@@ -20,8 +20,8 @@ public:
     explicit Builder(const source::File& file) : file_(file) {}
 
     /// Returns the name in `spec NAME;`, or the declaration.
-    std::variant<ast::Name, ast::SharedDeclaration> declaration(
-        Grammar::DeclarationContext& context);
+    std::variant<ast::Name, ast::Declaration> declaration(
+        Grammar::DeclarationContext& context) const;
 
 private:
     ast::Declaration built(Grammar::DeclarationContext& context) const;
@@ -99,6 +99,9 @@ private:
     Formula formula(Grammar::BinaryTemporalContext& context) const;
     Formula formula(Grammar::PrefixedContext& context) const;
     Formula formula(Grammar::ComparisonContext& context) const;
+    Formula formula(Grammar::UnsignedContext& context) const;
+    /// Returns a delay as text, in which a number alone has the unit of steps.
+    std::string written_time(Grammar::DelayContext& context) const;
     Formula formula(Grammar::PrimaryContext& context) const;
     template <class Operand>
     Formula n_ary(const ParserRuleContext& context) const;
@@ -124,7 +127,6 @@ private:
     [[noreturn]] static void too_high(source::Span span);
 
     const source::File& file_;
-    mutable ast::Amounts amounts_;  ///< of the declaration so far
 };
 
 }  // namespace etlc::parse

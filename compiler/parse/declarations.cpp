@@ -22,13 +22,11 @@ source::Span last_part(const Grammar::DeclarationContext& context) {
 
 }  // namespace
 
-std::variant<ast::Name, ast::SharedDeclaration> Builder::declaration(
-    Grammar::DeclarationContext& context) {
+std::variant<ast::Name, ast::Declaration> Builder::declaration(
+    Grammar::DeclarationContext& context) const {
     if (auto* const d = dynamic_cast<Grammar::SpecDeclarationContext*>(&context))
         return name(*d->name());
-    amounts_ = {};
-    ast::Declaration declaration = built(context);
-    return ast::SharedDeclaration(std::move(declaration), std::move(amounts_));
+    return built(context);
 }
 
 ast::Declaration Builder::built(Grammar::DeclarationContext& context) const {
@@ -332,7 +330,6 @@ ast::Name Builder::name(const Grammar::NameContext& context) const {
 }
 
 ast::Number Builder::number(const Token& token) const {
-    amounts_.any = amounts_.any || is_name(token);
     return {text(token), span_of(token), is_name(token) ? text(token) : ""};
 }
 

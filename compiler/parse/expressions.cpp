@@ -136,7 +136,6 @@ Builder::Expression Builder::expression(Grammar::PrimaryContext& context) const 
     if (dynamic_cast<Grammar::NumberPrimaryContext*>(&context) != nullptr)
         result->kind = ExprKind::number;
     result->text = text(context);
-    if (result->kind == ExprKind::name) amounts_.operands.push_back(result->text);
     return {std::move(result), 1};
 }
 
@@ -172,7 +171,6 @@ Builder::Expression Builder::variadic(Grammar::VariadicFunctionPrimaryContext& c
         fail(diag::Code::past_form, span_of(*arguments[1]),
              fmt::format("expected a time, as in '{}(x, 2 s)'", word));
     const bool is_name = time.root->kind == ExprKind::name;
-    amounts_.any = amounts_.any || is_name;
     ast::Bound bound{
         {time.root->text, time.root->span, is_name ? time.root->text : ""},
         units.empty() ? "" : unit(*units[0]),

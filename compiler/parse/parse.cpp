@@ -6,8 +6,6 @@
 
 #include "parse/build.hpp"
 #include "parse/foreign/foreign.hpp"
-#include "parse/memory.hpp"
-#include "parse/stream/known.hpp"
 #include "parse/stream/slices.hpp"
 #include "parse/stream/tokens.hpp"
 #include "parse/syntax_error.hpp"
@@ -24,15 +22,12 @@ namespace {
 /// Reads one file, one declaration at a time.
 class Reader {
 public:
-    /// `tokens`: gives those of the file; `known`: of an earlier state, or null.
-    Reader(const source::File& file, diag::Sink& sink, KnownTokens& tokens, KnownSlices* known)
-        : file_(file), sink_(sink), builder_(file), tokens_of_(tokens), known_(known) {}
+    Reader(const source::File& file, diag::Sink& sink) : file_(file), sink_(sink), builder_(file) {}
 
     ast::Spec read() {
         if (!is_text()) return {};
-        tokens_ = &tokens_of_.of(file_);
-        for (const Slice& slice : slices_of(*tokens_)) read(slice);
-        if (known_ != nullptr) *known_ = std::move(read_);
+        tokens_ = tokens_of(file_);
+        for (const Slice& slice : slices_of(tokens_)) read(slice);
         report_errors();
         report_missing_spec();
         return std::move(spec_);
@@ -74,7 +69,7 @@ private:
         const Token& first = token(slice.begin);
         const bool is_spec = first.getType() == Grammar::SPEC;
         try {
-            add(said(slice), span_of(first));
+            add(parsed(slice), span_of(first));
         } catch (SyntaxError& error) {
             errors_.push_back(std::move(error));
             add_unreadable(slice);
@@ -87,18 +82,7 @@ private:
     /// Thrown for a declaration whose error has already been reported.
     struct Unexplained {};
 
-    Said said(Slice slice) {
-        if (known_ == nullptr) return parsed(slice);
-        const source::Span span =
-            source::join(span_of(token(slice.begin)), span_of(token(slice.end - 1)));
-        const std::string_view text = file_.text(span);
-        if (auto found = read_.take(text, span.begin, *known_)) return std::move(*found);
-        Said result = parsed(slice);
-        read_.add(text, span.begin, result);
-        return result;
-    }
-
-    const Token& token(std::size_t i) const { return *(*tokens_)[i]; }
+    const Token& token(std::size_t i) const { return *tokens_[i]; }
 
     void refuse_mistakes(Slice slice) const {
         for (std::size_t i = slice.begin; i < slice.end; ++i) {
@@ -116,7 +100,7 @@ private:
     }
 
     void refuse_deep_nesting(Slice slice) const {
-        const std::optional<std::size_t> at = too_deep_at(*tokens_, slice);
+        const std::optional<std::size_t> at = too_deep_at(tokens_, slice);
         if (!at) return;
         Diagnostic error{
             Code::nesting_too_deep,
@@ -126,18 +110,19 @@ private:
         throw SyntaxError{std::move(error)};
     }
 
-    Said parsed(Slice slice) {
+    /// Returns the name in `spec NAME;`, or a declaration.
+    std::variant<ast::Name, ast::Declaration> parsed(Slice slice) const {
         refuse_mistakes(slice);
         refuse_deep_nesting(slice);
-        SliceStream stream(*tokens_, slice);
+        SliceStream stream(tokens_, slice);
         Grammar parser(&stream);
         parser.removeErrorListeners();
-        parser.setErrorHandler(std::make_shared<Strategy>(file_, *tokens_, slice));
+        parser.setErrorHandler(std::make_shared<Strategy>(file_, tokens_, slice));
         return builder_.declaration(*parser.declaration());
     }
 
-    void add(Said read, source::Span first) {
-        if (auto* const declaration = std::get_if<ast::SharedDeclaration>(&read)) {
+    void add(std::variant<ast::Name, ast::Declaration> read, source::Span first) {
+        if (auto* const declaration = std::get_if<ast::Declaration>(&read)) {
             spec_.declarations.push_back(std::move(*declaration));
             return;
         }
@@ -212,10 +197,7 @@ private:
     const source::File& file_;
     diag::Sink& sink_;
     Builder builder_;
-    KnownTokens& tokens_of_;
-    KnownSlices* known_;  ///< of the last state
-    KnownSlices read_;    ///< of this one
-    const Tokens* tokens_ = nullptr;
+    Tokens tokens_;
     ast::Spec spec_;
     std::vector<SyntaxError> errors_;
     bool spec_seen_ = false;
@@ -224,26 +206,7 @@ private:
 }  // namespace
 
 ast::Spec parse(const source::File& file, diag::Sink& sink) {
-    KnownTokens tokens;
-    return Reader(file, sink, tokens, nullptr).read();
-}
-
-struct Memory::Content {
-    KnownTokens tokens;
-    KnownSlices slices;
-};
-
-Memory::Memory() : content_(std::make_unique<Content>()) {}
-Memory::Memory(Memory&&) noexcept = default;
-Memory& Memory::operator=(Memory&&) noexcept = default;
-Memory::~Memory() = default;
-
-ast::Spec Memory::parse(const source::File& file, diag::Sink& sink) {
-    return Reader(file, sink, content_->tokens, &content_->slices).read();
-}
-
-std::vector<Word> Memory::words_of(const source::File& file) {
-    return parse::words_of(content_->tokens.of(file), file);
+    return Reader(file, sink).read();
 }
 
 }  // namespace etlc::parse

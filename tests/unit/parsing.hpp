@@ -36,7 +36,7 @@ struct Parsed {
 inline std::string tree_of_formula(const std::string& formula) {
     const Parsed parsed("spec a; let f = " + formula + ";");
     if (parsed.sink.has_errors()) return parsed.errors();
-    return tree_text::of(*std::get<ast::Let>(*parsed.spec.declarations.at(0)).formula);
+    return tree_text::of(*std::get<ast::Let>(parsed.spec.declarations.at(0)).formula);
 }
 
 /// Returns the tree of one declaration, or its errors.
@@ -50,7 +50,7 @@ inline std::string tree_of_declaration(const std::string& declaration) {
 inline std::string tree_of_expression(const std::string& expression) {
     const Parsed parsed("spec a; predicate p = " + expression + " < 1;");
     if (parsed.sink.has_errors()) return parsed.errors();
-    return tree_text::of(*std::get<ast::Predicate>(*parsed.spec.declarations.at(0)).expression);
+    return tree_text::of(*std::get<ast::Predicate>(parsed.spec.declarations.at(0)).expression);
 }
 
 }  // namespace etlc

@@ -54,7 +54,7 @@ TEST(Declarations, StandInFileOrderWithTheirSpans) {
     const Parsed parsed("spec a;\nlet g = p;  // g\nrate 20 Hz;\n/* no */ let f = (p) && q ;");
     EXPECT_EQ(parsed.errors(), "");
     EXPECT_EQ(parsed.tree(), "spec a\n(let g p)\n(rate 20 Hz)\n(let f (&& p q))\n");
-    const auto& f = std::get<ast::Let>(*parsed.spec.declarations[2]);
+    const auto& f = std::get<ast::Let>(parsed.spec.declarations[2]);
     EXPECT_EQ(parsed.file.text(f.span), "let f = (p) && q");
     EXPECT_EQ(parsed.file.text(f.formula->span), "(p) && q");
     EXPECT_EQ(parsed.file.text(f.formula->operator_span), "&&");
@@ -66,7 +66,7 @@ TEST(Declarations, SpansInsideDistances) {
     const Parsed parsed(
         "spec a; predicate p = kth(2) mahalanobis(load(\"w.npz\", \"k\"))([x, y], t) - 1 <= -2;");
     ASSERT_EQ(parsed.errors(), "");
-    const auto& p = std::get<ast::Predicate>(*parsed.spec.declarations[0]);
+    const auto& p = std::get<ast::Predicate>(parsed.spec.declarations[0]);
     const auto text = [&parsed](source::Span span) { return std::string(parsed.file.text(span)); };
     EXPECT_EQ(text(p.expression->span),
               "kth(2) mahalanobis(load(\"w.npz\", \"k\"))([x, y], t) - 1");

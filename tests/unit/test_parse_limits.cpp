@@ -77,7 +77,7 @@ TEST(Limits, SiblingsDoNotNest) {
 TEST(Limits, LongConjunctionsAreOneNode) {
     const Parsed parsed(formula(repeated("a && ", 99999) + "a"));
     ASSERT_EQ(parsed.errors(), "");
-    EXPECT_EQ(std::get<ast::Let>(*parsed.spec.declarations[0]).formula->operands.size(), 100000U);
+    EXPECT_EQ(std::get<ast::Let>(parsed.spec.declarations[0]).formula->operands.size(), 100000U);
 }
 
 TEST(Limits, ChainsThatNestToTheLeft) {

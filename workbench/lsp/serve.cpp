@@ -2,8 +2,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstdint>
-#include <cstdlib>
 
 #include "data/files/descriptor.hpp"
 #include "lsp/lsp.hpp"
@@ -16,8 +14,6 @@ namespace {
 
 /// How long the client has to be quiet before its monitors are planned, in milliseconds.
 constexpr int kPause = 250;
-
-enum class Ready : std::uint8_t { input, plan, nothing, broken };
 
 class Service {
 public:
@@ -33,32 +29,24 @@ public:
                 if (const auto status = session_.exit_status()) return *status;
             }
             // Read waiting messages before the present state is analysed.
-            Ready ready = wait(0);
-            if (ready == Ready::nothing) {
+            bool ready = has_input(0);
+            if (!ready) {
                 session_.catch_up();
-                ready = wait(session_.has_idle_work() ? kPause : -1);
+                ready = has_input(session_.has_idle_work() ? kPause : -1);
             }
-            if (ready == Ready::nothing)
+            if (!ready)
                 session_.do_idle_work();
-            else if (ready == Ready::plan)
-                session_.take_plan();
             else if (!read_some())
                 return end();
         }
         return 1;
     }
 
-    bool is_planning() const { return session_.is_planning(); }
-
 private:
-    /// Waits for input first of all.
-    Ready wait(int milliseconds) {
-        std::array<pollfd, 2> descriptors{{{in_, POLLIN, 0}, {session_.has_plan(), POLLIN, 0}}};
-        const int ready = data::uninterrupted(
-            [&] { return ::poll(descriptors.data(), descriptors.size(), milliseconds); });
-        if (ready < 0) return Ready::broken;
-        if (ready == 0) return Ready::nothing;
-        return descriptors[0].revents != 0 ? Ready::input : Ready::plan;
+    /// Waits for input, for so many milliseconds or, below zero, without end.
+    bool has_input(int milliseconds) const {
+        pollfd input{in_, POLLIN, 0};
+        return data::uninterrupted([&] { return ::poll(&input, 1, milliseconds); }) != 0;
     }
 
     /// Reads some input; false at its end.
@@ -72,7 +60,7 @@ private:
     }
 
     int end() {
-        session_.end();
+        session_.catch_up();
         return can_write_ ? session_.status_at_end() : 1;
     }
 
@@ -85,12 +73,7 @@ private:
 }  // namespace
 
 int serve(int in, int out) {
-    Service service(in, out);
-    const int status = service.run();
-    // A plan in work cannot be stopped, and nobody waits for it. Its thread must not see how the
-    // process ends.
-    if (service.is_planning()) std::_Exit(status);
-    return status;
+    return Service(in, out).run();
 }
 
 }  // namespace etlc::lsp

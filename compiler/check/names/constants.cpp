@@ -230,27 +230,13 @@ private:
 
 }  // namespace
 
-namespace {
-
-/// Whether a declaration may have names of constants, right or wrong ones.
-bool has_constants(const Context& c, const ast::Amounts& amounts) {
-    return amounts.any ||
-           std::any_of(amounts.operands.begin(), amounts.operands.end(),
-                       [&](const std::string& name) {
-                           const Reference* const meant = c.scope.find(name);
-                           return meant != nullptr && meant->kind == NameKind::constant;
-                       });
-}
-
-}  // namespace
-
 void set_constants(Context& c, ast::Spec& spec) {
     std::vector<ast::Constant*> constants;
-    for (ast::SharedDeclaration& declaration : spec.declarations) {
+    for (ast::Declaration& declaration : spec.declarations) {
         for_each_name(declaration,
                       [&](NameKind kind, const ast::Name& name) { c.scope.declare(kind, name); });
-        if (std::holds_alternative<ast::Constant>(*declaration))
-            constants.push_back(&std::get<ast::Constant>(declaration.changed()));
+        if (auto* const constant = std::get_if<ast::Constant>(&declaration))
+            constants.push_back(constant);
     }
     for (const ast::Name& name : spec.unreadable) c.scope.declare(NameKind::unreadable, name);
     c.model.constants.resize(constants.size());
@@ -261,19 +247,19 @@ void set_constants(Context& c, ast::Spec& spec) {
     }
 
     Replacement replacement(c, constants);
-    const auto is_broken = [&](ast::SharedDeclaration& declaration) {
-        if (!has_constants(c, declaration.amounts())) return false;
-        if (replacement.in(declaration.changed())) return false;
+    std::vector<ast::Declaration> sound;
+    std::vector<bool> is_sound;  // `constants` points to the declarations, which stay until the end
+    for (ast::Declaration& declaration : spec.declarations) {
+        is_sound.push_back(replacement.in(declaration));
+        if (is_sound.back()) continue;
         for_each_name(declaration, [&](NameKind /*kind*/, const ast::Name& name) {
             spec.unreadable.push_back(name);
         });
         c.incomplete = true;
-        return true;
-    };
-    // `constants` is invalid from here on.
-    spec.declarations.erase(
-        std::remove_if(spec.declarations.begin(), spec.declarations.end(), is_broken),
-        spec.declarations.end());
+    }
+    for (std::size_t i = 0; i < is_sound.size(); ++i)
+        if (is_sound[i]) sound.push_back(std::move(spec.declarations[i]));
+    spec.declarations = std::move(sound);
     c.scope = {};  // declare_names builds it from the remaining declarations
 }
 

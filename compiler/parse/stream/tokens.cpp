@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <iterator>
 
 #include "EtlLexer.h"
 #include "source/utf8.hpp"
@@ -50,87 +49,18 @@ private:
     std::size_t at_ = 0;
 };
 
-/// Lexes a text from some place between two tokens on.
-class TokensFrom {
-public:
-    TokensFrom(std::string_view text, std::size_t at) : bytes_(text), lexer_(&bytes_) {
-        bytes_.seek(at);
-        lexer_.removeErrorListeners();  // every byte begins some token, so the lexer has no errors
-    }
-
-    /// Returns EOF at the end.
-    std::unique_ptr<Token> next() { return lexer_.nextToken(); }
-
-private:
-    ByteStream bytes_;
-    EtlLexer lexer_;
-};
-
-/// Returns the place of the first token or blank.
-std::size_t beginning(std::string_view text) {
-    return text.starts_with(source::kByteOrderMark) ? source::kByteOrderMark.size() : 0;
-}
-
-std::size_t end_of(const Token& token) {
-    return token.getStopIndex() + 1;
-}
-
-void shift(Token& token, std::size_t by) {  // `by` wraps around for a shift to the left
-    auto& common = static_cast<antlr4::CommonToken&>(token);
-    common.setStartIndex(token.getStartIndex() + by);
-    common.setStopIndex(token.getStopIndex() + by);
-}
-
 }  // namespace
 
 Tokens tokens_of(const source::File& file) {
-    TokensFrom from(file.text(), beginning(file.text()));
+    const std::string_view text = file.text();
+    ByteStream bytes(text);
+    if (text.starts_with(source::kByteOrderMark)) bytes.seek(source::kByteOrderMark.size());
+    EtlLexer lexer(&bytes);
+    lexer.removeErrorListeners();  // every byte begins some token, so the lexer has no errors
     Tokens tokens;
-    do tokens.push_back(from.next());
+    do tokens.push_back(lexer.nextToken());
     while (tokens.back()->getType() != Token::EOF);
     return tokens;
-}
-
-void update(Tokens& tokens, std::string_view before, const source::File& file) {
-    // The lexer reads at most so many bytes behind a token to end it, as in `<--`.
-    constexpr std::size_t kLookedAt = 8;
-    const std::string_view text = file.text();
-    const std::size_t shorter = std::min(text.size(), before.size());
-    const auto same_until =
-        std::mismatch(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(shorter),
-                      before.begin())
-            .first;
-    const auto prefix = static_cast<std::size_t>(same_until - text.begin());
-    const auto same_from =
-        std::mismatch(text.rbegin(), text.rbegin() + static_cast<std::ptrdiff_t>(shorter - prefix),
-                      before.rbegin())
-            .first;
-    const std::size_t suffix = before.size() - static_cast<std::size_t>(same_from - text.rbegin());
-
-    const auto kept_end = std::partition_point(tokens.begin(), tokens.end(), [&](const auto& t) {
-        return t->getType() != Token::EOF && end_of(*t) + kLookedAt <= prefix;
-    });
-    auto rest = std::partition_point(kept_end, tokens.end(),
-                                     [&](const auto& t) { return t->getStartIndex() < suffix; });
-    const std::size_t from =
-        kept_end == tokens.begin() ? beginning(text) : end_of(**(kept_end - 1));
-    const std::size_t grown = text.size() - before.size();  // wraps around where it shrank
-
-    // Once a token begins where one of the same rest began before, all others are the same too.
-    TokensFrom lexer(text, from);
-    Tokens changed;
-    for (;;) {
-        std::unique_ptr<Token> token = lexer.next();
-        const std::size_t start = token->getStartIndex();
-        while (rest != tokens.end() && (**rest).getStartIndex() + grown < start) ++rest;
-        if (rest != tokens.end() && (**rest).getStartIndex() + grown == start) break;
-        changed.push_back(std::move(token));
-        if (changed.back()->getType() == Token::EOF) break;
-    }
-    for (auto at = rest; at != tokens.end(); ++at) shift(**at, grown);
-    const auto gap = tokens.erase(kept_end, rest);
-    tokens.insert(gap, std::make_move_iterator(changed.begin()),
-                  std::make_move_iterator(changed.end()));
 }
 
 Span span_of(const Token& token) {

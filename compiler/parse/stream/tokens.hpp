@@ -23,9 +23,6 @@ using Tokens = std::vector<std::unique_ptr<Token>>;
 
 Tokens tokens_of(const source::File& file);
 
-/// Turns the tokens of the text `before` into those of the file, and lexes only what changed.
-void update(Tokens& tokens, std::string_view before, const source::File& file);
-
 source::Span span_of(const Token& token);
 source::Span span_of(const antlr4::ParserRuleContext& context);
 std::string text_of(const Token& token, const source::File& file);

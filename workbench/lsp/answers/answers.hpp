@@ -1,8 +1,7 @@
 // The answers of the language server, a function for each request of the protocol.
 // Takes: an open document and the parameters of the request. Gives: the result, null where there is
 // none. Throws Refusal where a request cannot be answered. Keeps true: figures are those of the
-// generated header; the same place of a text gives the same answer, unless it is edited before the
-// plan is there.
+// generated header; the same place of a text gives the same answer.
 #pragma once
 
 #include <cstdint>
@@ -21,15 +20,11 @@ struct Client {
     bool hierarchical_symbols = false;
 };
 
-/// Thrown where a request has a better answer once the monitors are planned.
-struct Unplanned {};
-
 /// A request about a document.
 struct Question {
     Document& document;
     const Json& params;
     const Client& client;
-    bool can_wait = false;  ///< for the plan
 
     const Analysis& analysis() const { return document.analysis(); }
     const std::string& uri() const { return document.uri(); }
@@ -40,8 +35,8 @@ struct Question {
 };
 
 /// Answers with the declaration of a name and what is known of it, or with the meaning of a word of
-/// the language. The budget of a monitor waits for the plan. What has an error is shown as it is
-/// written.
+/// the language. For the budget of a monitor it plans the model. What has an error is shown as it
+/// is written.
 Json hover(const Question& question);
 /// Answers with names of the kinds that fit, words that the grammar takes there, and durations that
 /// are whole numbers of steps.

@@ -59,7 +59,7 @@ Json hover(const Question& question) {
         const Declared* const declared = declaration_of(analysis.names(), *at);
         if (declared == nullptr) return nullptr;
         const bool has_budget = declared->kind == check::NameKind::monitor;
-        if (has_budget && question.can_wait && document.needs_plan()) throw Unplanned{};
+        if (has_budget && document.needs_plan()) document.plan();
         const std::vector<std::string> facts =
             declared->kind ? facts_of(analysis, at->name, document.planned())
                            : std::vector<std::string>{};

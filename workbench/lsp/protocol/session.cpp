@@ -103,19 +103,15 @@ void Session::receive(const Json& message) {
     const Json* const params = find(message, "params");
     const auto& name = method->get_ref<const std::string&>();
     if (id != nullptr)
-        answer({*id, name, params != nullptr ? *params : kNone}, true);
+        answer(*id, name, params != nullptr ? *params : kNone);
     else
         take_note(name, params != nullptr ? *params : kNone);
 }
 
-void Session::answer(const Request& request, bool can_wait) {
-    const Json& id = request.id;
+void Session::answer(const Json& id, const std::string& method, const Json& params) {
     try {
-        Json result = result_of(request, can_wait);
+        Json result = result_of(method, params);
         send_({{"jsonrpc", "2.0"}, {"id", id}, {"result", std::move(result)}});
-    } catch (const Unplanned&) {
-        waiting_.push_back(request);
-        begin_plan(document_of(request.params));
     } catch (const Refusal& refusal) {
         respond_error(id, refusal.code, refusal.message);
     } catch (const std::bad_alloc&) {
@@ -125,12 +121,7 @@ void Session::answer(const Request& request, bool can_wait) {
     }
 }
 
-void Session::answer_waiting(bool can_wait) {
-    for (const Request& request : std::exchange(waiting_, {})) answer(request, can_wait);
-}
-
-Json Session::result_of(const Request& request, bool can_wait) {
-    const auto& [id, method, params] = request;
+Json Session::result_of(const std::string& method, const Json& params) {
     if (life_ == Life::new_born && method != "initialize")
         throw Refusal{ErrorCode::server_not_initialized, "expected 'initialize' first"};
     if (life_ == Life::shut_down)
@@ -140,7 +131,7 @@ Json Session::result_of(const Request& request, bool can_wait) {
     const auto found = answers().find(method);
     if (found == answers().end())
         throw Refusal{ErrorCode::method_not_found, fmt::format("there is no '{}' here", method)};
-    return found->second({document_of(params), params, client_, can_wait});
+    return found->second({document_of(params), params, client_});
 }
 
 void Session::take_note(const std::string& method, const Json& params) {
@@ -148,7 +139,6 @@ void Session::take_note(const std::string& method, const Json& params) {
     if (life_ != Life::running) return;
     const auto found = notifications().find(method);
     if (found == notifications().end()) return;
-    answer_waiting(false);  // they are about the text before
     try {
         (this->*found->second)(params);
     } catch (const Refusal& refusal) {
@@ -195,13 +185,11 @@ Json Session::initialize(const Json& params) {
 }
 
 Json Session::shutdown() {
-    answer_waiting(false);
     life_ = Life::shut_down;
     return nullptr;
 }
 
 void Session::exit(const Json& /*params*/) {
-    answer_waiting(false);
     exit_status_ = status_at_end();
 }
 
@@ -282,39 +270,23 @@ void Session::catch_up() {
         if (document.is_news) publish(document);
 }
 
-void Session::end() {
-    answer_waiting(false);
-    catch_up();
-}
-
 bool Session::has_idle_work() const {
-    return life_ == Life::running && !is_planning() &&
+    return life_ == Life::running &&
            std::any_of(documents_.begin(), documents_.end(),
                        [](const auto& entry) { return entry.second.needs_plan(); });
 }
 
 void Session::do_idle_work() {
-    for (auto& [uri, document] : documents_)
-        if (document.needs_plan()) begin_plan(document);
-}
-
-void Session::begin_plan(Document& document) {
-    if (!is_planning()) planner_.start(document.analysis().checked);
-}
-
-void Session::take_plan() {
-    const Planner::Checked checked = planner_.checked();
-    auto planned = std::make_unique<Planned>();  // if it fails: no plan, and no second try
+    const auto found = std::find_if(documents_.begin(), documents_.end(),
+                                    [](const auto& entry) { return entry.second.needs_plan(); });
+    if (found == documents_.end()) return;
     try {
-        planned = planner_.take();
+        found->second.plan();
     } catch (const std::bad_alloc&) {
         log("there is not enough memory to plan the monitors");
     } catch (const data::SpillError& error) {
         log(error.what());
     }
-    for (auto& [uri, document] : documents_)
-        if (document.has(checked)) document.take(std::move(planned));
-    answer_waiting(true);
 }
 
 }  // namespace etlc::lsp

@@ -1,6 +1,6 @@
 // A client's session: its state, its documents, and the dispatch of its messages.
 // Takes: messages. Gives: responses and notifications, through `send`, in the order of the
-// requests, but for those that wait for a plan; these are answered before the next edit.
+// requests.
 // Keeps true: every request gets exactly one response; only `exit` ends the process;
 // findings are published for the last state of a document, and cleared when it closes.
 #pragma once
@@ -29,14 +29,8 @@ public:
     void catch_up();
     /// Returns whether a document waits to be planned, which begins when the client is idle.
     bool has_idle_work() const;
+    /// Plans one document.
     void do_idle_work();
-    /// Whether a plan is in work.
-    bool is_planning() const { return planner_.is_busy(); }
-    /// Returns a descriptor that can be read once there is a plan to take.
-    int has_plan() const { return planner_.ready(); }
-    void take_plan();
-    /// Does what can be done at the end of the input.
-    void end();
 
     /// Returns the exit status after `exit`.
     std::optional<int> exit_status() const { return exit_status_; }
@@ -48,21 +42,9 @@ private:
     using Notification = void (Session::*)(const Json& params);
 
     void receive(const Json& message);
-    struct Request {
-        Json id;
-        std::string method;
-        Json params;
-    };
-
-    /// `can_wait`: for a plan.
-    void answer(const Request& request, bool can_wait);
+    void answer(const Json& id, const std::string& method, const Json& params);
     void take_note(const std::string& method, const Json& params);
-    Json result_of(const Request& request, bool can_wait);
-    /// Answers the requests that wait for a plan; those that still want one go on waiting if they
-    /// can.
-    void answer_waiting(bool can_wait);
-    /// Begins to plan a document, unless a plan is in work.
-    void begin_plan(Document& document);
+    Json result_of(const std::string& method, const Json& params);
     void respond_error(const Json& id, ErrorCode code, const std::string& message);
     void log(const std::string& message);
     void publish(Document& document);
@@ -88,8 +70,6 @@ private:
     Encoding encoding_ = Encoding::utf16;
     Client client_;
     std::map<std::string, Document> documents_;
-    std::vector<Request> waiting_;  ///< for plans
-    Planner planner_;
 };
 
 }  // namespace etlc::lsp

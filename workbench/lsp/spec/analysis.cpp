@@ -3,24 +3,25 @@
 #include <utility>
 
 #include "lsp/text/uri.hpp"
+#include "parse/parse.hpp"
 
 namespace etlc::lsp {
 
-Analysis::Analysis(std::string path, std::string text, Encoding encoding, parse::Memory& read,
+Analysis::Analysis(std::string path, std::string text, Encoding encoding,
                    check::KnownMatrices& known)
-    : file(std::move(path), std::move(text)), lines(file.text(), encoding), read_(read) {
-    spec = read.parse(file, sink);
+    : file(std::move(path), std::move(text)), lines(file.text(), encoding) {
+    spec = parse::parse(file, sink);
     has_syntax_errors = sink.has_errors();
     check::Options options;
     options.allow_missing = true;
     checked =
-        std::make_shared<const check::Inspected>(check::inspect(spec, file, options, known, sink));
+        std::make_unique<const check::Inspected>(check::inspect(spec, file, options, known, sink));
 }
 
 const Names& Analysis::names() const {
     if (!names_) {
         names_ = names_of(spec, file);
-        if (has_syntax_errors) add_uncertain(*names_, read_.words_of(file), file);
+        if (has_syntax_errors) add_uncertain(*names_, parse::words_of(file), file);
     }
     return *names_;
 }
@@ -48,12 +49,14 @@ void Document::forget() {
 
 const Analysis& Document::analysis() {
     if (!analysis_)
-        analysis_ = std::make_unique<Analysis>(path_of_uri(uri_), text_, encoding_, read_, known_);
+        analysis_ = std::make_unique<Analysis>(path_of_uri(uri_), text_, encoding_, known_);
     return *analysis_;
 }
 
-void Document::take(std::unique_ptr<Planned> plan) {
-    planned_ = std::move(plan);
+void Document::plan() {
+    const check::Model& model = analysis().checked->model;
+    planned_ = std::make_unique<Planned>();  // where it fails there is no plan, and no second try
+    planned_->compiled = pipeline::compile(model, {}, planned_->sink);
     is_news = is_news || !planned_->sink.sorted().empty();
 }
 

@@ -12,19 +12,16 @@
 #include "check/check.hpp"
 #include "diag/diag.hpp"
 #include "lsp/spec/names.hpp"
-#include "lsp/spec/planner.hpp"
 #include "lsp/text/position.hpp"
-#include "parse/memory.hpp"
+#include "pipeline/compile.hpp"
 #include "source/source.hpp"
 
 namespace etlc::lsp {
 
 class Analysis {
 public:
-    /// `read`: what was read of an earlier state, which outlives the analysis; `known`: the files
-    /// of the spec that were read.
-    Analysis(std::string path, std::string text, Encoding encoding, parse::Memory& read,
-             check::KnownMatrices& known);
+    /// `known`: the files of the spec that were read.
+    Analysis(std::string path, std::string text, Encoding encoding, check::KnownMatrices& known);
     Analysis(const Analysis&) = delete;  // `lines` refers to `file`
     Analysis& operator=(const Analysis&) = delete;
 
@@ -36,18 +33,22 @@ public:
     diag::Sink sink;
     ast::Spec spec;
     bool has_syntax_errors = false;
-    std::shared_ptr<const check::Inspected> checked;
+    std::unique_ptr<const check::Inspected> checked;
 
 private:
-    parse::Memory& read_;
     mutable std::optional<Names> names_;
+};
+
+struct Planned {
+    diag::Sink sink;
+    std::optional<pipeline::Compiled> compiled;
 };
 
 /// A text that is open in the client.
 class Document {
 public:
     Document(std::string uri, std::string text, std::int64_t version, Encoding encoding);
-    Document(const Document&) = delete;  // the analysis refers to what was read
+    Document(const Document&) = delete;  // the analysis refers to itself
     Document& operator=(const Document&) = delete;
 
     const std::string& uri() const { return uri_; }
@@ -62,18 +63,14 @@ public:
     void forget();
 
     const Analysis& analysis();
-    /// Whether this is the model of the present state.
-    bool has(const Planner::Checked& checked) const {
-        return analysis_ && analysis_->checked == checked;
-    }
     /// Whether the model of this state is complete, and has no plan yet.
     bool needs_plan() const {
         return analysis_ && analysis_->checked->complete && planned_ == nullptr;
     }
     /// Returns the plan; null where the model is incomplete or not planned yet.
     const Planned* planned() const { return planned_.get(); }
-    /// Takes the plan of its model.
-    void take(std::unique_ptr<Planned> plan);
+    /// Plans the model, once.
+    void plan();
 
     /// The findings of this state, or of its planning, have not been published.
     bool is_news = true;
@@ -83,7 +80,6 @@ private:
     std::string text_;
     std::int64_t version_;
     Encoding encoding_;
-    parse::Memory read_;
     check::KnownMatrices known_;
     std::unique_ptr<Analysis> analysis_;
     std::unique_ptr<Planned> planned_;
