@@ -28,22 +28,36 @@ double truth(bool holds) {
     return holds ? kInfinity : -kInfinity;
 }
 
+/// Returns whether a comparison holds for all values in the ranges of its sides, and whether for
+/// any.
+std::pair<bool, bool> answers(const check::Predicate& predicate) {
+    const check::Range& deltas = predicate.delta;
+    const check::Range thresholds = predicate.threshold.range();
+    if (predicate.equality()) {
+        const bool can_be_equal = deltas.low <= thresholds.high && thresholds.low <= deltas.high;
+        const bool must_be_equal = deltas.low == deltas.high && thresholds.low == deltas.low &&
+                                   thresholds.high == deltas.low;
+        if (predicate.comparison == check::Comparison::equal) return {must_be_equal, can_be_equal};
+        return {!can_be_equal, !must_be_equal};
+    }
+    bool always = true;
+    bool ever = false;
+    for (const double delta : {deltas.low, deltas.high})  // an order changes at most once
+        for (const double epsilon : {thresholds.low, thresholds.high}) {
+            always = always && holds(predicate, delta, epsilon);
+            ever = ever || holds(predicate, delta, epsilon);
+        }
+    return {always, ever};
+}
+
 /// "for a predicate its range [...]"; "a bool has robustness +inf or -inf".
 Unseen range_of(const check::Model& model, const Node& atom, Values values) {
     Unseen range{-kInfinity, kInfinity};
     if (atom.kind == Node::Kind::predicate) {
         const check::Predicate& predicate = model.predicates[atom.index];
         range = {predicate.robustness.low, predicate.robustness.high};
-        if (values == Values::boolean &&
-            !predicate.equality()) {  // a comparison holds on one side of delta and epsilon
-            bool always = true;
-            bool ever = false;
-            const check::Range thresholds = predicate.threshold.range();
-            for (const double delta : {predicate.delta.low, predicate.delta.high})
-                for (const double epsilon : {thresholds.low, thresholds.high}) {
-                    always = always && holds(predicate, delta, epsilon);
-                    ever = ever || holds(predicate, delta, epsilon);
-                }
+        if (values == Values::boolean || predicate.equality()) {
+            const auto [always, ever] = answers(predicate);
             range = {truth(always), truth(ever)};
         }
         // "of a predicate that counts as false where it is missing, the lowest is -inf"

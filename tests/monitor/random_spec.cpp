@@ -43,7 +43,7 @@ public:
     /// Returns a comparison within a formula.
     std::string comparison() {
         if (random_.chance(0.3)) return comparison_of_scalars();
-        return fmt::format("{} {} {}", expression(1), compare(), number(-3, 3));
+        return fmt::format("{} {} {}", expression(1), compare(), cut());
     }
 
 private:
@@ -71,11 +71,14 @@ private:
     std::string number(int low, int high) {
         return fmt::format("{}", random_.grid(low, high, 0.25));
     }
+    /// Returns a number to compare scalars with. Sometimes no sample reaches it, so that the
+    /// declared range decides the comparison.
+    std::string cut() { return random_.chance(0.2) ? number(-6, 6) : number(-3, 3); }
     std::string compare() { return random_.word({"<=", "<", ">=", ">"}); }
 
     /// An order or equality of exact values: inputs, numbers and a constant, on either side.
     std::string comparison_of_scalars() {
-        const auto side = [this] { return random_.chance(0.3) ? "c" : number(-3, 3); };
+        const auto side = [this] { return random_.chance(0.3) ? "c" : cut(); };
         const std::string op = random_.chance(0.5) ? random_.word({"==", "!="}) : compare();
         const std::string input = random_.word({"x", "y", "x@2", "max(y, 2 steps)"});
         if (random_.chance(0.3)) return fmt::format("x {} y", op);
@@ -283,11 +286,12 @@ private:
     }
 
     std::string predicate() {
-        const int kind = random_.between(0, 9);
+        const int kind = random_.between(0, 10);
+        if (kind == 10) return comparison_of_scalars();
         if (kind < 5) return fmt::format("{} {} {}", distance(), compare(), number(0, 6));
         if (kind < 7)
             return fmt::format("{} {} {}", difference(kind == 6), compare(), number(-2, 2));
-        return fmt::format("{} {} {}", expression(random_.between(1, 3)), compare(), number(-3, 3));
+        return fmt::format("{} {} {}", expression(random_.between(1, 3)), compare(), cut());
     }
 };
 

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
+#include "check/formulas/horizons.hpp"
 #include "exhaustive.hpp"
 #include "loading.hpp"
 #include "random.hpp"
@@ -183,11 +185,64 @@ TEST(ReferenceProperties, RangesHoldWhatIsMeasured) {
                 if (delta != delta) continue;
                 ASSERT_LE(predicate.delta.low, delta) << model->file.text();
                 ASSERT_GE(predicate.delta.high, delta) << model->file.text();
-                const double rho = predicate.upper_bound() ? epsilon - delta : delta - epsilon;
+                const double infinity = std::numeric_limits<double>::infinity();
+                const bool holds = check::holds(predicate.comparison, delta, epsilon);
+                const double rho = predicate.equality()      ? (holds ? infinity : -infinity)
+                                   : predicate.upper_bound() ? epsilon - delta
+                                                             : delta - epsilon;
                 ASSERT_LE(predicate.robustness.low, rho) << model->file.text();
                 ASSERT_GE(predicate.robustness.high, rho) << model->file.text();
             }
     }
+}
+
+/// Whether step 0 alone may decide it, which the analysis of the past leaves out, or a robustness
+/// of exactly 0, at which a formula and its negation are satisfied.
+bool is_left_out(const check::Model& model, check::Index formula) {
+    using Kind = check::Formula::Kind;
+    const std::vector<check::Index> parts = check::parts_of(model, formula);
+    return std::any_of(parts.begin(), parts.end(), [&](check::Index part) {
+        const Kind kind = model.formulas[part].kind;
+        return kind == Kind::until || kind == Kind::release || kind == Kind::weak_until ||
+               kind == Kind::equivalence;
+    });
+}
+
+// The warning of predicates that lack their past at first (W0507) holds on every trace.
+TEST(ReferenceProperties, WithoutPastThereIsNoVerdict) {
+    int unsatisfied = 0;
+    int never_violated = 0;
+    for (int n = 0; n < 4 * kSpecs; ++n) {
+        const auto model = load(random_spec(5000 + n, shape_of(n, Formulas::prefix)));
+        ASSERT_TRUE(model);
+        const auto so_far = check::decidable(*model, check::Lasts::so_far, true);
+        const auto for_good = check::decidable(*model, check::Lasts::for_good, true);
+        const auto could_so_far = check::decidable(*model, check::Lasts::so_far, false);
+        const auto could_for_good = check::decidable(*model, check::Lasts::for_good, false);
+        for (int t = 0; t < 4; ++t) {
+            const Trace trace = random_trace(*model, 10 * n + t, {.steps = 40, .grid = false});
+            const auto run = evaluate(*model, trace);
+            for (std::size_t m = 0; m < model->monitors.size(); ++m) {
+                const check::Index formula = model->monitors[m].formula;
+                if (is_left_out(*model, formula)) continue;
+                const Verdict& last = run.verdicts.back()[m];
+                if (so_far[formula].satisfied > 0 && could_so_far[formula].satisfied == 0) {
+                    ++unsatisfied;
+                    ASSERT_NE(last.status, reference::Status::satisfied)
+                        << model->file.text() << "m" << m << "\n"
+                        << to_csv(*model, trace);
+                }
+                if (for_good[formula].violated > 0 && could_for_good[formula].violated == 0) {
+                    ++never_violated;
+                    ASSERT_FALSE(last.final && last.status == reference::Status::violated)
+                        << model->file.text() << "m" << m << "\n"
+                        << to_csv(*model, trace);
+                }
+            }
+        }
+    }
+    EXPECT_GT(unsatisfied, 50);
+    EXPECT_GT(never_violated, 50);
 }
 
 TEST(RandomSpec, SameSeedSameText) {

@@ -64,6 +64,11 @@ struct Context {
     std::unordered_map<std::string, Index> past_of_text{};
     std::unordered_map<std::string, Index> predicate_of_text{};
 
+    /// The point that a target is declared or fitted `of`, without its delay, for those that have
+    /// one.
+    std::map<Index, Index> point_of_target{};
+    /// The encoder that made rows of a target, for those that it is known of.
+    std::map<Index, Index> encoder_of_target{};
     /// The projected target for each target and point.
     std::map<std::pair<Index, Index>, Index> projected_targets{};
     /// The `where` of each element of model.fitted.

@@ -71,6 +71,167 @@ std::vector<Reading> readings(const Model& model) {
 
 }  // namespace
 
+namespace {
+
+constexpr std::uint64_t kNever = Decidable::kNever;
+
+std::uint64_t later(std::uint64_t position, std::uint64_t steps) {
+    return position == kNever ? kNever : position + steps;
+}
+
+/// Returns from where on some position of [k, k + steps] is at `position` or behind it.
+std::uint64_t earlier(std::uint64_t position, std::uint32_t steps) {
+    if (position == kNever) return kNever;
+    return steps == kUnbounded || position < steps ? 0 : position - steps;
+}
+
+Decidable negation(Decidable f) {
+    return {f.violated, f.satisfied};
+}
+
+Decidable both(Decidable f, Decidable g) {
+    return {std::max(f.satisfied, g.satisfied), std::min(f.violated, g.violated)};
+}
+
+Decidable either(Decidable f, Decidable g) {
+    return negation(both(negation(f), negation(g)));
+}
+
+Decidable equivalence(Decidable f, Decidable g) {
+    return {std::min(std::max(f.satisfied, g.satisfied), std::max(f.violated, g.violated)),
+            std::min(std::max(f.satisfied, g.violated), std::max(f.violated, g.satisfied))};
+}
+
+/// Combines what is known of operands over a window.
+struct Windows {
+    Lasts lasts;
+    std::uint32_t low;
+    std::uint32_t high;
+
+    /// G without an end holds for good at no step.
+    Decidable always(Decidable f) const {
+        const bool never = high == kUnbounded && lasts == Lasts::for_good;
+        return {never ? kNever : earlier(f.satisfied, low), earlier(f.violated, high)};
+    }
+
+    /// f U g: g holds later than now, and f until then. It fails if g fails throughout, or until f
+    /// does.
+    Decidable until(Decidable f, Decidable g) const {
+        const bool never = high == kUnbounded && lasts == Lasts::for_good;
+        const std::uint64_t throughout = earlier(g.violated, low);
+        std::uint64_t violated = std::max(throughout, earlier(f.violated, high));
+        if (low > 0) violated = std::min(violated, earlier(f.violated, low - 1));
+        if (!never) violated = std::min(violated, throughout);
+        const std::uint64_t satisfied = earlier(g.satisfied, high);
+        return {high == 0 ? g.satisfied : std::max(f.satisfied, satisfied), violated};
+    }
+
+    Decidable release(Decidable f, Decidable g) const {
+        return negation(until(negation(f), negation(g)));
+    }
+
+    Decidable weak_until(Decidable f, Decidable g) const {
+        return {std::min(always(f).satisfied, until(f, g).satisfied),
+                release(g, either(f, g)).violated};
+    }
+
+    /// O f fails where all of its window is known.
+    Decidable once(Decidable f) const {
+        const bool never = f.violated > 0 && high == kUnbounded;
+        return {later(f.satisfied, low), never             ? kNever
+                                         : f.violated == 0 ? 0
+                                                           : later(f.violated, high)};
+    }
+
+    Decidable since(Decidable f, Decidable g) const {
+        const Decidable some = once(g);
+        return {some.satisfied, std::min(some.violated, std::max(f.violated, g.violated))};
+    }
+
+    Decidable historically(Decidable f) const { return negation(once(negation(f))); }
+};
+
+/// rise f, or fall f of the negation, which fail at the first position whatever f is.
+Decidable rise(Decidable f) {
+    return {both(f, Windows{Lasts::so_far, 1, 1}.once(negation(f))).satisfied, 0};
+}
+
+/// held[n] f fails at the first n positions.
+Decidable held(Decidable f, std::uint32_t n) {
+    const std::uint64_t all = Windows{Lasts::so_far, 0, n}.historically(f).satisfied;
+    return {std::max<std::uint64_t>(all, n), n == 0 ? f.violated : 0};
+}
+
+Decidable of_predicate(const Model& model, const Predicate& predicate) {
+    const std::uint64_t from = past_needed(model, predicate);
+    return {predicate.missing == true ? 0 : from, predicate.missing == false ? 0 : from};
+}
+
+Decidable decidable(const Formula& formula, const std::vector<Decidable>& f, Lasts lasts) {
+    using Kind = Formula::Kind;
+    const Windows in{lasts, formula.low, formula.high};
+    switch (formula.kind) {
+        case Kind::constant_true: return {0, kNever};
+        case Kind::constant_false: return {kNever, 0};
+        case Kind::predicate:
+        case Kind::boolean_input: return {};
+        case Kind::negation: return negation(f[0]);
+        case Kind::conjunction:
+        case Kind::disjunction: {
+            Decidable all = f[0];
+            for (const Decidable& one : f)
+                all = formula.kind == Kind::conjunction ? both(all, one) : either(all, one);
+            return all;
+        }
+        case Kind::implication: return either(negation(f[0]), f[1]);
+        case Kind::equivalence: return equivalence(f[0], f[1]);
+        case Kind::always: return in.always(f[0]);
+        case Kind::next:
+        case Kind::eventually: return negation(in.always(negation(f[0])));
+        case Kind::until: return in.until(f[0], f[1]);
+        case Kind::release: return in.release(f[0], f[1]);
+        case Kind::weak_until: return in.weak_until(f[0], f[1]);
+        case Kind::previous:
+        case Kind::once:
+        case Kind::historically:
+        case Kind::since:
+            if (formula.low > 0) return {};  // at the first positions its window is empty
+            return formula.kind == Kind::since          ? in.since(f[0], f[1])
+                   : formula.kind == Kind::historically ? in.historically(f[0])
+                                                        : in.once(f[0]);
+        case Kind::rise: return rise(f[0]);
+        case Kind::fall: return rise(negation(f[0]));
+        case Kind::held: return held(f[0], formula.high);
+        case Kind::count: return rise(f[0]);  // once or more
+    }
+    return {};
+}
+
+}  // namespace
+
+std::uint64_t steps_read_back(const Model& model, Index formula) {
+    return readings(model)[formula].back;
+}
+
+std::uint64_t past_needed(const Model& model, const Predicate& predicate) {
+    const bool decided = predicate.robustness.low >= 0 || predicate.robustness.high < 0;
+    return decided ? 0 : steps_back(model, predicate.expression);
+}
+
+std::vector<Decidable> decidable(const Model& model, Lasts lasts, bool reads_past) {
+    std::vector<Decidable> result;
+    result.reserve(model.formulas.size());
+    std::vector<Decidable> operands;
+    for (const Formula& formula : model.formulas) {
+        operands.clear();
+        for (const Index operand : formula.operands) operands.push_back(result[operand]);
+        result.push_back(formula.kind == Formula::Kind::predicate && reads_past
+                             ? of_predicate(model, model.predicates[formula.index])
+                             : decidable(formula, operands, lasts));
+    }
+    return result;
+}
+
 std::vector<Reach> reaches(const Model& model) {
     std::vector<Reach> result(model.formulas.size());
     for (Index i = 0; i < model.formulas.size(); ++i) {

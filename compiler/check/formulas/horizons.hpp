@@ -33,4 +33,29 @@ struct Gap {
 /// Parallel to model.monitors.
 std::vector<Gap> gaps(const Model& model);
 
+/// The first positions from which on a formula can be satisfied and can be violated, although a
+/// predicate is unknown until the trace has the past that it reads.
+struct Decidable {
+    static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
+
+    std::uint64_t satisfied = 0;
+    std::uint64_t violated = 0;
+
+    std::uint64_t position(bool of_satisfied) const { return of_satisfied ? satisfied : violated; }
+};
+
+/// Verdicts as of some later step, or those that stay.
+enum class Lasts : std::uint8_t { so_far, for_good };
+
+/// Parallel to model.formulas. Without `reads_past` the predicates read the present only. Verdicts
+/// that only step 0 can bring, as that of p U q by q, do not count: a formula that depends on them
+/// is hardly meant.
+std::vector<Decidable> decidable(const Model& model, Lasts lasts, bool reads_past);
+
+/// Returns how many steps back a formula reads; Gap::kForGood without a limit.
+std::uint64_t steps_read_back(const Model& model, Index formula);
+
+/// Returns how many steps of past a predicate needs to be known: none where its range decides it.
+std::uint64_t past_needed(const Model& model, const Predicate& predicate);
+
 }  // namespace etlc::check

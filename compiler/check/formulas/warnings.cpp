@@ -45,9 +45,12 @@ void warn_of_constant_predicates(Context& c) {
         const std::string values = delta.low == delta.high
                                        ? fmt::format("{:.9g}", delta.low)
                                        : fmt::format("in [{:.9g}, {:.9g}]", delta.low, delta.high);
-        c.report(Code::constant_predicate, predicate.span,
-                 fmt::format("the comparison is {} true: its left side is {}",
-                             *answer ? "always" : "never", values));
+        const bool turns = predicate.missing == !*answer;  // where a sample is missing
+        auto& warning = c.report(
+            Code::constant_predicate, predicate.span,
+            fmt::format("{}the comparison is {} true: its left side is {}",
+                        turns ? "with its samples " : "", *answer ? "always" : "never", values));
+        if (turns) warning.note(fmt::format("where one is missing it counts as {}", !*answer));
     }
 }
 
@@ -133,6 +136,8 @@ public:
           structures_(structures(model_)),
           constancies_(constancies(model_)),
           reaches_(reaches(model_)),
+          so_far_(decidable(model_, Lasts::so_far, true)),
+          for_good_(decidable(model_, Lasts::for_good, true)),
           below_(model_.formulas.size(), kNone) {}
 
     void run() {
@@ -147,8 +152,9 @@ public:
             const Monitor& monitor = model_.monitors[i];
             const Entity& entity = c_.scope.entity(NameKind::monitor, i);
             if (monitor.formula == kNone) continue;
-            if (!warn_of_constant(monitor, entity.span))
-                warn_of_first_position(monitor, entity.span);
+            if (!warn_of_constant(monitor, entity.span) &&
+                !warn_of_first_position(monitor, entity.span))
+                warn_of_past_at_start(monitor);
             warn_of_same_monitor(monitor, entity);
         }
     }
@@ -240,15 +246,107 @@ private:
         return true;
     }
 
-    void warn_of_first_position(const Monitor& monitor, Span name) {
+    bool warn_of_first_position(const Monitor& monitor, Span name) {
         if (monitor.sliding || monitor.restarts != Restarts::never ||
             reaches_[monitor.formula].future != kNone)
-            return;
+            return false;
         c_.report(Code::first_position_only, name,
                   fmt::format("'{}' looks only at position 0, so that its verdict never changes "
                               "after the first step",
                               monitor.name))
             .note("did you mean a sliding monitor, or G in front of the formula?");
+        return true;
+    }
+
+    /// Warns where no step can bring a verdict because predicates lack their past at position 0.
+    void warn_of_past_at_start(const Monitor& monitor) {
+        if (monitor.sliding) return;
+        const Index f = monitor.formula;
+        if (so_far_[f].satisfied > 0 && decidable(model_, Lasts::so_far, false)[f].satisfied == 0)
+            report_past_at_start(monitor, so_far_, true);
+        else if (for_good_[f].violated > 0 &&
+                 decidable(model_, Lasts::for_good, false)[f].violated == 0)
+            report_past_at_start(monitor, for_good_, false);
+    }
+
+    using First = std::vector<Decidable>;
+
+    /// Returns the operator that needs the past at position 0, and turns `satisfied` with each
+    /// negation above it.
+    Index needs_past(const First& first, Index at, bool& satisfied) const {
+        const Formula& formula = model_.formulas[at];
+        const auto operand = [&](Index i, bool turned) {
+            satisfied = satisfied != turned;
+            return needs_past(first, formula.operands[i], satisfied);
+        };
+        if (formula.kind == Kind::negation) return operand(0, true);
+        if (formula.kind == (satisfied ? Kind::conjunction : Kind::disjunction))
+            for (Index i = 0; i < formula.operands.size(); ++i)
+                if (first[formula.operands[i]].position(satisfied) > 0) return operand(i, false);
+        if (formula.kind != Kind::implication || satisfied) return at;
+        return first[formula.operands[1]].violated > 0 ? operand(1, false) : operand(0, true);
+    }
+
+    /// Returns the predicate of the formula that needs most of the past.
+    Index with_most_past(Index formula, std::uint64_t& most) const {
+        Index found = kNone;
+        for (const Index part : parts_of(model_, formula)) {
+            if (model_.formulas[part].kind != Kind::predicate) continue;
+            const auto needed = past_needed(model_, model_.predicates[model_.formulas[part].index]);
+            if (needed <= most) continue;
+            most = needed;
+            found = part;
+        }
+        return found;
+    }
+
+    void report_past_at_start(const Monitor& monitor, const First& first, bool satisfied) {
+        const std::string verdict = satisfied ? "satisfied" : "violated for good";
+        const Index at = needs_past(first, monitor.formula, satisfied);
+        std::uint64_t most = 0;
+        const Index predicate = with_most_past(at, most);
+        if (predicate == kNone) return;
+        const auto missing = model_.predicates[model_.formulas[predicate].index].missing;
+        auto& warning = c_.report(
+            Code::past_at_start, c_.operator_spans[at],
+            fmt::format("'{}' can never be {}: '{}' needs {} of past, and {} before", monitor.name,
+                        verdict, shown(model_, predicate), diag::counted(most, "step"),
+                        missing ? fmt::format("counts as {}", *missing) : "is unknown"));
+        const Formula& formula = model_.formulas[at];
+        const auto known_from = [&](Index f) {
+            const std::uint64_t back = steps_read_back(model_, f);
+            return std::max(first[f].position(satisfied), back == Gap::kForGood ? 0 : back);
+        };
+        const std::uint64_t from = known_from(at);
+        if (from == Decidable::kNever) return;
+        std::string op = "G" + interval_text(c_, from, from);
+        Index operand = at;
+        if (formula.kind == Kind::always || formula.kind == Kind::eventually) {
+            operand = formula.operands[0];
+            const std::uint64_t known = known_from(operand);
+            const bool ends_before = known > formula.high;  // not where it has no end
+            const std::uint64_t high =
+                ends_before ? known + (formula.high - formula.low) : formula.high;
+            op = fmt::format("{}{}", ast::operator_of(formula.kind)->symbol,
+                             interval_text(c_, known, high));
+            if (formula.low == 0 && formula.high == kUnbounded) warning.meant = op;
+        }
+        warning.note(fmt::format("begin where it is known: '{} {}'", op, in_brackets(operand)));
+    }
+
+    /// Returns the text of a formula as the operand of a prefix operator, as it is written if that
+    /// is short.
+    std::string in_brackets(Index f) const {
+        const Formula& formula = model_.formulas[f];
+        constexpr std::size_t kShort = 60;
+        const std::string_view written = c_.file.text(formula.span);
+        const bool is_short = written.size() <= kShort && written.find('\n') == written.npos;
+        const std::string text = is_short ? std::string(written) : shown(model_, f);
+        const ast::Operator* const op = ast::operator_of(formula.kind);
+        const bool is_comparison =
+            formula.kind == Kind::predicate && model_.predicates[formula.index].name.empty();
+        const bool alone = op == nullptr ? !is_comparison : op->level == ast::kPrefix;
+        return alone ? text : fmt::format("({})", text);
     }
 
     void warn_of_same_monitor(const Monitor& monitor, const Entity& entity) {
@@ -265,6 +363,8 @@ private:
     std::vector<Index> structures_;
     std::vector<Constancies> constancies_;
     std::vector<Reach> reaches_;
+    std::vector<Decidable> so_far_;
+    std::vector<Decidable> for_good_;
     std::vector<Index> below_;  ///< for each structure the last formula with such an operand
     std::map<std::tuple<Index, bool, Restarts>, const Entity*> monitors_;
 };
@@ -275,7 +375,7 @@ void warn(Context& c) {
     // A name misspelt in its only use is reported already.
     if (!c.sink.has_errors()) warn_of_unused(c);
     if (!c.sink.has_errors()) warn_of_bare_bounds(c);
-    warn_of_constant_predicates(c);
+    if (!c.options.retargetable) warn_of_constant_predicates(c);  // thresholds may change
     warn_of_similarities(c);
     warn_of_same_predicates(c);
     FormulaWarnings(c).run();

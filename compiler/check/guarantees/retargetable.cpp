@@ -49,7 +49,7 @@ void make_retargetable(Context& c) {
     std::set<std::string> names = names_of(c.model);
     std::size_t number = 0;
     for (Predicate& predicate : c.model.predicates) {
-        predicate.robustness = kEverything;
+        predicate.delta = predicate.robustness = kEverything;
         while (predicate.name.empty())
             if (const std::string name = fmt::format("comparison_{}", ++number);
                 names.insert(name).second)

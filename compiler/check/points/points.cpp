@@ -233,11 +233,11 @@ std::string words_of(const Point& point) {
     return fmt::format("'{}'", point.text);
 }
 
-void report_wrong_space(Context& c, const Target& target, const Point& point, Span span) {
-    const std::string& space = c.model.points[target.space].text;
+void report_wrong_space(Context& c, const Target& target, Index of, const Point& point, Span span) {
+    const std::string& space = c.model.points[of].text;
     c.report(Code::wrong_space, span,
-             fmt::format("target '{}' is in the space of {}, but {} is not projected through it",
-                         target.name, space, words_of(point)))
+             fmt::format("target '{}' is in the space of {}, but {} is not", target.name, space,
+                         words_of(point)))
         .note(target.span, fmt::format("'{}' is declared here", target.name))
         .note(fmt::format("measure from {}, or from a projection of it", space));
 }
@@ -333,8 +333,13 @@ Index target_in_space(Context& c, Index index, Index measured, Span span) {
     };
     Index from = point;
     while (from != kNone && !is_there(from)) from = c.model.points[from].inner;
-    if (from == kNone) {
-        report_wrong_space(c, target, c.model.points[point], span);
+    const auto of = c.point_of_target.find(index);
+    const bool is_elsewhere = target.space == kNone && of != c.point_of_target.end() &&
+                              from != kNone && !is_same_space(c.model, from, of->second) &&
+                              c.model.points[from].dimension == target.dimension;
+    if (from == kNone || is_elsewhere) {
+        report_wrong_space(c, target, is_elsewhere ? of->second : target.space,
+                           c.model.points[point], span);
         return kNone;
     }
     if (c.model.points[from].dimension != target.dimension) {

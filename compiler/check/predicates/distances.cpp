@@ -45,7 +45,8 @@ private:
     Index between_points() {
         distance_.other = check_point(c_, written_.other);
         if (distance_.point == kNone || distance_.other == kNone) return kNone;
-        const bool fits = has_no_aggregation() && points_fit() && encoders_fit() && set_weights();
+        const bool fits = has_no_aggregation() && points_fit() &&
+                          encoders_fit(distance_.point, distance_.other) && set_weights();
         return fits ? add() : kNone;
     }
 
@@ -71,22 +72,48 @@ private:
                                      one.text, other.text));
     }
 
-    /// Embeddings by two encoders have nothing to do with each other.
-    bool encoders_fit() {
-        const std::vector<Index>& left = c_.model.points[distance_.point].inputs;
-        const std::vector<Index>& right = c_.model.points[distance_.other].inputs;
-        for (std::size_t i = 0; i < std::min(left.size(), right.size()); ++i) {
+    /// Embeddings by two encoders have nothing to do with each other. Inputs that begin at the same
+    /// element are compared: [x, y] may stand for one of two.
+    bool encoders_fit(Index point, Index other) {
+        const std::vector<Index>& left = c_.model.points[point].inputs;
+        const std::vector<Index>& right = c_.model.points[other].inputs;
+        std::uint64_t at_left = 0;
+        std::uint64_t at_right = 0;
+        for (std::size_t i = 0, j = 0; i < left.size() && j < right.size();) {
             const Input& one = c_.model.inputs[left[i]];
-            const Input& other = c_.model.inputs[right[i]];
-            if (one.encoder == other.encoder || one.encoder == kNone || other.encoder == kNone)
-                continue;
-            return c_.refuse(Code::wrong_space, both_points(),
-                             fmt::format("'{}' is by {} and '{}' is by {}; a distance compares "
-                                         "embeddings by one encoder",
-                                         one.name, c_.model.encoders[one.encoder].name, other.name,
-                                         c_.model.encoders[other.encoder].name));
+            const Input& two = c_.model.inputs[right[j]];
+            if (at_left == at_right && two.encoder != kNone && !is_by(one, two.encoder, two.name))
+                return false;
+            const std::uint64_t end = std::min(at_left + one.dimension, at_right + two.dimension);
+            const bool left_ends = at_left + one.dimension == end;
+            const bool right_ends = at_right + two.dimension == end;
+            if (left_ends) at_left = end;
+            if (right_ends) at_right = end;
+            i += left_ends ? 1 : 0;
+            j += right_ends ? 1 : 0;
         }
         return true;
+    }
+
+    /// Whether an input may be by the encoder that `other` is by.
+    bool is_by(const Input& one, Index encoder, const std::string& other) {
+        if (one.encoder == encoder || one.encoder == kNone) return true;
+        return c_.refuse(
+            Code::wrong_space, both_points(),
+            fmt::format("'{}' is by {} and '{}' is by {}; a distance compares embeddings by one "
+                        "encoder",
+                        one.name, c_.model.encoders[one.encoder].name, other,
+                        c_.model.encoders[encoder].name));
+    }
+
+    bool encoders_of_rows_fit() {
+        const std::vector<Index>& inputs = c_.model.points[distance_.point].inputs;
+        const auto rows = c_.encoder_of_target.find(distance_.target);
+        if (rows != c_.encoder_of_target.end() && inputs.size() == 1 &&
+            !is_by(c_.model.inputs[inputs[0]], rows->second, target().name))
+            return false;
+        const auto of = c_.point_of_target.find(distance_.target);
+        return of == c_.point_of_target.end() || encoders_fit(distance_.point, of->second);
     }
 
     Span both_points() const { return source::join(written_.point.span, written_.other.span); }
@@ -105,6 +132,7 @@ private:
 
     /// Uses the target's rows in the space of the point.
     bool set_space() {
+        if (!encoders_of_rows_fit()) return false;
         const Index there = target_in_space(c_, distance_.target, distance_.point, both_points());
         if (there != kNone) distance_.target = there;
         return there != kNone;

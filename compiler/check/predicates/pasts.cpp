@@ -2,6 +2,9 @@
 // windows.
 #include <fmt/format.h>
 
+#include <string>
+#include <vector>
+
 #include "check/numbers/decimal.hpp"
 #include "check/points/points.hpp"
 #include "check/predicates/predicates.hpp"
@@ -54,6 +57,44 @@ const ast::Expr* undelayed(Context& c, const ast::Expr& written, std::uint64_t& 
     return at;
 }
 
+/// Returns what says of a truth value what the past of a number was meant to say, as notes.
+std::vector<std::string> instead(const std::string& name, PastKind kind, const std::string& time) {
+    const std::string since =
+        fmt::format("'held[{}] {}': it holds, and has for {}", time, name, time);
+    const std::string ever = fmt::format("'O[0, {}] {}': it did at some step", time, name);
+    switch (kind) {
+        case PastKind::ago:
+            return {fmt::format("whether it held then is 'O[{0}, {0}] {1}'", time, name)};
+        case PastKind::min: return {since};
+        case PastKind::max: return {ever};
+        case PastKind::mean:
+        case PastKind::count: break;
+    }
+    return {since, ever,
+            fmt::format("'count({}, {}) >= 3': it began to hold three times or more", name, time)};
+}
+
+/// Refuses a predicate, let or bool where a number is expected, and says what does mean something.
+bool is_number(Context& c, const ast::Expr& of, const ast::Past& past) {
+    const Reference* const found = of.kind == ExprKind::name ? c.scope.find(of.text) : nullptr;
+    if (found == nullptr) return true;
+    const bool is_bool =
+        found->kind == NameKind::input && c.model.inputs[found->index].type == InputType::boolean;
+    if (found->kind != NameKind::predicate && found->kind != NameKind::let && !is_bool) return true;
+    Entity& entity = c.scope.entity(*found);
+    entity.used = true;
+    if (entity.broken) return true;  // reported already
+    std::string time{c.file.text(past.time.span)};
+    if (past.time.unit.empty() && past.time.number.constant.empty())
+        time += past.time.number.text == "1" ? " step" : " steps";
+    auto& error =
+        c.report(Code::operand_not_scalar, of.span,
+                 fmt::format("'{}' is {}, a truth value; '{}' takes a number", of.text,
+                             is_bool ? "a bool" : word_with_article(found->kind), word(past.kind)));
+    for (std::string& note : instead(of.text, past.kind, time)) error.note(std::move(note));
+    return false;
+}
+
 /// The unit tells min(x, 20 steps) from min(x, 20).
 std::string text_of(const Model& model, const Past& past) {
     const std::string of = print(model, past.expression);
@@ -95,7 +136,7 @@ std::optional<Expr> check_past(Context& c, const ast::Expr& written) {
     } else if (const auto length = window_steps(c, past.kind, written.past->time)) {
         steps = *length;
     }
-    if (of == nullptr) return std::nullopt;
+    if (of == nullptr || !is_number(c, *of, *written.past)) return std::nullopt;
     auto expression = check_expression(c, *of);
     if (!expression || steps == 0) return std::nullopt;
     if (steps > kMaxPast) return report_too_long(c, written.span, steps);

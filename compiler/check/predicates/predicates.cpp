@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 #include "check/context/context.hpp"
 #include "check/guarantees/calibrated.hpp"
@@ -131,18 +130,19 @@ Sides declared_sides(Context& c, const ast::Predicate& declaration) {
             check_calibrated(c, calibrated)};
 }
 
-/// Returns the range of epsilon - delta or delta - epsilon, extended by the value for missing
-/// samples.
+/// Returns the range of epsilon - delta or delta - epsilon, or of the answer of an equality,
+/// extended by the value for missing samples: a range of samples says nothing about a step without
+/// one.
 Range robustness_of(const Predicate& predicate) {
     if (std::isnan(predicate.threshold.value)) return kEverything;
-    if (predicate.equality()) {
-        const auto answer = predicate.constant_answer();
-        const float infinity = std::numeric_limits<float>::infinity();
-        return {answer == true ? infinity : -infinity, answer == false ? -infinity : infinity};
-    }
     const Range epsilon = predicate.threshold.range();
     Range range = predicate.upper_bound() ? subtract(epsilon, predicate.delta)
                                           : subtract(predicate.delta, epsilon);
+    if (predicate.equality()) {
+        const auto answer = predicate.constant_answer();
+        range = {answer == true ? kEverything.high : kEverything.low,
+                 answer == false ? kEverything.low : kEverything.high};
+    }
     if (predicate.missing)
         (*predicate.missing ? range.high : range.low) =
             *predicate.missing ? kEverything.high : kEverything.low;

@@ -1,6 +1,7 @@
 // Checks target sets.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "check/context/context.hpp"
@@ -77,11 +78,46 @@ bool set_rows(Context& c, const ast::Target& declaration, Target& target) {
     return true;
 }
 
+/// Returns the encoder of the rows; kNone where it is not known, as of rows from a file.
+Index encoder_of(Context& c, const ast::Target& declaration, const ast::Target::Source& source) {
+    const auto* const frames = std::get_if<ast::Frames>(&source);
+    const bool is_image = is_encoded(source);
+    if (!is_image && frames == nullptr) return kNone;
+    const Reference* const by = c.scope.find(is_image ? declaration.encoder->text : frames->key);
+    if (by == nullptr) return kNone;
+    if (by->kind == NameKind::encoder) return is_image ? by->index : kNone;
+    return by->kind == NameKind::input && !is_image ? c.model.inputs[by->index].encoder : kNone;
+}
+
+/// Whether all rows are by one encoder, as far as it is known, and `by NAME` is about some of them.
+bool set_encoder(Context& c, const ast::Target& declaration, Index target) {
+    Index of_rows = kNone;
+    for (const ast::Target::Source& source : declaration.sources) {
+        const Index one = encoder_of(c, declaration, source);
+        if (one == kNone) continue;
+        if (of_rows != kNone && of_rows != one)
+            return c.refuse(Code::wrong_space, span_of(source),
+                            fmt::format("these rows of '{}' are by {}, those before them by {}",
+                                        declaration.name.text, c.model.encoders[one].name,
+                                        c.model.encoders[of_rows].name));
+        of_rows = one;
+    }
+    if (of_rows != kNone) c.encoder_of_target[target] = of_rows;
+    const bool is_needed = std::any_of(declaration.sources.begin(), declaration.sources.end(),
+                                       [](const auto& source) { return is_encoded(source); });
+    if (is_needed || !declaration.encoder) return true;
+    return c.refuse(Code::encoder_use, declaration.encoder->span,
+                    fmt::format("no row of '{}' is made of an image or video, so that 'by {}' says "
+                                "nothing; leave it out",
+                                declaration.name.text, declaration.encoder->text));
+}
+
 /// `of P(z)`: the rows are in the space of P(z) already.
 bool set_space(Context& c, const ast::Point& written, Target& target) {
     const Index index = check_point(c, written);
     if (index == kNone) return false;
     const Index space = without_delay(c, index);
+    c.point_of_target[static_cast<Index>(c.model.targets.size())] = space;
     const Point& point = c.model.points[space];
     if (point.is_projected()) target.space = space;
     if (point.dimension == target.dimension) return true;
@@ -103,6 +139,7 @@ bool set_fitted(Context& c, const ast::Fitted& written, Target& target) {
         target.hash = entry->hash;
     }
     const Index space = without_delay(c, fitted.point);
+    c.point_of_target[index] = space;
     if (c.model.points[space].is_projected()) target.space = space;
     return true;
 }
@@ -117,6 +154,7 @@ void check_targets(Context& c) {
         const auto* const fitted = std::get_if<ast::Fitted>(&declaration.sources[0]);
         bool good =
             fitted != nullptr ? set_fitted(c, *fitted, target) : set_rows(c, declaration, target);
+        good = good && (fitted != nullptr || set_encoder(c, declaration, index));
         good = good && (!declaration.space || set_space(c, *declaration.space, target));
         if (!good) c.scope.entity(NameKind::target, index).broken = true;
         c.model.targets.push_back(std::move(target));

@@ -219,6 +219,23 @@ std::optional<Steps> interval_steps(Context& c, const ast::Interval& interval) {
     return Steps{*low_steps, *high_steps};
 }
 
+std::string interval_text(const Context& c, std::uint64_t low, std::uint64_t high) {
+    const auto in_seconds = [&](std::uint64_t steps) -> std::string {
+        if (steps == kUnbounded) return "inf";
+        const std::string text = duration_text(steps, quantity(*c.step.rate), "s");
+        return text.find_first_of("/a") == std::string::npos ? text : "";  // 100/3, about 33.3
+    };
+    const auto in_steps = [](std::uint64_t steps) {
+        return steps == kUnbounded ? "inf" : diag::counted(steps, "step");
+    };
+    if (c.step.rate != nullptr) {
+        const std::string from = in_seconds(low);
+        const std::string to = in_seconds(high);
+        if (!from.empty() && !to.empty()) return fmt::format("[{}, {}]", from, to);
+    }
+    return fmt::format("[{}, {}]", in_steps(low), in_steps(high));
+}
+
 void warn_of_bare_bounds(Context& c) {
     if (c.step.rate == nullptr || c.steps_on_purpose || c.bare_bounds.empty()) return;
     const ast::Rate& rate = *c.step.rate;

@@ -28,6 +28,10 @@ bool is_finite_duration(Context& context, const ast::Bound& bound, std::string_v
 /// Returns the interval in steps; nothing after an error.
 std::optional<Steps> interval_steps(Context& context, const ast::Interval& interval);
 
+/// Returns "[0.5 s, inf]"; "[5 steps, inf]" without a rate, and where a bound is no decimal number
+/// of seconds.
+std::string interval_text(const Context& context, std::uint64_t low, std::uint64_t high);
+
 /// Warns of bounds without a unit in a spec with a rate: 2 may be meant as 2 s.
 void warn_of_bare_bounds(Context& context);
 
