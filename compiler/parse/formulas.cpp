@@ -22,14 +22,16 @@ const Token& symbol(antlr4::tree::ParseTree* child) {
     return *dynamic_cast<antlr4::tree::TerminalNode*>(child)->getSymbol();
 }
 
-/// Returns the primary that a sum consists of; nullptr if it has an operator of expressions.
-Grammar::PrimaryContext* only_primary(Grammar::SumContext& context) {
+/// Returns the factor that a sum consists of; nullptr if it has an operator of expressions.
+Grammar::UnsignedContext* only_factor(Grammar::SumContext& context) {
     if (context.children.size() != 1) return nullptr;
     auto& product = dynamic_cast<Grammar::ProductContext&>(*context.children[0]);
     if (product.children.size() != 1) return nullptr;
-    auto* const plain = dynamic_cast<Grammar::UnsignedContext*>(product.children[0]);
-    return plain != nullptr ? plain->primary() : nullptr;
+    return dynamic_cast<Grammar::UnsignedContext*>(product.children[0]);
 }
+
+/// Texts that would make a message hard to read are not quoted in it.
+constexpr std::size_t kLongestQuoted = 60;
 
 }  // namespace
 
@@ -124,7 +126,7 @@ Builder::Formula Builder::formula(Grammar::PrefixedContext& context) const {
 Builder::Formula Builder::formula(Grammar::ComparisonContext& context) const {
     auto& left = dynamic_cast<Grammar::SumContext&>(*context.children[0]);
     if (context.children.size() > 1) return compared(left, context);
-    if (Grammar::PrimaryContext* const primary = only_primary(left)) return formula(*primary);
+    if (Grammar::UnsignedContext* const factor = only_factor(left)) return formula(*factor);
     fail(diag::Code::mixed_up_kinds, span_of(context), "expected a formula, found an expression",
          "an expression becomes a formula by comparing it with a number, as in 'x - y > 0'");
 }
@@ -152,6 +154,32 @@ Builder::Formula Builder::compared(Grammar::SumContext& left,
     result.root->operator_span = span_of(op);
     if (result.height > kMaxHeight) too_high(span_of(op));
     return result;
+}
+
+Builder::Formula Builder::formula(Grammar::UnsignedContext& context) const {
+    Formula result = formula(*context.primary());
+    if (context.delay().empty()) return result;
+    std::string was = text(*context.primary());
+    if (was.size() > kLongestQuoted || was.find('\n') != std::string::npos) was = "(...)";
+    const std::string now = was;
+    for (Grammar::DelayContext* const ago : context.delay()) {
+        const std::string time = written_time(*ago);
+        was = fmt::format("O[{0}, {0}] {1}", time, was);
+    }
+    diag::Diagnostic error{diag::Code::mixed_up_kinds,
+                           "'@' gives an earlier number or point, not an earlier truth value",
+                           span_of(context)};
+    error.note(fmt::format("whether '{}' held then is '{}'", now, was));
+    if (result.root->kind == Kind::name)
+        error.note(fmt::format("if '{}' is a number, compare it with another, as in '{} > 0'", now,
+                               text(context)));
+    throw SyntaxError{std::move(error)};
+}
+
+std::string Builder::written_time(Grammar::DelayContext& context) const {
+    const std::string number = text(*context.amount());
+    if (context.unit() != nullptr || is_name(*context.start)) return text(context);
+    return fmt::format("{} {}", number, number == "1" ? "step" : ast::kStepsUnit);
 }
 
 Builder::Formula Builder::formula(Grammar::PrimaryContext& context) const {

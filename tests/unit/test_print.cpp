@@ -1,8 +1,15 @@
-// Tests ast::print: its text parses back to the same tree, and has no redundant bracket.
+// Tests ast::print: its text parses back to the same tree, and has no redundant bracket; and that
+// nothing of a declaration is dropped on the way to it.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <random>
+#include <regex>
+#include <set>
+#include <sstream>
 
+#include "parse/words.hpp"
 #include "parsing.hpp"
 
 namespace {
@@ -288,6 +295,105 @@ TEST(Print, WholeSpecsReadBackAsTheyWere) {
     EXPECT_EQ(again.errors(), "");
     EXPECT_EQ(again.tree(), parsed.tree());
     EXPECT_EQ(ast::print(again.spec), ast::print(parsed.spec));
+}
+
+// ---- nothing is dropped
+
+namespace fs = std::filesystem;
+
+std::string content_of(const fs::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path, std::ios::binary).rdbuf();
+    return text.str();
+}
+
+/// The specs of the folders, and those on pages.
+std::vector<std::string> corpus() {
+    std::vector<std::string> texts;
+    const std::regex on_page("```etl[^\n]*\n([^`]*)```");
+    for (const char* folder : {"docs", "examples", "tests"}) {
+        const fs::path root = fs::path(ETLC_SOURCE_DIR) / folder;
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root)) {
+            const fs::path& path = entry.path();
+            if (path.extension() == ".etl") texts.push_back(content_of(path));
+            if (path.extension() != ".md") continue;
+            const std::string page = content_of(path);
+            for (std::sregex_iterator at(page.begin(), page.end(), on_page), end; at != end; ++at)
+                texts.push_back((*at)[1]);
+        }
+    }
+    return texts;
+}
+
+/// The words of a declaration without its ';'.
+using Words = std::vector<std::string>;
+
+/// Returns one declaration of each form in the corpus: other names and numbers are no other form.
+std::vector<Words> forms_of_declarations() {
+    std::vector<Words> forms;
+    std::set<std::string> known;
+    for (std::string& text : corpus()) {
+        const source::File file("", std::move(text));
+        Words words;
+        std::string form;
+        for (const parse::Word& word : parse::words_of(file)) {
+            const std::string written(file.text(word.span));
+            if (written == ";") {
+                if (known.insert(form).second) forms.push_back(words);
+                words.clear();
+                form.clear();
+                continue;
+            }
+            using Kind = parse::Word::Kind;
+            words.push_back(written);
+            form += word.kind == Kind::name     ? "n"
+                    : word.kind == Kind::number ? "0"
+                    : word.kind == Kind::string ? "\"\""
+                                                : written;
+            form += ' ';
+        }
+    }
+    return forms;
+}
+
+/// Returns the declaration as printed; nothing if it is refused.
+std::optional<std::string> printed(const Words& words, std::size_t from = 0, std::size_t to = 0) {
+    std::string text = "spec a; ";
+    for (std::size_t i = 0; i < words.size(); ++i)
+        if (i < from || i >= to) text += words[i] + ' ';
+    const Parsed parsed(text + ';');
+    if (parsed.sink.has_errors() || parsed.spec.declarations.size() != 1) return std::nullopt;
+    return ast::print(parsed.spec);
+}
+
+int depth_of(const std::string& word) {
+    return word == "(" || word == "[" ? 1 : word == ")" || word == "]" ? -1 : 0;
+}
+
+/// Every optional piece of the grammar is a run of words with whole brackets, as is every operand
+/// or element that may be left out. Where the rest is a declaration, it is another one.
+TEST(Declarations, LoseAWordOnlyByAnError) {
+    constexpr std::size_t kLongest = 8;
+    const std::vector<Words> forms = forms_of_declarations();
+    EXPECT_GT(forms.size(), 800U);
+    int shorter = 0;
+    for (const Words& words : forms) {
+        const auto whole = printed(words);
+        if (!whole) continue;
+        for (std::size_t from = 0; from < words.size(); ++from) {
+            int depth = 0;
+            for (std::size_t to = from + 1; to <= std::min(words.size(), from + kLongest); ++to) {
+                depth += depth_of(words[to - 1]);
+                if (depth < 0) break;
+                if (depth > 0) continue;
+                const auto rest = printed(words, from, to);
+                shorter += rest ? 1 : 0;
+                if (rest == whole)
+                    ADD_FAILURE() << *whole << "says nothing of words " << from << " to " << to - 1;
+            }
+        }
+    }
+    EXPECT_GT(shorter, 5000);
 }
 
 }  // namespace
