@@ -229,8 +229,15 @@ def videos_are_refused():
 
 def late_frames_are_those_of_all():
     h264 = ["-c:v", "libx264", "-g", "20"]
-    kinds = (("late.mp4", h264), ("open.mkv", [*h264, "-x264-params", "open-gop=1:bframes=3"]),
+    # So narrow a picture is refreshed in two steps; its encoder says that one is enough.
+    narrow = [*h264, "-bf", "0", "-x264-params", "intra-refresh=1"]
+    hevc = ["-s", "64x64", "-c:v", "libx265", "-g", "20", "-x265-params"]
+    kinds = (("late.mp4", h264), ("late.ts", h264),
+             ("open.mkv", [*h264, "-x264-params", "open-gop=1:bframes=3"]),
              ("refresh.mkv", [*h264, "-x264-params", "intra-refresh=1"]),
+             ("narrow.mkv", narrow), ("narrow.mp4", narrow), ("narrow.ts", narrow),
+             ("leading.ts", [*hevc, "log-level=none:open-gop=1:bframes=3"]),
+             ("leading.mkv", [*hevc, "log-level=none:open-gop=1:bframes=3"]),
              ("old.avi", ["-c:v", "mpeg4", "-bf", "2", "-g", "20"]),
              ("late.webm", ["-c:v", "libvpx-vp9", "-deadline", "realtime", "-cpu-used", "8", "-g",
                             "20", "-auto-alt-ref", "1", "-lag-in-frames", "16"]),
@@ -272,6 +279,44 @@ def late_frames_are_those_of_all():
     pathlib.Path("damaged.mp4").write_bytes(whole)
     assert (video("damaged.mp4", "--only", 110)[0] == every[110]).all()
     refused(["video", "damaged.mp4"], "damaged")
+
+
+def transport_streams_are_read_where_they_are_whole():
+    """Streams may be joined, or begin anywhere; of lost packets nothing is made up."""
+    packet, video_id = 188, 0x100
+    for path, options in (("stream.ts", ["-c:v", "libx264", "-g", "12"]),
+                          ("hevc.ts", ["-s", "64x64", "-c:v", "libx265", "-g", "12",
+                                       "-x265-params", "log-level=none"])):
+        whole = make_video(path, *options, frames=36)
+        every = np.array(video(path))
+        packets = [whole[at : at + packet] for at in range(0, len(whole), packet)]
+        ours = [n for n, one in enumerate(packets) if (one[1] & 31) << 8 | one[2] == video_id]
+        pictures = [i for i, n in enumerate(ours) if packets[n][1] & 64] + [len(ours)]
+
+        def written(some):
+            pathlib.Path("part.ts").write_bytes(b"".join(some))
+            return "part.ts"
+
+        # A recording that began while the stream was running.
+        part = np.array(video(written(packets[ours[pictures[5]] + 1 :])))
+        assert len(part) in (12, 24) and (part == every[-len(part):]).all(), (path, len(part))
+        # Joined streams, whose time begins again.
+        both = np.array(video(written(packets + packets)))
+        assert (both == np.concatenate([every, every])).all(), path
+        some = video("part.ts", "--only", "3,40,71")
+        assert all((a == both[n]).all() for a, n in zip(some, (3, 40, 71))), path
+        refused(["video", "part.ts", "--rate", 10], "not evenly spaced", 66)
+        # Lost packets: the last one of a picture, all of one, and the same before a key frame.
+        for first, end in itertools.pairwise(pictures[10:14]):
+            for lost in (ours[end - 1 : end], ours[first:end]):
+                kept = [one for n, one in enumerate(packets) if n not in lost]
+                said = call(EMBEDDER, "video", written(kept), status=65)[1]
+                assert "damaged" in said, (path, lost, said)
+    call("ffmpeg", "-v", "error", "-i", "stream.ts", "-c", "copy", "-f", "segment",
+         "-segment_time", "1.2", "segment%d.ts")
+    segments = b"".join(pathlib.Path(f"segment{n}.ts").read_bytes() for n in range(3))
+    pathlib.Path("part.ts").write_bytes(segments)
+    assert (np.array(video("part.ts", "--rate", 10)) == np.array(video("stream.ts"))).all()
 
 
 def what_is_whole_is_written():
@@ -330,5 +375,6 @@ with tempfile.TemporaryDirectory() as folder:
     images_are_refused()
     videos_are_refused()
     late_frames_are_those_of_all()
+    transport_streams_are_read_where_they_are_whole()
     what_is_whole_is_written()
     os.chdir("/")

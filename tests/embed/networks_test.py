@@ -114,9 +114,9 @@ def exports_give_what_their_nodes_give():
         assert error <= TOLERANCE, (make, error)
 
 
-def refused(*words):
+def refused(*words, code="E1012"):
     said = call(ETLC, "embed", "t.etl", status=1)
-    for word in ("E1012", *words):
+    for word in (code, *words):
         assert word in said, (word, said)
     assert ".h:" not in said and ".cc:" not in said, "a place in a library's sources"
     assert len(said.splitlines()) == 5, said  # the error, the place of the encoder, the count
@@ -305,6 +305,36 @@ def what_is_given_is_what_is_declared():
     refused("13")
 
 
+def networks_that_draw_numbers_are_refused():
+    """They are in training mode. One that gives the same for everything is named."""
+    def save(make):
+        g = Graph()
+        flat = g.node("Flatten", "x")
+        g.save("net.onnx", [1, 3, 2, 2], make(g, flat), 12)
+
+    def constant(g, value):
+        return g.node("Constant", value=numpy_helper.from_array(np.array(value)))
+
+    spec("t.etl")
+    cause = "probably it is in training mode"
+    half = np.float32(0.5)
+    save(lambda g, x: g.node("Dropout", x, constant(g, half), constant(g, True)))
+    refused("'net' gives another embedding of the same frame the second time", cause, "model.eval()",
+            code="E1013")
+    save(lambda g, x: g.node("Add", x, g.node("RandomNormalLike", x, scale=0.1, seed=3.0)))
+    refused("expected at most 0.001", cause, code="E1013")
+    assert not os.path.exists("t.embedded.npz")
+    for make, words in ((lambda g, x: g.node("Mul", x, g.weight(0)), "it gives only zeros for 4"),
+                        (lambda g, x: g.node("Add", g.node("Mul", x, g.weight(0)), g.weight(2)),
+                         "it gives one and the same embedding for 4"),
+                        (lambda g, x: g.node("Dropout", x, constant(g, half)), "")):
+        save(make)
+        done = subprocess.run([ETLC, "embed", "t.etl"], capture_output=True, text=True)
+        assert done.returncode == 0 and words in done.stdout, (words, done)
+        assert ("it gives" in done.stdout) == (words != ""), done
+    os.remove("t.embedded.npz")
+
+
 def weights_in_another_file_are_refused():
     """Even in the working folder, where a library would load them."""
     g = Graph()
@@ -334,6 +364,7 @@ with tempfile.TemporaryDirectory() as folder:
     os.remove("t.embedded.npz")
     what_is_not_run_is_named()
     what_is_given_is_what_is_declared()
+    networks_that_draw_numbers_are_refused()
     weights_in_another_file_are_refused()
     models_of_another_form_are_refused()
     os.chdir("/")

@@ -115,7 +115,7 @@ def it_is_found_where_it_is_put():
 
 def the_version_is_part_of_the_fingerprint():
     """A program in place of etlc-embed, which reports other versions; it encodes an image and the
-    four reference frames."""
+    four reference frames, the first of them twice."""
     call("--data", "bay.png", "-o", "out", "--onnxruntime", LIBRARY)
     pathlib.Path("t.csv").write_text("")
     row = "\\000\\000\\200\\077" * 4
@@ -125,7 +125,7 @@ def the_version_is_part_of_the_fingerprint():
 onnxruntime) printf '{version}\\n/a library\\n' ;;
 images) exec {EMBEDDER} "$@" ;;
 encode) [ "$3 $4" = "--onnxruntime /a library" ] || exit 9
-    cat > /dev/null; printf '\\004\\000\\000\\000{5 * row}' ;;
+    cat > /dev/null; printf '\\004\\000\\000\\000{6 * row}' ;;
 esac
 """)
         call(ETLC_EMBEDDER=os.path.abspath("fake/etlc-embed"))

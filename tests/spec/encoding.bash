@@ -3,9 +3,12 @@
 
 dimension='\002\000\000\000'
 row='\000\000\200\077\000\000\000\100' # 1, 2
-# Behind what a spec names, an encoder gets the four reference frames of 480 x 640 pixels.
-references=$row$row$row$row
-count='n=$(wc -c); n=$((n < 3686432 ? n / 11 : (n - 3686432) / 11 + 4))'
+# Behind what a spec names, an encoder gets the four reference frames of 480 x 640 pixels, and the
+# first of them again.
+other='\000\000\000\100\000\000\000\100' # 2, 2
+references=$row$other$other$other$row
+count='n=$(wc -c); last=
+    [ $n -lt 4608040 ] || { n=$((n - 4608040)); last="'$references'"; }; n=$((n / 11))'
 
 # decodes [STATUS WORDS]: makes a program in place of etlc-embed, which prints one pixel per file,
 # and this row per frame, then exits with STATUS.
@@ -17,7 +20,7 @@ images) shift; for file; do printf '\\001\\000\\000\\000\\001\\000\\000\\000abc'
 video) printf '\\001\\000\\000\\000\\001\\000\\000\\000abc' ;;
 onnxruntime) echo "\${VERSION:-1.30.0}"; echo /a/library; exit 0 ;;
 encode) $count; printf '$dimension'
-    while [ \$n -gt 0 ]; do printf '$row'; n=\$((n - 1)); done ;;
+    while [ \$n -gt 0 ]; do printf '$row'; n=\$((n - 1)); done; printf "\$last" ;;
 esac
 echo "${2:-}" >&2
 exit ${1:-0}
@@ -43,7 +46,7 @@ END
 # embeds_each ARGUMENT...: `etlc embed` with an encoder that prints this row for every frame.
 embeds_each() {
     "$ETLC" embed t.etl "$@" --encoder-cmd "$count; printf '$dimension'
-        while [ \$n -gt 0 ]; do printf '$row'; n=\$((n - 1)); done"
+        while [ \$n -gt 0 ]; do printf '$row'; n=\$((n - 1)); done; printf \"\$last\""
 }
 
 # embeds BYTES ARGUMENT...: `etlc embed` with an encoder that reads all frames and writes these.

@@ -37,9 +37,15 @@ public:
         for (const Encoded& encoded : model_.encoded)
             if (encoded.encoder == index_ && !add(*running, encoded)) return false;
         embedded::Encoder& made = file_.encoders[encoder_.name];
+        std::vector<float> again;
         const auto keep = [&](std::vector<float> rows) { made.references = std::move(rows); };
+        const auto compare = [&](std::vector<float> row) { again = std::move(row); };
         auto trouble = running->add(*data::reference_frames(), "reference frames", keep);
+        if (!trouble)
+            if (auto failure = running->add(data::reference_frame(0), "reference frames", compare))
+                trouble = Trouble{std::move(*failure)};
         if (!trouble) trouble = running->finish();
+        if (!trouble) trouble = in_two_ways(made.references, again);
         if (trouble) return report(*trouble, {}, {});
         made.dimension = running->dimension();
         return true;
@@ -52,6 +58,21 @@ private:
         if (running) return std::move(*running);
         report({running.failure()}, {}, {});
         return nullptr;
+    }
+
+    /// Compares the embeddings of a frame that was encoded twice.
+    std::optional<Trouble> in_two_ways(const std::vector<float>& first,
+                                       const std::vector<float>& again) const {
+        const double difference =
+            data::relative_difference(again.data(), first.data(), again.size());
+        if (difference <= data::kSameEncoder) return std::nullopt;
+        return Trouble{
+            {Code::encoder_failed,
+             fmt::format("'{}' gives another embedding of the same frame the second time, at a "
+                         "distance of {:.2g} times its length, expected at most {:g}: probably "
+                         "it is in training mode, where dropout draws random numbers; export it "
+                         "after model.eval()",
+                         encoder_.name, difference, data::kSameEncoder)}};
     }
 
     bool add(Encoder& running, const Encoded& encoded) {

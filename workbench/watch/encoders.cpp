@@ -18,9 +18,6 @@ using check::Index;
 using diag::Code;
 using diag::Failure;
 
-/// The relative difference of embeddings up to which two encoders are the same, as for the
-/// encoder_agrees() of a generated class.
-constexpr double kMostDifference = 1e-3;
 constexpr int kPatienceMilliseconds = 1000;
 
 }  // namespace
@@ -111,12 +108,12 @@ bool Encoders::compare(Index input, const Stop& stop) {
                                             of.name)});
         const double difference =
             data::relative_difference(row.data(), &expected[frame * row.size()], row.size());
-        if (difference > kMostDifference)
+        if (difference > data::kSameEncoder)
             return fail(input, {Code::other_encoder,
                                 fmt::format("'{}' makes other embeddings than when `etlc embed` "
                                             "ran: of reference frame {} they differ by {:.2g}, "
                                             "expected at most {}",
-                                            of.name, frame, difference, kMostDifference)});
+                                            of.name, frame, difference, data::kSameEncoder)});
     }
     return true;
 }

@@ -24,6 +24,12 @@ using diag::Failure;
 
 constexpr std::string_view kEmbedder = "etlc-embed";
 
+std::string in_small_letters(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
 Failure stopped(Child& child, Code code) {
     return {code, fmt::format("is damaged or too much to read: the process that read it {}",
                               child.ending())};
@@ -84,10 +90,11 @@ std::string in_colour(std::string_view grey) {
 }
 
 bool is_video(const std::string& path) {
-    constexpr std::array<std::string_view, 6> kEndings = {".mp4", ".mkv",  ".avi",
-                                                          ".mov", ".webm", ".gif"};
+    constexpr std::array<std::string_view, 8> kEndings = {".mp4",  ".mkv", ".avi", ".mov",
+                                                          ".webm", ".gif", ".m4v", ".ts"};
+    const std::string small = in_small_letters(path);
     return std::any_of(kEndings.begin(), kEndings.end(),
-                       [&](std::string_view ending) { return path.ends_with(ending); });
+                       [&](std::string_view ending) { return small.ends_with(ending); });
 }
 
 std::string embedder_path() {
@@ -191,9 +198,7 @@ const std::vector<std::string> kEndings = {".png", ".jpg", ".jpeg"};
 }  // namespace
 
 bool is_image(const std::string& path) {
-    std::string small = path;
-    std::transform(small.begin(), small.end(), small.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string small = in_small_letters(path);
     return std::any_of(kEndings.begin(), kEndings.end(),
                        [&](const std::string& ending) { return small.ends_with(ending); });
 }

@@ -34,6 +34,11 @@ std::optional<Failure> why_no_source(const std::string& source) {
     if (source.find("://") != std::string::npos) return std::nullopt;
     if (!is_live_source(source)) {
         const auto why = why_unreadable(source);
+        const bool is_number = source.find_first_not_of("0123456789") == std::string::npos;
+        if (why && is_number)
+            return Failure{
+                Code::unreadable_video,
+                fmt::format("{}; a camera is named by its device, /dev/video{}", *why, source)};
         if (why) return Failure{Code::unreadable_video, *why};
     } else if (::access(source.c_str(), R_OK) != 0) {
         return Failure{Code::unreadable_video,

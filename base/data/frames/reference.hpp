@@ -13,6 +13,8 @@
 namespace etlc::data {
 
 inline constexpr std::uint32_t kReferenceFrames = 4;
+/// The relative difference up to which embeddings of a frame are by the same encoder.
+inline constexpr double kSameEncoder = 1e-3;
 
 /// Draws a frame of 480 x 640 pixels. `index`: below kReferenceFrames.
 Frame reference_frame(std::uint32_t index);

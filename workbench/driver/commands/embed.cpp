@@ -166,13 +166,27 @@ std::uint32_t shard_of(const embed::Recording& recording, std::uint32_t shards) 
     return static_cast<std::uint32_t>(data::xxh64(content) % shards) + 1;
 }
 
+/// Says where an encoder gives all reference frames, which have nothing in common, one embedding.
+std::string constant(const embedded::Encoder& encoder) {
+    const std::vector<float>& rows = encoder.references;
+    if (rows.empty() || !std::equal(rows.begin() + encoder.dimension, rows.end(), rows.begin()))
+        return "";
+    const bool is_zero = std::all_of(rows.begin(), rows.end(), [](float x) { return x == 0; });
+    return fmt::format(
+        "  it gives {} for {} different pictures: its weights may be missing, or "
+        "image, mean and deviation not those of its training\n",
+        is_zero ? "only zeros" : "one and the same embedding", data::kReferenceFrames);
+}
+
 std::string report(const check::Model& model, const embedded::File& file,
                    const std::vector<embed::Recording>& recordings, const std::string& folder,
                    const embed::Progress& made) {
     std::string text;
-    for (const auto& [name, encoder] : file.encoders)
+    for (const auto& [name, encoder] : file.encoders) {
         text += fmt::format("encoder {}: dimension {}, {} {}\n", name, encoder.dimension,
                             encoder.kind, embedded::fingerprint(encoder));
+        text += constant(encoder);
+    }
     for (const check::Encoded& encoded : model.encoded)
         if (const auto entry = file.entries.find(encoded.text); entry != file.entries.end())
             text += fmt::format("{}: {}\n", encoded.text, diag::counted(entry->second.rows, "row"));

@@ -11,6 +11,7 @@ extern "C" {
 }
 
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,6 +36,10 @@ struct FreeScaler {
 };
 using Scaler = std::unique_ptr<SwsContext, FreeScaler>;
 
+/// Returns whether decoding may begin with a packet. Of packets ahead of such a one, decoders make
+/// pictures with grey in place of what they refer to; that of H.264 leaves these out itself.
+bool may_begin(const AVPacket& packet, const AVCodecParameters& codec);
+
 class Decoder {
 public:
     explicit Decoder(const std::string& path);
@@ -44,7 +49,7 @@ public:
     /// Decodes the next picture; false at the end.
     bool next(AVFrame* picture);
 
-    /// Skips to the last key frame before `frame` where that is ahead; see `shown`.
+    /// Skips to the last start before `frame` where that is ahead; see `shown`.
     void go_towards(std::int64_t frame);
 
     /// Returns the number of pictures that the container declares; 0 where it declares none.
@@ -57,8 +62,16 @@ public:
     std::int64_t first_time() const { return times_.empty() ? AV_NOPTS_VALUE : times_.front(); }
 
 private:
+    /// A picture where decoding may start.
+    struct Start {
+        std::int64_t shown = 0;  ///< time stamps of its packet
+        std::int64_t decoded = 0;
+    };
+
     void open(const std::string& path);
     void send();
+    bool is_too_early();
+    void check_whole();
     bool read_packet();
     void note_packets();
     void start_again();
@@ -68,6 +81,8 @@ private:
     Format format_;
     Codec codec_;
     Packet packet_;
+    std::deque<Packet> ahead_;  ///< packets behind `packet_` that were read already
+    std::optional<bool> is_only_joined_;
     int stream_ = -1;
     std::int64_t shown_ = 0;
     std::int64_t discarded_ = 0;  ///< packets of pictures that are not shown
@@ -75,8 +90,11 @@ private:
     std::optional<std::int64_t> noted_;  ///< packets of pictures that are shown
     bool has_noted_ = false;
     bool has_jumped_ = false;
-    std::vector<std::int64_t> times_;   ///< times of all pictures, ascending; empty: ambiguous
-    std::vector<std::int64_t> starts_;  ///< times of the key frames
+    bool has_begun_ = false;               ///< a packet was decoded since the last jump
+    std::int64_t start_ = AV_NOPTS_VALUE;  ///< time of the picture to begin with; none: the first
+    bool begins_with_start_ = true;        ///< the first packet is a start
+    std::vector<std::int64_t> times_;      ///< times of all pictures, ascending; empty: ambiguous
+    std::vector<Start> starts_;            ///< in the order of their times
 };
 
 }  // namespace etlc::embed::worker

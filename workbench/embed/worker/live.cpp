@@ -125,7 +125,9 @@ private:
             return;
         }
         if (error < 0) refuse(kRefused, "has stopped: " + words_of_error(error));
-        if (packet_->stream_index == stream_) {
+        const bool is_ours = packet_->stream_index == stream_;
+        if (is_ours && !has_begun_) has_begun_ = may_begin(*packet_, *stream()->codecpar);
+        if (is_ours && has_begun_) {
             const int sent = avcodec_send_packet(codec_.get(), packet_.get());
             if (sent < 0)
                 note_damage(sent);
@@ -144,6 +146,7 @@ private:
     Codec codec_;
     Packet packet_;
     int stream_ = -1;
+    bool has_begun_ = false;
     int damaged_ = 0;  ///< packets in a row
 };
 
