@@ -319,8 +319,8 @@ def networks_that_draw_numbers_are_refused():
     cause = "probably it is in training mode"
     half = np.float32(0.5)
     save(lambda g, x: g.node("Dropout", x, constant(g, half), constant(g, True)))
-    refused("'net' gives another embedding of the same frame the second time", cause, "model.eval()",
-            code="E1013")
+    refused("'net' gives another embedding of the same frame the second time", cause,
+            "model.eval()", code="E1013")
     save(lambda g, x: g.node("Add", x, g.node("RandomNormalLike", x, scale=0.1, seed=3.0)))
     refused("expected at most 0.001", cause, code="E1013")
     assert not os.path.exists("t.embedded.npz")

@@ -34,7 +34,7 @@ bool is_shown_by_packets(AVCodecID codec) {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// What a packet is, by the units of H.264 (ITU-T H.264, table 7-1) and HEVC (H.265, table 7-1).
+/// The content of a packet, by its units in H.264 (ITU-T H.264, table 7-1) and HEVC (H.265, 7-1).
 struct Content {
     bool is_start = false;   ///< decoding may start here, if pictures shown before are left out
     bool is_closed = false;  ///< a start behind which nothing refers to pictures before it
@@ -250,9 +250,9 @@ bool Decoder::read_packet() {
 }
 
 /// Refuses a picture of which packets of a transport stream were lost. Where two streams were
-/// joined, their packets are numbered anew, and FFmpeg takes the last picture of the first one, or
-/// the picture before, for such a picture. What follows may not refer to it, and no time may be
-/// missing there.
+/// joined, the packets are numbered from 0 again, and FFmpeg takes the last picture of the first
+/// one, or the picture before, for such a picture. What follows may not refer to it, and no time
+/// may be missing there.
 void Decoder::check_whole() {
     if (!is_only_joined_) is_only_joined_ = is_only_joined(path_.substr(path_.find(':') + 1));
     if (!*is_only_joined_) damaged(AVERROR_INVALIDDATA);
