@@ -51,7 +51,7 @@ shift
 exec cat "$@"
 """
 EPISODES, STEPS = 9, 4
-TARGETS = 1 + 4  # reference frames too
+TARGETS = 1 + 5  # reference frames too, the first of them twice
 PAUSE = "0.004"
 numbers = random.Random(20)
 
