@@ -88,25 +88,50 @@ bool Items::take_recording(const std::string& key, const Json& item) {
     return !hash;
 }
 
-data::InputContent Items::content_of(const Json& json, const std::string& place) const {
-    constexpr std::size_t kHash = 16;
-    constexpr std::size_t kUnit = 8;
-    const std::string& digits = json.text;
-    data::InputContent result;
-    bool sound = json.kind == Json::Kind::string && digits.size() > kHash && digits[kHash] == ':' &&
-                 digits.size() % kUnit == 1 &&
-                 data::hash_of_text(digits.substr(0, kHash)).has_value();
-    for (std::size_t at = kHash + 1; sound && at < digits.size(); at += kUnit) {
+namespace {
+
+/// Takes ascending numbers of 8 hex digits from the begin of the text, up to its end or a colon.
+bool take_units(std::string_view& text, data::Sketch& units) {
+    constexpr std::size_t kDigits = 8;
+    while (!text.empty() && text[0] != ':') {
         std::uint32_t unit = 0;
-        const char* end = digits.data() + at + kUnit;
-        sound = std::from_chars(digits.data() + at, end, unit, 16).ptr == end &&
-                (result.sketch.empty() || result.sketch.back() < unit);
-        result.sketch.push_back(unit);
+        const char* const end = text.data() + kDigits;
+        if (text.size() < kDigits || std::from_chars(text.data(), end, unit, 16).ptr != end ||
+            (!units.empty() && units.back() >= unit))
+            return false;
+        units.push_back(unit);
+        text.remove_prefix(kDigits);
     }
-    if (!sound)
-        fail(code_, place, json, "16 hex digits, a colon, and ascending numbers of 8 hex digits");
-    result.hash = digits.substr(0, kHash);
+    return true;
+}
+
+std::optional<data::InputContent> parse_content(std::string_view text) {
+    constexpr std::size_t kHash = 16;
+    data::InputContent result;
+    if (text.size() <= kHash || text[kHash] != ':' || !data::hash_of_text(text.substr(0, kHash)))
+        return std::nullopt;
+    result.hash = text.substr(0, kHash);
+    text.remove_prefix(kHash + 1);
+    if (!take_units(text, result.sketch)) return std::nullopt;
+    if (text.empty()) return result;
+    const bool recurs = text.starts_with(data::kRecurring);
+    result.samples = recurs ? data::Samples::recurring : data::Samples::apart;
+    text.remove_prefix(recurs ? data::kRecurring.size() : 0);
+    if (!recurs && text != data::kApart) return std::nullopt;
+    if (recurs && (!take_units(text, result.changes) || !text.empty())) return std::nullopt;
     return result;
+}
+
+}  // namespace
+
+data::InputContent Items::content_of(const Json& json, const std::string& place) const {
+    auto content = json.kind == Json::Kind::string ? parse_content(json.text) : std::nullopt;
+    if (!content)
+        fail(code_, place, json,
+             fmt::format("16 hex digits, a colon, and ascending numbers of 8 hex digits; for an "
+                         "embedding then '{}', or '{}' and such numbers",
+                         data::kApart, data::kRecurring));
+    return std::move(*content);
 }
 
 std::optional<Failure> Items::first_repeated() const {

@@ -103,7 +103,8 @@ void Writer::operator()(const std::string& key, const std::vector<std::uint64_t>
                [&](std::size_t i) { to_.add('"' + data::hash_text(episodes[i]) + '"'); });
 }
 
-/// Writes for each episode and input the hash, a colon and the sketch, eight digits a unit.
+/// Writes for each episode and input the hash, a colon and the sketch, eight digits a unit; for an
+/// embedding then what its samples tell.
 void Writer::operator()(const std::string& key, const data::KnownEpisodes& recordings,
                         Presence presence) {
     if (recordings.empty() && presence == Presence::where_any) return;
@@ -113,8 +114,15 @@ void Writer::operator()(const std::string& key, const data::KnownEpisodes& recor
         std::map<std::string, std::string> inputs;
         for (const auto& [name, of_input] : content) {
             std::string& digits = inputs[name] = of_input.hash + ":";
-            for (const std::uint32_t unit : of_input.sketch)
-                fmt::format_to(std::back_inserter(digits), "{:08x}", unit);
+            const auto add = [&](const data::Sketch& units) {
+                for (const std::uint32_t unit : units)
+                    fmt::format_to(std::back_inserter(digits), "{:08x}", unit);
+            };
+            add(of_input.sketch);
+            if (of_input.samples == data::Samples::apart) digits += data::kApart;
+            if (of_input.samples != data::Samples::recurring) continue;
+            digits += data::kRecurring;
+            add(of_input.changes);
         }
         all(data::hash_text(hash), inputs, Presence::always);
     });

@@ -124,7 +124,7 @@ TEST(Overlap, OfShortEpisodesTwoFramesAreEnough) {
     const Numbers world = random_numbers(3, 4);
     EXPECT_FALSE(found(episode(joined(joined(world, world), world)),
                        episode(joined(joined(world, piece(world, 0, 1)), joined(world, world)))));
-    // If another input has more units, a few frames of this one do not count.
+    // A few other frames of one input do not hide that another is the same.
     const auto both = [](const Numbers& z, const Numbers& w) {
         return EpisodeContent{{"z", content_of(z, true)}, {"w", content_of(w, true)}};
     };
@@ -159,10 +159,110 @@ TEST(Overlap, LooksAtCommonInputs) {
     EXPECT_TRUE(found(episode(z), both)->equal);
     EXPECT_FALSE(found(both, EpisodeContent{}));
     EXPECT_FALSE(found(both, EpisodeContent{{"v", content_of(z, true)}}));
-    // A camera that saw the same wall is not a common recording.
+    // One of two embeddings is enough.
     const EpisodeContent other{{"z", content_of(random_numbers(50, 3), true)},
                                {"w", content_of(w, true)}};
-    EXPECT_FALSE(found(both, other));
+    const auto overlap = found(both, other);
+    ASSERT_TRUE(overlap);
+    EXPECT_FALSE(overlap->equal);
+    // A camera that saw the same wall is not a common recording.
+    const Numbers wall(50, 0.25F);
+    const auto with_wall = [&](unsigned seed) {
+        return EpisodeContent{{"z", content_of(random_numbers(50, seed), true)},
+                              {"w", content_of(wall, true)}};
+    };
+    EXPECT_FALSE(found(with_wall(1), with_wall(3)));
+    EXPECT_TRUE(found(with_wall(1), with_wall(1))->equal);
+}
+
+/// An embedding beside a scalar.
+EpisodeContent beside(const Numbers& z, const Numbers& x) {
+    return {{"x", content_of(x, false)}, {"z", content_of(z, true)}};
+}
+
+Numbers clock_of(std::size_t steps) {
+    Numbers times(steps);
+    for (std::size_t t = 0; t < steps; ++t) times[t] = 0.1F * static_cast<float>(t);
+    return times;
+}
+
+TEST(Overlap, AnEmbeddingIsTheSameWhateverTheScalars) {
+    for (const std::size_t n : {3U, 12U, 60U, 3000U}) {
+        const Numbers z = random_numbers(n, 1);
+        const auto scalars = [&](unsigned seed) { return random_numbers(n, seed); };
+        const auto equal = found(beside(z, scalars(2)), beside(z, scalars(3)));
+        ASSERT_TRUE(equal) << n;
+        EXPECT_TRUE(equal->equal) << n;
+        const auto part = found(beside(z, scalars(2)), beside(piece(z, 0, n - 1), scalars(3)));
+        ASSERT_TRUE(part) << n;
+        EXPECT_FALSE(part->equal) << n;
+        // Equal scalars do not make one recording of two embeddings.
+        EXPECT_FALSE(found(beside(z, scalars(2)), beside(random_numbers(n, 4), scalars(2)))) << n;
+        EXPECT_FALSE(found(beside(z, clock_of(n)), beside(random_numbers(n, 4), clock_of(n)))) << n;
+    }
+}
+
+/// Stays at some of the samples of a world, one after the other.
+Numbers walk(const Numbers& world, std::size_t stays, std::size_t longest, unsigned seed) {
+    std::mt19937 random(seed);
+    Numbers samples;
+    std::size_t at = world.size();
+    for (std::size_t i = 0; i < stays; ++i) {
+        std::size_t next = random() % world.size();
+        while (next == at) next = random() % world.size();
+        at = next;
+        samples.insert(samples.end(), 1 + random() % longest, world[at]);
+    }
+    return samples;
+}
+
+TEST(Overlap, AnEmbeddingThatStandsStillTellsByItsChanges) {
+    for (std::size_t different = 5; different <= 12; ++different)
+        for (unsigned seed = 0; seed < 20; ++seed) {
+            const auto stood = [&](unsigned by, std::size_t longest) {
+                return walk(random_numbers(different, 1000 * by + seed), different, longest, seed);
+            };
+            // Other recordings beside the same clock, of as many different samples or fewer.
+            const Numbers a = stood(1, 20);
+            const Numbers b = stood(2, 20);
+            const Numbers c = walk(random_numbers(different - 2, seed + 7000), 9, 20, seed + 1);
+            EXPECT_FALSE(found(beside(a, clock_of(a.size())), beside(b, clock_of(b.size()))));
+            EXPECT_FALSE(found(beside(a, clock_of(a.size())), beside(c, clock_of(c.size()))));
+            // A world of so few images: other recordings show all of them too.
+            const Numbers world = random_numbers(different, 3000 + seed);
+            const Numbers once = walk(world, 30, 9, seed);
+            const Numbers again = walk(world, 30, 9, seed + 500);
+            EXPECT_FALSE(
+                found(beside(once, clock_of(once.size())), beside(again, clock_of(again.size()))))
+                << different << ' ' << seed;
+            // The same one, beside other scalars, whole and cut on both sides.
+            const Numbers x = random_numbers(once.size(), 5);
+            const auto equal = found(beside(once, clock_of(once.size())), beside(once, x));
+            ASSERT_TRUE(equal);
+            EXPECT_TRUE(equal->equal);
+            const std::size_t rest = once.size() - 20;
+            const auto part = found(beside(once, x), beside(piece(once, 7, rest), clock_of(rest)));
+            ASSERT_TRUE(part) << different << ' ' << seed;
+            EXPECT_FALSE(part->equal);
+        }
+}
+
+TEST(Overlap, ASampleThatNeverChangesLeavesItToTheOthers) {
+    const Numbers task(60, 0.5F);  // the embedding of an instruction
+    const auto with_task = [&](const Numbers& x) { return beside(task, x); };
+    const Numbers x = random_numbers(60, 1);
+    EXPECT_FALSE(found(with_task(x), with_task(random_numbers(60, 2))));
+    EXPECT_TRUE(found(with_task(x), with_task(x))->equal);
+    EXPECT_TRUE(found(with_task(x), beside(piece(task, 0, 50), piece(x, 0, 50))));
+    EXPECT_FALSE(found(with_task(x), beside(Numbers(60, 0.25F), x)));  // another instruction
+}
+
+TEST(Overlap, FilesOfEarlierVersionsDoNotSayWhatAnInputIs) {
+    const Numbers z = random_numbers(60, 1);
+    EpisodeContent earlier = beside(z, random_numbers(60, 2));
+    for (auto& [name, content] : earlier) content.samples = Samples::runs;
+    EXPECT_TRUE(found(earlier, beside(z, random_numbers(60, 3)))->equal);
+    EXPECT_FALSE(found(earlier, beside(random_numbers(60, 4), random_numbers(60, 2))));
 }
 
 TEST(Overlap, FindsTheEqualOneBeforeAPart) {

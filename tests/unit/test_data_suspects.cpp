@@ -53,7 +53,11 @@ private:
             units.push_back(unit());
         std::sort(units.begin(), units.end());
         units.erase(std::unique(units.begin(), units.end()), units.end());
-        return {hash_text(random_()), units};
+        InputContent result{hash_text(random_()), units};
+        if (name == "x") return result;
+        result.samples = draw(4) == 0 ? Samples::recurring : Samples::apart;
+        if (result.samples == Samples::recurring) result.changes = units;
+        return result;
     }
 
     std::mt19937_64 random_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
 
 #include "artifacts/file.hpp"
@@ -33,13 +34,20 @@ TEST(ThresholdsOfEpisodes, FaultsOfRecordings) {
     EXPECT_EQ(message(R"("recordings": {"0123456789abcdef": [{}], "x": 1})"),
               "'recordings.0123456789abcdef' is an array, expected an object named by a content "
               "hash of 16 hex digits");
-    for (const std::string wrong : {"0123456789abcdef:0000000200000001", "0123456789abcdef",
-                                    "0123456789abcdef:0000001", "0123456789abcdeg:00000001"})
-        EXPECT_EQ(message(fmt::format(R"("recordings": {{{}, "0000000000000001": {{"y": "{}"}}}})",
-                                      recording, wrong)),
-                  fmt::format("'recordings.0000000000000001.y' is the text '{}', expected 16 hex "
-                              "digits, a colon, and ascending numbers of 8 hex digits",
-                              wrong));
+    for (const std::string wrong :
+         {"0123456789abcdef:0000000200000001", "0123456789abcdef", "0123456789abcdef:0000001",
+          "0123456789abcdeg:00000001", "0123456789abcdef:00000001:",
+          "0123456789abcdef:00000001:aparts", "0123456789abcdef:00000001:recurring",
+          "0123456789abcdef:00000001:recurring:0000000200000001",
+          "0123456789abcdef:00000001:recurring:00000001:apart"})
+        EXPECT_EQ(
+            message(fmt::format(R"("recordings": {{{}, "0000000000000001": {{"y": "{}"}}}})",
+                                recording, wrong)),
+            fmt::format(
+                "'recordings.0000000000000001.y' is the text '{}', expected 16 hex "
+                "digits, a colon, and ascending numbers of 8 hex digits; for an embedding then "
+                "':apart', or ':recurring:' and such numbers",
+                wrong));
     EXPECT_EQ(message("\"recordings\": {" + recording + "}"), "none");
 }
 
@@ -107,7 +115,10 @@ File many_episodes() {
         for (std::uint32_t i = 0; i < sketch.size(); ++i) sketch[i] = e + 1000 * i;
         const std::uint64_t hash = (std::uint64_t{e} * 0x9e3779b97f4a7c15U) ^ e;
         file.episodes.push_back(hash);
-        file.recordings.add(hash, {{"z", {data::hash_text(hash), std::move(sketch)}}});
+        data::InputContent content{data::hash_text(hash), std::move(sketch)};
+        content.samples = static_cast<data::Samples>(e % 3);
+        if (content.samples == data::Samples::recurring) content.changes.resize(e % 2, e);
+        file.recordings.add(hash, {{"z", std::move(content)}});
     }
     return file;
 }
@@ -130,12 +141,18 @@ TEST(ThresholdsOfEpisodes, LargeFilesThatAreWrittenAreRead) {
     ASSERT_TRUE(again) << again.failure().message;
     EXPECT_EQ(again->episodes, file.episodes);
     std::size_t recordings = 0;
+    std::array<std::size_t, 3> of_kind{};
+    std::size_t changes = 0;
     again->recordings.for_each([&](std::uint64_t hash, const data::EpisodeContent& content) {
         EXPECT_EQ(content.at("z").hash, data::hash_text(hash));
         EXPECT_EQ(content.at("z").sketch.size(), 120U);
+        ++of_kind[static_cast<std::size_t>(content.at("z").samples)];
+        changes += content.at("z").changes.size();
         ++recordings;
     });
     EXPECT_EQ(recordings, file.episodes.size());
+    EXPECT_EQ(of_kind, (std::array<std::size_t, 3>{23'334, 23'333, 23'333}));
+    EXPECT_EQ(changes, 11'666U);
 }
 
 TEST(ThresholdsOfEpisodes, WhatStaysInMemoryIsLimited) {

@@ -34,57 +34,124 @@ std::string_view bytes_of(const std::uint32_t* bits, std::size_t n) {
     return {reinterpret_cast<const char*>(bits), 4 * n};
 }
 
-bool equal_in_common(const EpisodeContent& a, const EpisodeContent& b) {
-    bool any = false;
-    for (const auto& [name, content] : a) {
-        const auto other = b.find(name);
-        if (other == b.end()) continue;
-        if (other->second.hash != content.hash) return false;
-        any = true;
-    }
-    return any;
+std::uint64_t hash_of(std::uint64_t number, std::uint64_t seed) {
+    std::array<char, 8> bytes{};
+    for (unsigned i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(number >> (8 * i));
+    return xxh64({bytes.data(), bytes.size()}, seed);
 }
 
 bool is_complete(const Sketch& sketch) {
     return sketch.size() < kAtLeastKept;
 }
 
-/// Returns the least share over the inputs that have enough units or, where none has, a few.
+/// What one input tells about two episodes.
+struct Verdict {
+    enum class Kind : std::uint8_t { nothing, different, same };
+    Kind kind = Kind::nothing;
+    double share = 0;  ///< `same`: in common
+};
+
+/// Compares the units of an embedding: a few are enough only if all of both are compared.
+Verdict by_units(const Sketch& a, const Sketch& b) {
+    const auto all = share(a, b, 1);
+    if (!all) return {};
+    if (*all <= 0.5) return {Verdict::Kind::different};
+    const std::size_t least = is_complete(a) && is_complete(b) ? kFewestInCommon : kLeastUnits;
+    return share(a, b, least) ? Verdict{Verdict::Kind::same, *all} : Verdict{};
+}
+
+Verdict verdict(const InputContent& a, const InputContent& b) {
+    const Verdict by_samples = by_units(a.sketch, b.sketch);
+    const bool both_recur = a.samples == Samples::recurring && b.samples == Samples::recurring;
+    if (by_samples.kind == Verdict::Kind::different || !both_recur) return by_samples;
+    return by_units(a.changes, b.changes);
+}
+
+/// Files of earlier versions do not say what an input is.
+bool are_of_embedding(const InputContent& a, const InputContent& b) {
+    return a.samples != Samples::runs || b.samples != Samples::runs;
+}
+
+/// Calls `visit(a, b)` with the contents of each input that both have.
+template <class Visit>
+void for_each_common(const EpisodeContent& a, const EpisodeContent& b, const Visit& visit) {
+    for (const auto& [name, content] : a)
+        if (const auto other = b.find(name); other != b.end()) visit(content, other->second);
+}
+
+bool equal_in_common(const EpisodeContent& a, const EpisodeContent& b) {
+    bool any = false;
+    bool all_equal = true;
+    bool embeddings_equal = true;
+    bool embedding_tells = false;
+    for_each_common(a, b, [&](const InputContent& one, const InputContent& other) {
+        const bool equal = one.hash == other.hash;
+        const bool of_embedding = are_of_embedding(one, other);
+        any = true;
+        all_equal &= equal;
+        embeddings_equal &= equal || !of_embedding;
+        embedding_tells |= of_embedding && verdict(one, other).kind == Verdict::Kind::same;
+    });
+    return any && (all_equal || (embeddings_equal && embedding_tells));
+}
+
+/// Returns the share that makes two episodes parts of one recording; nothing if they are not.
 std::optional<double> share_in_common(const EpisodeContent& a, const EpisodeContent& b) {
-    std::optional<double> least;
-    std::optional<double> of_few;
-    const auto take = [](std::optional<double>& all, std::optional<double> here) {
-        if (here) all = std::min(all.value_or(1), *here);
-    };
-    for (const auto& [name, content] : a) {
-        const auto other = b.find(name);
-        if (other == b.end()) continue;
-        const Sketch& there = other->second.sketch;
-        take(least, share(content.sketch, there));
-        if (is_complete(content.sketch) && is_complete(there))
-            take(of_few, share(content.sketch, there, kFewestInCommon));
-    }
-    return least ? least : of_few;
+    std::optional<double> of_embeddings;  // the greatest
+    std::optional<double> of_scalars;     // the least
+    bool differ = false;
+    for_each_common(a, b, [&](const InputContent& one, const InputContent& other) {
+        if (!are_of_embedding(one, other)) {
+            if (const auto here = share(one.sketch, other.sketch))
+                of_scalars = std::min(of_scalars.value_or(1), *here);
+            return;
+        }
+        const Verdict found = verdict(one, other);
+        differ |= found.kind == Verdict::Kind::different;
+        if (found.kind == Verdict::Kind::same)
+            of_embeddings = std::max(of_embeddings.value_or(0), found.share);
+    });
+    if (of_embeddings) return of_embeddings;
+    return !differ && of_scalars && *of_scalars > 0.5 ? of_scalars : std::nullopt;
 }
 
 }  // namespace
 
 void ContentReader::add(const std::uint32_t* bits, std::size_t n, bool present) {
     const std::uint64_t sample = xxh64(bytes_of(bits, n));
-    std::array<char, 8> bytes{};
-    for (unsigned i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(sample >> (8 * i));
-    hash_ = xxh64({bytes.data(), bytes.size()}, hash_);
+    hash_ = hash_of(sample, hash_);
     if (!tells_alone_)
         run_[steps_ % kRun] = n == 1 ? bits[0] : static_cast<std::uint32_t>(sample >> 32U);
     ++steps_;
     if (tells_alone_) {
         present_ += present ? 1 : 0;
-        if (present) add_unit(sample);
+        if (present) units_.add(sample);
+        follow(sample, present);
     } else if (steps_ >= kRun && run_tells()) {
         std::array<std::uint32_t, kRun> in_order{};
         for (std::size_t i = 0; i < kRun; ++i) in_order[i] = run_[(steps_ + i) % kRun];
-        add_unit(xxh64(bytes_of(in_order.data(), kRun)));
+        units_.add(xxh64(bytes_of(in_order.data(), kRun)));
     }
+}
+
+void ContentReader::follow(std::uint64_t sample, bool present) {
+    if (different_.size() == kManySamples) return;
+    if (steps_ > 1 && stay_.sample == sample) {
+        ++stay_.steps;
+        return;
+    }
+    if (present && std::find(different_.begin(), different_.end(), sample) == different_.end())
+        different_.push_back(sample);
+    const Stay before = stay_;
+    stay_ = {sample, 1};
+    if (steps_ - 1 == before.steps) return;  // the first, whose begin was not seen
+    if (earlier_.size() == kRun) earlier_.erase(earlier_.begin());
+    earlier_.push_back(before);
+    std::uint64_t steps = 0;
+    std::uint64_t unit = sample;
+    for (std::size_t i = earlier_.size(); i-- > 0 && steps < kRun; steps += earlier_[i].steps)
+        unit = hash_of(earlier_[i].steps, hash_of(earlier_[i].sample, unit));
+    if (steps >= kRun) changes_.add(unit);
 }
 
 bool ContentReader::run_tells() const {
@@ -93,7 +160,7 @@ bool ContentReader::run_tells() const {
     return std::unique(sorted.begin(), sorted.end()) - sorted.begin() >= std::ptrdiff_t{kRun / 2};
 }
 
-void ContentReader::add_unit(std::uint64_t hash) {
+void Sketching::add(std::uint64_t hash) {
     constexpr std::size_t kRoom = 1024;
     const auto unit = static_cast<std::uint32_t>(hash >> 32U);
     if (unit > greatest_) return;
@@ -104,15 +171,25 @@ void ContentReader::add_unit(std::uint64_t hash) {
     room_ = 2 * units_.size() + kRoom;
 }
 
+Sketch Sketching::sketch() const {
+    Sketch result = units_;
+    sift(result);
+    return result;
+}
+
 InputContent ContentReader::content() const {
     InputContent result;
     result.hash = fmt::format("{:016x}", xxh64(fmt::format("{} steps", steps_), hash_));
-    result.sketch = units_;
-    sift(result.sketch);
-    // A few runs mostly repeat the same samples, and a few frequent samples are those of a world
-    // with few images. A short episode has no more than a few.
-    const bool is_short = tells_alone_ && present_ < kLeastUnits;
-    if (!is_short && result.sketch.size() < kLeastUnits) result.sketch.clear();
+    result.sketch = units_.sketch();
+    if (!tells_alone_) {
+        // A few runs mostly repeat the same samples.
+        if (result.sketch.size() < kLeastUnits) result.sketch.clear();
+        return result;
+    }
+    const std::size_t different = different_.size();
+    const bool recurs = different < kManySamples && present_ >= 2 * different;
+    result.samples = recurs ? Samples::recurring : Samples::apart;
+    if (recurs) result.changes = changes_.sketch();
     return result;
 }
 
@@ -155,6 +232,7 @@ void Recordings::add(const EpisodeContent& content) {
     for (const auto& [name, of_input] : content) {
         by_hash_[name].add(xxh64(of_input.hash), episode);
         EpisodesByKey& units = by_unit_[name];
+        if (of_input.sketch.size() < kFewestInCommon) continue;
         for (const std::uint32_t unit : of_input.sketch) units.add(unit, episode);
     }
 }
@@ -170,6 +248,7 @@ std::optional<Overlap> Recordings::find(const EpisodeContent& content) const {
                 equal = episode;
         });
         if (equal) return Overlap{*equal, 1, true};
+        if (of_input.sketch.size() < kFewestInCommon) continue;
         std::unordered_map<std::uint32_t, std::uint32_t> in_common;
         const EpisodesByKey& units = by_unit_.at(name);
         const std::uint32_t fewest = fewest_in_common(of_input.sketch);
@@ -182,8 +261,8 @@ std::optional<Overlap> Recordings::find(const EpisodeContent& content) const {
             });
     }
     for (const std::uint32_t episode : perhaps) {
-        const auto shared = share_in_common(content, all_[episode]);
-        if (shared && *shared > 0.5) return Overlap{episode, *shared, false};
+        if (const auto shared = share_in_common(content, all_[episode]))
+            return Overlap{episode, *shared, false};
     }
     return std::nullopt;
 }

@@ -2,8 +2,9 @@
 // Takes: the samples of each input, a step after the other. Gives: per input a hash of all samples,
 // and a sketch, a sample of hashes from which the share of equal content is estimated. Keeps true:
 // the same float32 values give the same result on every machine; inputs that only one episode has
-// do not count. This detects episodes given twice by mistake; it is no defence against one that was
-// manipulated to pass.
+// do not count; an embedding decides by itself, whatever scalars were recorded with it. This
+// detects episodes given twice by mistake; it is no defence against one that was manipulated to
+// pass.
 #pragma once
 
 #include <array>
@@ -11,6 +12,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "data/traces/trace.hpp"
@@ -23,7 +25,7 @@ namespace etlc::data {
 /// and runs in which little happens, also agree in unrelated recordings.
 using Sketch = std::vector<std::uint32_t>;
 
-/// Fewer units of an input are evidence only where no input has as many.
+/// Fewer units are evidence only if all of both episodes are compared.
 inline constexpr std::size_t kLeastUnits = 8;
 /// A single unit in common is no evidence: many episodes begin alike.
 inline constexpr std::uint32_t kFewestInCommon = 2;
@@ -33,18 +35,46 @@ inline std::uint32_t fewest_in_common(const Sketch& sketch) {
     return sketch.size() < kLeastUnits ? kFewestInCommon : kLeastUnits / 2 + 1;
 }
 
+/// What the samples of an input tell about an episode.
+enum class Samples : std::uint8_t {
+    runs,       ///< of a scalar, or of few bits: only runs of them tell
+    apart,      ///< of an embedding: each tells
+    recurring,  ///< of an embedding with so few different ones that other recordings may have them
+};
+
+/// How files write the last two.
+inline constexpr std::string_view kApart = ":apart";
+inline constexpr std::string_view kRecurring = ":recurring:";
+
 struct InputContent {
     std::string hash;  ///< of all samples in order, 16 hex digits
     Sketch sketch;
+    Samples samples = Samples::runs;
+    /// Recurring samples: of the order and the times in which they follow each other. A unit is a
+    /// change of the sample and the time for which each of the samples before stayed, as many as
+    /// together last for 16 steps.
+    Sketch changes{};
 };
 
 template <class Archive>
 void fields(Archive& archive, InputContent& content) {
-    archive(content.hash, content.sketch);
+    archive(content.hash, content.sketch, content.samples, content.changes);
 }
 
 /// By name of the input.
 using EpisodeContent = std::map<std::string, InputContent>;
+
+/// Makes a sketch of units, which are added one after the other.
+class Sketching {
+public:
+    void add(std::uint64_t hash);
+    Sketch sketch() const;
+
+private:
+    std::vector<std::uint32_t> units_;     ///< may contain duplicates
+    std::uint32_t greatest_ = UINT32_MAX;  ///< units above it are not kept
+    std::size_t room_ = 2048;              ///< units before they are sifted
+};
 
 /// Makes the content of an input from its samples, one after the other.
 class ContentReader {
@@ -59,8 +89,18 @@ public:
 private:
     static constexpr std::size_t kRun = 16;
 
-    void add_unit(std::uint64_t hash);
+    /// A sample that did not change for some steps.
+    struct Stay {
+        std::uint64_t sample = 0;
+        std::uint64_t steps = 0;
+    };
+
+    /// An embedding of as many different samples as this tells by each of them.
+    static constexpr std::size_t kManySamples = 16;
+
     bool run_tells() const;
+    /// Adds the next sample of an embedding to what tells of the order.
+    void follow(std::uint64_t sample, bool present);
 
     bool tells_alone_;
     std::uint64_t steps_ = 0;
@@ -68,16 +108,20 @@ private:
     std::uint64_t hash_ = 0;
     /// The last samples, by step modulo kRun: a number, or the hash of several.
     std::array<std::uint32_t, kRun> run_{};
-    std::vector<std::uint32_t> units_;     ///< may contain duplicates
-    std::uint32_t greatest_ = UINT32_MAX;  ///< units above it are not kept
-    std::size_t room_ = 2048;              ///< units before they are sifted
+    Sketching units_;
+    std::vector<std::uint64_t> different_;  ///< samples, kManySamples at most
+    Stay stay_;                             ///< at the present sample
+    std::vector<Stay> earlier_;             ///< the last ones whose begin was seen, kRun at most
+    Sketching changes_;
 };
 
 /// The share of the smaller of two episodes that is in the other.
 struct Overlap {
     std::size_t other = 0;  ///< index of the other in the order of `Recordings::add`
     double share = 0;       ///< share of the units; estimated, unless the episodes are equal
-    bool equal = false;     ///< all samples of all inputs that both have
+    /// All samples of all embeddings that both have are equal, or of all inputs where no embedding
+    /// tells.
+    bool equal = false;
 };
 
 /// The episodes that have a key, in some 25 bytes each.
@@ -112,9 +156,9 @@ private:
 class Recordings {
 public:
     void add(const EpisodeContent& content);
-    /// Finds an equal episode; else the first that shares more than half of the smaller of both, in
-    /// every common input that has enough units; where none has, in every common input that has two
-    /// and whose sketch is complete.
+    /// Finds an equal episode; else the first that shares more than half of the smaller of both in
+    /// some common embedding; where no common embedding tells, in every common input that has
+    /// enough units.
     std::optional<Overlap> find(const EpisodeContent& content) const;
 
 private:
