@@ -44,6 +44,10 @@ std::optional<std::uint64_t> whole(const Json& object, const char* key) {
     return static_cast<std::uint64_t>(value);
 }
 
+std::string shown(const Json& json) {
+    return in_quotes(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
 std::optional<std::string> text(const Json& object, const char* key) {
     const auto found = object.find(key);
     if (found == object.end() || !found->is_string()) return std::nullopt;
@@ -115,13 +119,18 @@ private:
             const auto length = json.is_object() ? whole(json, "length") : std::nullopt;
             if (!index || !length)
                 return wrong(place_, fmt::format("line {} is not an object with episode_index and "
-                                                 "length",
+                                                 "length, whole numbers",
                                                  line));
             DatasetEpisode episode{*index, *length, {}, {}, {}};
             const auto tasks = json.find("tasks");
             if (tasks != json.end() && tasks->is_array())
-                for (const Json& task : *tasks)
-                    if (task.is_string()) episode.tasks.push_back(task.get<std::string>());
+                for (const Json& task : *tasks) {
+                    if (!task.is_string())
+                        return wrong(place_, fmt::format("line {} has {} among its tasks, expected "
+                                                         "texts",
+                                                         line, shown(task)));
+                    episode.tasks.push_back(task.get<std::string>());
+                }
             if (auto failure = place_lines(episode)) return failure;
             set_->episodes_.push_back(std::move(episode));
             return std::nullopt;
@@ -131,7 +140,8 @@ private:
 
     std::optional<Failure> place_lines(DatasetEpisode& episode) {
         const std::uint64_t chunk_size = whole(info_, "chunks_size").value_or(0);
-        if (chunk_size == 0) return wrong(kInfo, "does not say its chunks_size");
+        if (chunk_size == 0)
+            return wrong(kInfo, "does not say its chunks_size, a whole number from 1");
         PathNames names{
             {{"episode_index", episode.index}, {"episode_chunk", episode.index / chunk_size}}, {}};
         const auto rows = path("data_path", names);
@@ -190,15 +200,28 @@ private:
             if (!more) return more.failure();
             if (!*more) return std::nullopt;
             for (std::size_t i = 0; i < names.size(); ++i)
-                if (names[i] != "tasks" && (cells[i].is_null || !(cells[i].numbers[0] >= 0) ||
-                                            cells[i].numbers[0] > kMaxWhole))
-                    return Failure{Code::unreadable_dataset,
-                                   fmt::format("has a row whose {} is no number from 0 on",
-                                               in_quotes(names[i]))};
+                if (auto failure = refuse_cell(names[i], cells[i])) return failure;
             auto episode = episode_of(cells, cameras);
             if (!episode) return episode.failure();
             set_->episodes_.push_back(std::move(*episode));
         }
+    }
+
+    static std::optional<Failure> refuse_cell(const std::string& name, const Table::Cell& cell) {
+        const auto refuse = [&](const std::string& what) {
+            return Failure{Code::unreadable_dataset,
+                           fmt::format("has a row whose {} {}", in_quotes(name), what)};
+        };
+        if (name == "tasks") {
+            const bool has_null =
+                std::find(cell.texts.begin(), cell.texts.end(), "") != cell.texts.end();
+            return has_null ? std::optional(refuse("has a task without text")) : std::nullopt;
+        }
+        const double number = cell.is_null ? -1 : cell.numbers[0];
+        if (!(number >= 0) || number > kMaxWhole) return refuse("is no number from 0 on");
+        if (number != std::floor(number) && !name.ends_with("_timestamp"))
+            return refuse(fmt::format("is {}, expected a whole number", number));
+        return std::nullopt;
     }
 
     /// `cells`: the columns that read_table requests, in their order.
@@ -242,34 +265,29 @@ private:
     void compare() {
         std::uint64_t rows = 0;
         for (const DatasetEpisode& episode : set_->episodes_) rows += episode.length;
-        const auto check = [&](const char* key, std::uint64_t found, const char* noun) {
+        const auto check = [&](const char* key, std::uint64_t found, const char* noun,
+                               const std::string& where) {
             const auto promised = whole(info_, key);
             if (!promised && info_.contains(key))
                 set_->contradictions_.push_back(fmt::format(
-                    "{} has {} for {}, expected a number", kInfo,
-                    in_quotes(info_[key].dump(-1, ' ', false, Json::error_handler_t::replace)),
-                    key));
+                    "{} has {} for {}, expected a whole number", kInfo, shown(info_[key]), key));
             if (promised && *promised != found)
                 set_->contradictions_.push_back(fmt::format("{} promises {}, {} lists {}", kInfo,
-                                                            diag::counted(*promised, noun), place_,
+                                                            diag::counted(*promised, noun), where,
                                                             diag::counted(found, noun)));
         };
-        check("total_episodes", set_->episodes_.size(), "episode");
-        check("total_frames", rows, "row");
-        compare_tasks();
+        check("total_episodes", set_->episodes_.size(), "episode", place_);
+        check("total_frames", rows, "row", place_);
+        compare_tasks(check);
         find_strangers();
     }
 
     /// Compares the list of tasks; a data set without one is still read.
-    void compare_tasks() {
+    void compare_tasks(const auto& check) {
         auto& contradictions = set_->contradictions_;
         const auto list = read_tasks(set_->folder(), major_);
         if (!list) return contradictions.push_back(list.failure().message);
-        const auto promised = whole(info_, "total_tasks");
-        if (promised && *promised != list->tasks.size())
-            contradictions.push_back(fmt::format("{} promises {}, {} lists {}", kInfo,
-                                                 diag::counted(*promised, "task"), list->file,
-                                                 diag::counted(list->tasks.size(), "task")));
+        check("total_tasks", list->tasks.size(), "task", list->file);
         std::set<std::string> strange;
         for (const DatasetEpisode& episode : set_->episodes_)
             strange.insert(episode.tasks.begin(), episode.tasks.end());

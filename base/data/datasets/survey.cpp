@@ -61,7 +61,8 @@ void Dataset::survey(const std::string& rows) {
         if (!more) return give_up(more.failure().message);
         if (!*more) break;
         const double index = cells[0].is_null ? -1 : cells[0].numbers[0];
-        if (!(index >= 0) || index > 1e15) return give_up("has a row of no episode");
+        if (!(index >= 0) || index > 1e15 || index != std::floor(index))
+            return give_up("has a row of no episode");
         Found& one = found[static_cast<std::uint64_t>(index)];
         if (one.lack.empty() && one.rows > 0 && last != index)
             one.lack = "its rows are apart from each other";
