@@ -231,6 +231,54 @@ def test_scalars(world):
             assert says == expected, (missing, held, expected, says)
 
 
+def store_beside(world, part, number, z, charge):
+    path = world.folder / part
+    path.mkdir(exist_ok=True)
+    np.savez(path / f"{number:02}.npz", z=z, charge=charge.astype(np.float32),
+             **{"truth.a": np.arange(len(z)) % 3 == 0})
+
+
+def test_beside_scalars(world):
+    """An embedding is the same recording whatever scalar was recorded with it, for calibration,
+    evaluation and after a fit; and others are not, whatever clock they share."""
+    spec = episode_spec("f32").replace("l2(z, g)", "l2(z, g) + 0.1 * charge").replace(
+        "target", "input charge : f32; target", 1)
+    fitted = fit_spec("f32").replace("l2(E(z), c)", "l2(E(z), c) + 0.1 * charge").replace(
+        "projection", "input charge : f32; projection", 1)
+    steps = 40
+
+    def still(different):
+        """Stands at a few samples, one after the other."""
+        samples = world.random.normal(size=(different, D)).astype(np.float32)
+        return samples[np.arange(steps) * different // steps]
+
+    moving = [world.episode(steps)[0] for _ in range(EPISODES + 1)]
+    standing = [still(5 + i % 8) for i in range(EPISODES + 1)]
+    for kind, drives in (("moving", moving), ("standing", standing)):
+        for beside in ("noise", "clock"):
+            def charge():
+                return (world.random.random(steps) if beside == "noise"
+                        else 0.1 * np.arange(steps))
+            clear(world, "demos", "new")
+            for number, z in enumerate(drives[:EPISODES]):
+                store_beside(world, "demos", number, z, charge())
+            world.spec(spec)
+            road = (kind, beside)
+            assert world.run("calibrate", "--data", "demos", "-o", "t.thresholds.json") == set(), road
+            world.spec(fitted)
+            assert world.run("fit", "--data", "demos", "-o", "t.fitted.npz") == set(), road
+            for number, repeats in ((3, True), (EPISODES, False)):
+                store_beside(world, "new", 99, drives[number], world.random.random(steps))
+                world.spec(spec)
+                says = world.run("calibrate", "--data", "demos", "new", "-o", "t.json")
+                assert says == ({"E0664"} if repeats else set()), (road, number, says)
+                says = world.run("evaluate", "--data", "new")
+                assert ("E0670" in says) == repeats, (road, number, says)
+                world.spec(fitted)
+                says = world.run("calibrate", "--data", "new", "-o", "t.json")
+                assert ("E0675" in says) == repeats, (road, number, says)
+
+
 def test_old_files(world):
     """Files of an earlier version are refused when episodes are compared."""
     world.spec(episode_spec("f32"))
@@ -304,6 +352,7 @@ def main(etlc):
         world = World(etlc, pathlib.Path(name), 1)
         test_episodes(world)
         test_scalars(world)
+        test_beside_scalars(world)
         test_old_files(world)
         test_another_call(world)
 
