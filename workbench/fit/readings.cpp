@@ -12,6 +12,7 @@ namespace {
 
 struct Read : episodes::Recorded {
     std::vector<Index> from_arrays;
+    std::optional<diag::Failure> unlabelled{};  ///< why it has no label of a predicate
 };
 
 class Reader {
@@ -21,6 +22,8 @@ public:
 
     diag::Result<Read> score(const std::string& path) const {
         auto recording = episodes::Recording::open(wanted_, path, reading_);
+        if (!recording && recording.failure().code == diag::Code::no_label)
+            return Read{{path}, {}, recording.failure()};
         if (!recording) return recording.failure();
         for (;;) {
             const auto more = recording->next();
@@ -51,6 +54,15 @@ std::optional<Readings> Readings::read(episodes::Wanted wanted, const Request& r
         return std::make_unique<Reader>(*result.wanted_, result.reading_);
     });
     if (!all) return std::nullopt;
+    std::vector<episodes::Fault> unlabelled;
+    for (const Read& one : *all)
+        if (one.unlabelled) unlabelled.push_back({one.path, *one.unlabelled});
+    if (unlabelled.size() == all->size()) {
+        episodes::report(unlabelled, all->size(), sink);
+        return std::nullopt;
+    }
+    for (const episodes::Fault& one : unlabelled) result.unlabelled_.push_back(one.path);
+    std::erase_if(*all, [](const Read& one) { return one.unlabelled.has_value(); });
     result.labelling_.episodes = all->size();
     for (const std::size_t e : episodes::by_content(episodes::recorded(*all))) {
         Read& one = (*all)[e];

@@ -39,7 +39,8 @@ using check::Index;
 
 class Readings {
 public:
-    /// Returns nothing after an error.
+    /// Leaves out episodes without a label that is wanted, unless all are. Returns nothing after an
+    /// error.
     static std::optional<Readings> read(episodes::Wanted wanted, const Request& request,
                                         diag::Sink& sink);
 
@@ -47,6 +48,8 @@ public:
     const std::vector<episodes::Recorded>& episodes() const { return episodes_; }
     /// Returns their paths.
     std::vector<std::string> paths() const;
+    /// Returns the paths of those that were left out.
+    const std::vector<std::string>& unlabelled() const { return unlabelled_; }
     const check::Labelling& labelling() const { return labelling_; }
     std::size_t index_of(const std::string& path) const { return index_.at(path); }
     const episodes::Wanted& wanted() const { return *wanted_; }
@@ -58,6 +61,7 @@ private:
     std::unique_ptr<const episodes::Wanted> wanted_;
     episodes::ReadOptions reading_;
     std::vector<episodes::Recorded> episodes_;
+    std::vector<std::string> unlabelled_;
     std::unordered_map<std::string, std::size_t> index_;
     check::Labelling labelling_;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "data/text/quote.hpp"
 #include "fit/algebra/linear.hpp"
 #include "fit/fit.hpp"
 
@@ -99,6 +100,9 @@ std::string report(const check::Model& model, const Collection& collection,
     std::string text = fmt::format("Fitted on {}, {}:\n",
                                    counted(collection.readings.episodes().size(), "episode"),
                                    counted(frames, "frame"));
+    if (const auto& others = collection.readings.unlabelled(); !others.empty())
+        text += fmt::format("{} without labels left out: {}\n", counted(others.size(), "episode"),
+                            data::listed(others));
     for (std::size_t i = 0; i < solutions.size(); ++i)
         text += fitted_report(model.fitted[i], solutions[i]);
     if (!separations.why_not.empty())

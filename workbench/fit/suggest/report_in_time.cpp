@@ -31,26 +31,39 @@ std::string row(const InTime& one, bool of_monitor) {
                        one.formula, one.lines.empty() ? " (as it is)" : "");
 }
 
-std::string text_of_ranking(const RankedInTime& all) {
+/// Returns the predicate or monitor as it is, among the candidates.
+const InTime& as_it_is(const RankedInTime& all) {
+    return *std::find_if(all.ranked.begin(), all.ranked.end(),
+                         [](const InTime& one) { return one.lines.empty(); });
+}
+
+/// `monitors_gain`: whether some monitor is surely better with a formula than as it is; nothing
+/// without monitors.
+std::string text_of_ranking(const RankedInTime& all, std::optional<bool> monitors_gain) {
     std::string text = all.of_monitor
                            ? fmt::format(
                                  "\nmonitor {}\n  mean                   episodes   variants  "
                                  "in place of a predicate\n",
                                  all.name)
                            : fmt::format("\n{}\n  F1 by frame           formula\n", all.name);
-    const auto own = std::find_if(all.ranked.begin(), all.ranked.end(),
-                                  [](const InTime& one) { return one.lines.empty(); });
-    for (auto one = all.ranked.begin(); one != all.ranked.end(); ++one)
-        if (one - all.ranked.begin() < static_cast<std::ptrdiff_t>(kShown) || one == own)
-            text += row(*one, all.of_monitor);
+    const InTime& own = as_it_is(all);
+    for (const InTime& one : all.ranked)
+        if (&one - all.ranked.data() < static_cast<std::ptrdiff_t>(kShown) || &one == &own)
+            text += row(one, all.of_monitor);
     if (all.clock) {
         text += fmt::format("  {:20}  the number of the step alone\n", shown(all.clock));
         const episodes::Figure& best = all.ranked.front().score;
         if (best.value && (best.interval ? best.interval->low : *best.value) <= *all.clock)
             text += "None is surely better than the number of the step.\n";
     }
-    if (own->ties) return text + "Nothing to gain that these episodes show.\n";
-    text += "\nBest:\n";
+    if (own.ties)
+        return text + fmt::format(
+                          "'{}' as it is may be as good as the best: these episodes show "
+                          "nothing to gain.\n",
+                          all.name);
+    const bool only_by_frame = !all.of_monitor && monitors_gain == false;
+    text += only_by_frame ? "\nBest by frame, though no monitor is surely better with a formula:\n"
+                          : "\nBest:\n";
     for (const std::string& line : all.ranked.front().lines) text += fmt::format("  {}\n", line);
     return text;
 }
@@ -85,7 +98,10 @@ std::string report(const SuggestedInTime& suggested) {
         "agreements on episodes and on broken variants of them. *: may be as good as the best.\n",
         suggested.folds > 0 ? fmt::format(", trained on other episodes ({} folds)", suggested.folds)
                             : "");
-    for (const RankedInTime& one : suggested.all) text += text_of_ranking(one);
+    std::optional<bool> monitors_gain;
+    for (const RankedInTime& one : suggested.all)
+        if (one.of_monitor) monitors_gain = monitors_gain.value_or(false) || !as_it_is(one).ties;
+    for (const RankedInTime& one : suggested.all) text += text_of_ranking(one, monitors_gain);
     return text;
 }
 
