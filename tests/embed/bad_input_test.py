@@ -227,6 +227,22 @@ def videos_are_refused():
     refused(["video", "sound.mp4"], "holds no video")
 
 
+def lost_frames_are_refused():
+    """One frame lost of 400 hardly changes the average rate."""
+    for lost, words in ((200, "has frame 200 0.2 s after the one before, expected 0.1"),
+                        (400, "")):
+        call("ffmpeg", "-v", "error", "-y", "-f", "lavfi", "-i", "testsrc2=size=16x16:rate=10",
+             "-frames:v", "399", "-vf", f"select=not(eq(n\\,{lost}))", "-fps_mode", "passthrough",
+             "-c:v", "libx264", "lost.mkv")
+        for options in ([], ["--first", 190, "--count", 30]):
+            if words:
+                refused(["video", "lost.mkv", "--rate", 10, *options], words, 66)
+            else:
+                assert len(video("lost.mkv", "--rate", 10, *options)) == (30 if options else 399)
+        assert len(video("lost.mkv", "--rate", 5)) == 200  # half a step is within rounding
+        assert len(video("lost.mkv")) == 399
+
+
 def late_frames_are_those_of_all():
     h264 = ["-c:v", "libx264", "-g", "20"]
     # So narrow a picture is refreshed in two steps; its encoder says that one is enough.
@@ -374,6 +390,7 @@ with tempfile.TemporaryDirectory() as folder:
     orientations_are_applied()
     images_are_refused()
     videos_are_refused()
+    lost_frames_are_refused()
     late_frames_are_those_of_all()
     transport_streams_are_read_where_they_are_whole()
     what_is_whole_is_written()

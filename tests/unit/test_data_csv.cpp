@@ -294,6 +294,23 @@ TEST(Csv, EveryFaultHasItsPlaceAndMessage) {
     }
 }
 
+TEST(Csv, OfTheTimesWhatIsNoNumberIsMissing) {
+    const std::vector<Channel> channels{{"g", Channel::Kind::scalar, 1},
+                                        {"time", Channel::Kind::scalar, 1, true}};
+    auto trace = open_csv_trace(from_memory("time,g\n0.5,1\n12:30,2\n,3\n"), channels);
+    ASSERT_TRUE(trace);
+    Sample sample;
+    for (const bool present : {true, false, false}) {
+        const auto more = (*trace)->next(sample);
+        ASSERT_TRUE(more && *more);
+        EXPECT_TRUE(sample.present[0]);
+        EXPECT_EQ(sample.present[1], present);
+    }
+    auto twice = open_csv_trace(from_memory("time,g,time\n0.5,1,2\n"), channels);
+    ASSERT_TRUE(twice);
+    EXPECT_FALSE((*twice)->has(1));
+}
+
 TEST(Csv, AFailureStays) {
     const std::string bytes = "z[0],z[1],grip,held\n\"1\"x\n1,2,3,1\n";
     auto trace = open_csv_trace(from_memory(bytes), kChannels);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "check/encoders/encoders.hpp"
 #include "data/datasets/trace.hpp"
 #include "data/text/quote.hpp"
+#include "data/traces/trace_formats.hpp"
 #include "episodes/data_warnings.hpp"
 
 namespace etlc::episodes {
@@ -167,6 +169,99 @@ std::vector<Index> formulas_of(const check::Model& model, const std::vector<Inde
     return formulas;
 }
 
+/// A trace, and its times in a last channel, which are compared with the rate of the spec.
+class TimedTrace final : public data::Trace {
+public:
+    TimedTrace(std::unique_ptr<data::Trace> trace, std::size_t times, double step_seconds)
+        : trace_(std::move(trace)), times_(times), step_seconds_(step_seconds) {}
+
+    bool has(std::size_t channel) const override { return trace_->has(channel); }
+    std::uint64_t length() const override { return trace_->length(); }
+
+    diag::Result<bool> next(data::Sample& sample) override {
+        auto more = trace_->next(sample);
+        if (!more || !*more) return more;
+        if (sample.present[times_] && std::isfinite(sample.values[times_][0]))
+            if (auto failure = compare(sample.values[times_][0])) return *failure;
+        ++step_;
+        return more;
+    }
+
+private:
+    struct Known {
+        std::uint64_t step = 0;
+        double time = 0;
+    };
+
+    std::optional<Failure> compare(double time) {
+        constexpr double kMostBetween = 0.5;      // steps that neighbours are too near or too far
+        constexpr double kRateTolerance = 0.005;  // as for videos: 29.97 frames a second are 30
+        const Known here{step_, time};
+        if (!last_) {
+            last_ = first_ = here;
+            return std::nullopt;
+        }
+        if (unit_ == 0)
+            unit_ = unit_of((time - last_->time) / static_cast<double>(step_ - last_->step));
+        const double between = steps_from(*last_, here);
+        const double all = steps_from(first_, here);
+        const auto rows = static_cast<double>(step_ - last_->step);
+        const auto all_rows = static_cast<double>(step_ - first_.step);
+        if (!(std::abs(between - rows) <= kMostBetween)) return out_of_step(here, *last_);
+        if (!(std::abs(all - all_rows) <= kMostBetween + kRateTolerance * all_rows))
+            return out_of_step(here, first_);
+        last_ = here;
+        return std::nullopt;
+    }
+
+    double steps_from(const Known& from, const Known& to) const {
+        return (to.time - from.time) * unit_ / step_seconds_;
+    }
+
+    /// Returns the seconds of the unit in which this is nearest to one step.
+    double unit_of(double difference) const {
+        double best = 1;
+        for (const double unit : {1e-3, 1e-6, 1e-9}) {
+            const auto away = [&](double seconds) {
+                return std::abs(std::log(std::abs(difference) * seconds / step_seconds_));
+            };
+            if (away(unit) < away(best)) best = unit;
+        }
+        return best;
+    }
+
+    Failure out_of_step(const Known& here, const Known& from) const {
+        return {Code::video_out_of_step,
+                fmt::format("has step {} {:.6g} s after step {} by its 'time', expected {:.6g} s: "
+                            "the spec has {:.6g} steps a second",
+                            here.step, (here.time - from.time) * unit_, from.step,
+                            static_cast<double>(here.step - from.step) * step_seconds_,
+                            1 / step_seconds_)};
+    }
+
+    std::unique_ptr<data::Trace> trace_;
+    std::size_t times_;  ///< the channel
+    double step_seconds_;
+    double unit_ = 0;  ///< in seconds; 0: not known yet
+    std::uint64_t step_ = 0;
+    Known first_;
+    std::optional<Known> last_;
+};
+
+/// Opens an episode with its labels, and with its times if the spec has a rate. The rows of data
+/// sets have been compared with theirs.
+diag::Result<std::unique_ptr<data::Trace>> open_timed(
+    const std::string& path, std::vector<Channel> channels, const ReadOptions& options,
+    double step_seconds, std::shared_ptr<KnownIdentities>& identities) {
+    const bool is_timed = step_seconds > 0 && !data::dataset_path(path);
+    const std::size_t times = channels.size();
+    if (is_timed) channels.push_back({std::string(data::kTimes), Channel::Kind::scalar, 1, true});
+    auto trace = open_labelled(path, channels, options, &identities);
+    if (!trace || !is_timed || !(*trace)->has(times)) return trace;
+    return std::unique_ptr<data::Trace>(
+        std::make_unique<TimedTrace>(std::move(*trace), times, step_seconds));
+}
+
 /// `absent`: the error of opening the episode with the array required.
 Failure no_label(const check::Model& model, Index predicate, const Failure& absent) {
     return {Code::no_label,
@@ -241,11 +336,12 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const std::string&
     if (auto failure = data::check_rate(path, wanted.model->step_seconds)) return *failure;
     std::shared_ptr<KnownIdentities> identities;
     const Opener file = [&](const std::vector<Channel>& channels) {
-        return open_labelled(path, channels, options, &identities);
+        return open_timed(path, channels, options, wanted.model->step_seconds, identities);
     };
     auto recording = open(wanted, wrap ? wrap(file) : file);
     if (!recording) return recording;
     recording->path_ = path;
+    if (options.labels) recording->group_ = options.labels->group_of(path);
     recording->is_unmarked_ = *is_unmarked;
     if (identities) recording->known_ = identities->find(recording->seen_.inputs());
     recording->identities_ = std::move(identities);

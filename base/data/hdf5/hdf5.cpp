@@ -196,9 +196,10 @@ diag::Result<std::unique_ptr<Trace>> open_hdf5_trace(const std::string& path,
                                                      const std::vector<Channel>& channels) {
     std::vector<std::string> arguments = {"read", path, group};
     for (const Channel& channel : channels)
-        arguments.insert(arguments.end(),
-                         {std::to_string(channel.width), channel.name,
-                          std::string(channel.optional ? records::kOptional : records::kNeeded)});
+        arguments.insert(arguments.end(), {std::to_string(channel.width), channel.name,
+                                           std::string(are_times(channel) ? records::kTimes
+                                                       : channel.optional ? records::kOptional
+                                                                          : records::kNeeded)});
     auto records = start(path, arguments);
     if (!records) return records.failure();
     const auto tag = (*records)->next();

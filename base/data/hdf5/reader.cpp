@@ -119,6 +119,7 @@ struct Channel {
     std::string name;
     std::size_t width = 1;
     bool optional = false;
+    bool times = false;
     hid_t dataset = -1;
     hid_t memory_type = -1;
     bool bools = false;
@@ -176,16 +177,36 @@ void open_channel(hid_t group, Channel& channel) {
     find_shape(channel);
 }
 
+bool fits(const Channel& channel) {
+    if (channel.shape.size() == 1) return channel.width == 1;
+    return channel.shape.size() == 2 && channel.shape[1] == channel.width;
+}
+
+/// Opens the times of steps; they stay absent where they are not a number for each of the steps.
+void open_times(hid_t group, Channel& channel, const std::vector<Channel>& others) {
+    H5L_info_t info{};
+    if (H5Lexists(group, channel.name.c_str(), H5P_DEFAULT) <= 0 ||
+        H5Lget_info(group, channel.name.c_str(), &info, H5P_DEFAULT) < 0 ||
+        info.type != H5L_TYPE_HARD)
+        return;
+    const hid_t dataset = open_object(group, channel.name);
+    if (dataset < 0 || H5Iget_type(dataset) != H5I_DATASET) return;
+    const hid_t type = H5Dget_type(dataset);
+    const H5T_class_t kind = H5Tget_class(type);
+    if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || H5Tget_size(type) > 8) return;
+    open_channel(group, channel);
+    const auto some = std::find_if(others.begin(), others.end(),
+                                   [](const Channel& other) { return other.present(); });
+    if (some == others.end() || some->shape.empty() || !fits(channel) ||
+        channel.shape[0] != some->shape[0])
+        channel.dataset = -1;
+}
+
 std::string shape_line(const Channel& channel) {
     if (!channel.present()) return "absent\n";
     std::string line = channel.bools ? "bool" : "number";
     for (const hsize_t n : channel.shape) line += " " + std::to_string(n);
     return line + "\n";
-}
-
-bool fits(const Channel& channel) {
-    if (channel.shape.size() == 1) return channel.width == 1;
-    return channel.shape.size() == 2 && channel.shape[1] == channel.width;
 }
 
 /// Names the first filter of a dataset that libhdf5 does not have.
@@ -251,7 +272,11 @@ void send_rows(const std::vector<Channel>& channels, hsize_t steps, std::size_t 
 void read(hid_t file, const std::string& path, std::vector<Channel>& channels) {
     const hid_t group = open_object(file, path);
     if (group < 0) fail(Cause::channel, "no group '" + path + "'" + listed(file));
-    for (Channel& channel : channels) open_channel(group, channel);
+    for (Channel& channel : channels)
+        if (channel.times)
+            open_times(group, channel, channels);
+        else
+            open_channel(group, channel);
     std::string shapes;
     for (const Channel& channel : channels) shapes += shape_line(channel);
     send(Tag::shapes, shapes);
@@ -362,6 +387,7 @@ std::vector<Channel> parse_channels(char** words, int count) {
         std::from_chars(words[i], words[i] + std::strlen(words[i]), channel.width);
         channel.name = words[i + 1];
         channel.optional = words[i + 2] == kOptional;
+        channel.times = words[i + 2] == kTimes;
         channels.push_back(std::move(channel));
     }
     return channels;

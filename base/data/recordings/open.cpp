@@ -104,6 +104,12 @@ diag::Diagnostic in_trace(const diag::Failure& failure, const std::string& path)
             "--map truth.NAME=NAME_IN_FILE says what the labels are called in the file; a 'truth' "
             "in the spec makes them of other inputs; a table labels.csv beside the files has them "
             "in rows, where !NAME says that NAME never holds");
+    if (failure.code == diag::Code::video_out_of_step)
+        result.note(
+            "every step has a row: fill a gap with rows whose samples are missing (empty cells of "
+            "a "
+            ".csv file, NaN in arrays), or cut the recording there; a 'time' that is not that of "
+            "the steps needs another name");
     return result;
 }
 

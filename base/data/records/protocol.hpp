@@ -27,15 +27,17 @@ inline constexpr int kMaxSilenceSeconds = 120;    ///< of the clock, between two
 
 // etlc-read-hdf5 has three calls.
 // `list FILE PATTERN`: a `name` record for each group that matches, sorted.
-// `read FILE GROUP [WIDTH NAME MODE]...`, where MODE is "needed" or "optional": one `shapes`
-// record, a line for each channel, "absent", "number DIMENSIONS..." or "bool DIMENSIONS..."; if
-// every shape fits, `rows` records of doubles in the machine's order, the channels that exist side
-// by side, as many rows as there are steps.
+// `read FILE GROUP [WIDTH NAME MODE]...`, where MODE is "needed", "optional", or "times", which is
+// absent where it is not a number for each step of the channels before it: one `shapes` record, a
+// line for each channel, "absent", "number DIMENSIONS..." or "bool DIMENSIONS..."; if every shape
+// fits, `rows` records of doubles in the machine's order, the channels that exist side by side, as
+// many rows as there are steps.
 // `images FILE GROUP NAME`: one `shapes` record of one line, "number DIMENSIONS..."; `rows` records
 // of bytes, of which each image begins a new one. An empty NAME is the only dataset of images in
 // the group.
 inline constexpr std::string_view kNeeded = "needed";
 inline constexpr std::string_view kOptional = "optional";
+inline constexpr std::string_view kTimes = "times";
 inline constexpr std::size_t kMaxNames = 1U << 20U;
 
 // etlc-read-parquet has one call.

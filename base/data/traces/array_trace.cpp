@@ -320,9 +320,13 @@ diag::Result<Feed> open_feed(const ArchivePlace& place, const Channel& channel) 
     auto member = archive->member(channel.name);
     if (!member) return of_trace(member.failure());
     auto header = read_npy_header(**member);
+    if (!header && are_times(channel)) return Feed{channel, 0, nullptr};
     if (!header) return of_channel(header.failure(), channel);
     const bool has_bools = header->element == Element::boolean;
-    if (auto failure = check_array(header->shape, has_bools, channel)) return *failure;
+    if (auto failure = check_array(header->shape, has_bools, channel)) {
+        if (are_times(channel)) return Feed{channel, 0, nullptr};
+        return *failure;
+    }
     auto rows = open_rows(std::move(*member), *header, header->shape[0], channel.width);
     if (!rows) return of_channel(rows.failure(), channel);
     return Feed{channel, header->shape[0], std::move(*rows)};
@@ -351,6 +355,8 @@ diag::Result<std::unique_ptr<Trace>> open_npz_trace(const ArchivePlace& place,
     for (const Channel& channel : channels) {
         auto feed = open_feed(place, channel);
         if (!feed) return feed.failure();
+        if (are_times(channel) && (feeds.empty() || feed->steps != feeds.front().steps))
+            feed->rows = nullptr;
         feeds.push_back(std::move(*feed));
     }
     return open_array_trace(std::move(feeds));

@@ -54,6 +54,7 @@ public:
                 const std::string name = column_name(channels[c], e);
                 const auto found = columns_.find(name);
                 if (found == columns_.end()) return absent(name, channels[c]);
+                if (found->second.count > 1 && are_times(channels[c])) continue;
                 if (found->second.count > 1)
                     return Failure{Code::no_such_channel,
                                    fmt::format("{} columns are named {}", found->second.count,
@@ -165,6 +166,10 @@ private:
         const std::string_view cell = rows_->cell(slot.column);
         auto value = rows_->number(slot.column);
         if (!value && boolean) value = parse_bool(cell);
+        if (!value && are_times(channels_[slot.channel])) {
+            sample.present[slot.channel] = false;
+            return {};
+        }
         const bool sound =
             value && (!boolean || !std::isfinite(*value) || *value == 0 || *value == 1);
         if (!sound)

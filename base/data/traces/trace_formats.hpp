@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "data/arrays/archive.hpp"
@@ -14,6 +15,15 @@
 #include "data/traces/trace.hpp"
 
 namespace etlc::data {
+
+/// The column or array of the times of steps; no input can have this name. What is no number there
+/// is missing, and an array that is not one number a step is absent.
+inline constexpr std::string_view kTimes = "time";
+
+/// Returns whether a channel asks for the times.
+inline bool are_times(const Channel& channel) {
+    return channel.optional && channel.name == kTimes;
+}
 
 diag::Result<std::unique_ptr<Trace>> open_csv_trace(std::unique_ptr<ByteSource> source,
                                                     const std::vector<Channel>& channels);

@@ -149,12 +149,23 @@ public:
     /// Sets the time stamp of frame 0.
     void begin(std::int64_t stamp) { begin_ = double(stamp) * seconds_; }
 
-    /// Refuses a frame that is more than half a frame from its place.
+    /// Refuses a frame that is more than half a frame from its place. Where frames were lost, all
+    /// behind them belong to other steps: refuses them too where steps are more than one and a half
+    /// apart.
     void check(const AVFrame& picture, std::int64_t frame) {
         if (rate_ == 0 || picture.best_effort_timestamp == AV_NOPTS_VALUE) return;
         const double time = double(picture.best_effort_timestamp) * seconds_;
         if (frame == 0) begin(picture.best_effort_timestamp);
         const double place = double(frame) / frames_a_second_;
+        const double between = (time - before_time_) * frames_a_second_;
+        if (frame > 0 && frame == before_ + 1 && between > 1 + double(stride_) / 2)
+            refuse(kOutOfStep,
+                   "has frame " + std::to_string(frame) + " " + number_text(time - before_time_) +
+                       " s after the one before, expected " + number_text(1 / frames_a_second_) +
+                       " s: frames are missing between them. Cut the video there, or "
+                       "repeat a frame for each (ffmpeg -fps_mode cfr)");
+        before_ = frame;
+        before_time_ = time;
         if (std::abs(time - begin_ - place) * frames_a_second_ > 0.5)
             refuse(kOutOfStep, "has frame " + std::to_string(frame) + " at " +
                                    number_text(time - begin_) + " s, expected it at " +
@@ -166,6 +177,8 @@ private:
     double rate_;
     double frames_a_second_ = 0;
     double begin_ = 0;
+    std::int64_t before_ = -1;  ///< the last frame that was checked, and its time
+    double before_time_ = 0;
     std::int64_t stride_ = 1;
 };
 
