@@ -14,6 +14,8 @@
 #include "artifacts/writer.hpp"
 #include "data/arrays/archive.hpp"
 #include "data/files/bytes.hpp"
+#include "data/files/hash.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::artifacts {
 
@@ -44,6 +46,22 @@ void allowance_members(Archive& archive, auto& allowances) {
             one("leaked", allowance.leaked);
         },
         Presence::where_any);
+}
+
+/// Describes the groups in a file of thresholds or of fitted things, and checks them where it
+/// reads.
+template <class Archive>
+void group_members(Archive& archive, auto& groups) {
+    archive("groups", groups);
+    if constexpr (Archive::kReads)
+        for (const auto& [hash, name] : groups) {
+            if (!data::hash_of_text(hash))
+                archive.refuse(fmt::format("key {} is no content hash of 16 hex digits",
+                                           data::in_quotes("groups." + hash)));
+            if (name.empty())
+                archive.refuse(fmt::format("{} is empty, expected the name of a group",
+                                           data::in_quotes("groups." + hash)));
+        }
 }
 
 /// Reads an archive whose description `members(archive, file)` describes.

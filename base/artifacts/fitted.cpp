@@ -89,6 +89,7 @@ void file_members(Archive& archive, auto& file) {
     });
     archive("episodes", file.episodes, Presence::always);
     archive("recordings", file.recordings, Presence::always);
+    artifacts::group_members(archive, file.groups);
     artifacts::allowance_members(archive, file.allowances);
     archive("etlc", file.etlc);
 }

@@ -45,6 +45,7 @@ struct File {
     std::map<std::string, Entry> entries;
     std::vector<std::uint64_t> episodes;  ///< content hashes of the episodes behind the entries
     data::KnownEpisodes recordings;       ///< content that tells these episodes apart
+    thresholds::GroupNames groups;
     std::vector<thresholds::Allowance> allowances;
 };
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "artifacts/file.hpp"
+#include "data/files/hash.hpp"
 #include "data/text/number.hpp"
 
 namespace etlc::thresholds {
@@ -61,6 +63,7 @@ void file_members(Archive& archive, auto& file) {
     archive("monitors", file.monitors, of("formula"), Presence::added_later);
     archive("episodes", file.episodes, Presence::added_later);
     archive("recordings", file.recordings, Presence::where_any);
+    artifacts::group_members(archive, file.groups);
     artifacts::allowance_members(archive, file.allowances);
     archive("etlc", file.etlc);
 }
@@ -88,6 +91,22 @@ void drop_unused_recordings(File& file) {
     std::vector<std::uint64_t> used = all_episodes(file);
     std::sort(used.begin(), used.end());
     file.recordings.keep(used);
+    std::erase_if(file.groups, [&](const auto& group) {
+        const auto hash = data::hash_of_text(group.first);
+        return !hash || !std::binary_search(used.begin(), used.end(), *hash);
+    });
+}
+
+GroupCount count_groups(const std::vector<std::uint64_t>& episodes, const GroupNames& names) {
+    GroupCount result;
+    if (names.empty()) return {false, episodes.size()};
+    std::set<std::string> different;
+    for (const std::uint64_t episode : episodes) {
+        const auto found = names.find(data::hash_text(episode));
+        result.any_named |= found != names.end();
+        if (found == names.end() || different.insert(found->second).second) ++result.groups;
+    }
+    return result;
 }
 
 std::string text(const Allowance& allowance) {

@@ -26,11 +26,14 @@ struct Allowance {
     std::uint64_t leaked = 0;       ///< episodes with a target among their frames
 };
 
+/// The group of each episode that has one, by content hash in 16 hex digits.
+using GroupNames = std::map<std::string, std::string>;
+
 struct Entry {
     std::string method;  ///< f1, conformal, class_conditional, adaptive
     std::string alpha;   ///< decimal text exactly as in the spec, a JSON number; empty for f1
     float epsilon = 0;   ///< finite
-    /// Number of scores: demonstrations (conformal) or frames (class_conditional, f1).
+    /// Number of scores: groups of demonstrations (conformal) or frames (class_conditional, f1).
     std::uint64_t n = 0;
     std::uint64_t k = 0;         ///< rank of the score taken, 1 to n; 0 for f1
     std::vector<double> scores;  ///< may be infinite, not NaN
@@ -55,14 +58,23 @@ struct File {
     /// Content that tells the episodes of predicates and monitors apart, by content hash. Episodes
     /// from earlier versions may be missing; their hashes alone identify them.
     data::KnownEpisodes recordings;
+    GroupNames groups;
     std::vector<Allowance> allowances;  ///< one per call of `etlc calibrate` that needed it
 };
 
 /// Returns the hashes of all episodes that some threshold was calibrated on.
 std::vector<std::uint64_t> all_episodes(const File& file);
 
-/// Removes the recordings that no threshold in the file was calibrated on.
+/// Removes the recordings, and their groups, that no threshold in the file was calibrated on.
 void drop_unused_recordings(File& file);
+
+/// Returns whether some of the episodes has a group, and the number of groups, among which every
+/// episode without one counts.
+struct GroupCount {
+    bool any_named = false;
+    std::uint64_t groups = 0;
+};
+GroupCount count_groups(const std::vector<std::uint64_t>& episodes, const GroupNames& names);
 
 /// Describes an allowance: "--allow-overlap passed over 3 episodes that share most of their content
 /// with another: REASON".

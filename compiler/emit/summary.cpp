@@ -135,6 +135,16 @@ bool is_calibrated(const plan::Plan& plan, bool but_adaptive) {
     });
 }
 
+/// Returns whether a threshold or shift counts groups of episodes.
+bool counts_groups(const plan::Plan& plan) {
+    const auto& monitors = plan.model->monitors;
+    return std::any_of(plan.predicates.begin(), plan.predicates.end(),
+                       [&](Index p) { return plan.model->predicates[p].threshold.by_group; }) ||
+           std::any_of(plan.monitors.begin(), plan.monitors.end(), [&](const plan::Monitor& m) {
+               return m.shifted && monitors[m.index].calibration->threshold.by_group;
+           });
+}
+
 std::vector<check::Claim> claims_of(const plan::Plan& plan, const plan::Monitor& monitor) {
     return check::claims(*plan.model, plan.model->monitors[monitor.index], plan.values);
 }
@@ -159,8 +169,8 @@ std::vector<Row> guarantee_rows(const plan::Plan& plan) {
                     plan.model->monitors[monitor.index].calibration->threshold;
                 rows.push_back(
                     {monitor.name,
-                     fmt::format("{}; rho minus {}, score {} of {}, coverage {:.3f} to {:.3f}",
-                                 check::text(claim), shift.value, shift.k, shift.n,
+                     fmt::format("{}; rho minus {}, score {}, coverage {:.3f} to {:.3f}",
+                                 check::text(claim), shift.value, check::place(shift),
                                  check::coverage_quantile(shift.n, shift.k, 0.05),
                                  check::coverage_quantile(shift.n, shift.k, 0.95))});
                 continue;
@@ -199,6 +209,7 @@ void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan&
     print_miss_rates(out, prefix, plan);
     const std::vector<std::string>& reservations = plan.model->reservations;
     const bool of_episodes = is_calibrated(plan, true);
+    const bool by_group = counts_groups(plan);
     const bool zero_aside = sets_zero_aside(plan);
     if (of_episodes || zero_aside || !reservations.empty()) out.line(blank(prefix));
     if (zero_aside) print_sentences(out, prefix, check::kZeroAside);
@@ -206,10 +217,16 @@ void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan&
     if (of_episodes)
         print_sentences(
             out, prefix,
-            "Probabilities are over the demonstrations and the new episode together, which have to "
-            "be exchangeable, per episode as recorded. coverage: 5 % and 95 % quantile of Beta(k, "
-            "n + 1 - k), of a new episode given these demonstrations, more where scores tie. The "
-            "bound on successes excludes steps with missing samples.");
+            fmt::format(
+                "Probabilities are over the {} together, which have to be exchangeable{}. "
+                "coverage: 5 % and 95 % quantile of Beta(k, n + 1 - k), of {} given these "
+                "demonstrations, more where scores tie. The bound on successes excludes steps with "
+                "missing samples.",
+                by_group ? "groups of demonstrations and the new group"
+                         : "demonstrations and the new episode",
+                by_group ? "; a group counts once, with the worst of its demonstrations"
+                         : ", per episode as recorded",
+                by_group ? "an episode of a new group" : "a new episode"));
 }
 
 /// Prints the hashes that the class has as constants.

@@ -277,7 +277,7 @@ predicate p = x <= calibrated(f1);
 truth p = s < 1;
 monitor arrives = F p;
 """)
-    for count, words in ((64, ""), (65, "; demonstrations left out in 64 groups")):
+    for count, words in ((64, ""), (65, "; demonstrations left out in 64 parts")):
         write(str(count), episodes(count, 6, steps=12))
         report = run("calibrate", "t.etl", "--data", count)[0]
         assert lines_of(report)["p"][0].endswith("]" + words), report

@@ -21,7 +21,7 @@ using check::ThresholdOrigin;
 using diag::Code;
 using diag::counted;
 
-void refuse(const check::Model& model, const check::Predicate& p, const Evidence& of,
+void refuse(const check::Model& model, const check::Predicate& p, const Evidence& of, bool by_group,
             Refusal refusal, diag::Sink& sink) {
     const std::string all = counted(of.demonstrations, "demonstration");
     switch (refusal) {
@@ -45,9 +45,9 @@ void refuse(const check::Model& model, const check::Predicate& p, const Evidence
                 refuse_too_few(p.threshold, {of.reaches.size(), "positive frame"}, sink);
             else
                 refuse_too_few(p.threshold,
-                               {of.worst.size(), "demonstration",
+                               {of.worst.size(), by_group ? "group" : "demonstration",
                                 fmt::format(" in which '{}' is true at some frame", p.name),
-                                "frame", of.demonstrations},
+                                "frame", of.groups, by_group ? all : ""},
                                sink);
             break;
         case Refusal::not_finite: refuse_infinite(p.name, p.threshold, "threshold", sink); break;
@@ -102,6 +102,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     bool is_complete = true;
     bool is_divided = true;
     episodes::Identities demonstrations;
+    episodes::Groups groups;
     std::vector<Evidence> evidence(predicates.size());
     std::uint64_t frames = 0;
     const bool all_scored = episodes::over_shared_episodes<Demonstration>(
@@ -111,12 +112,13 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
         },
         [&](std::size_t, const Demonstration& demonstration) {
             demonstrations.add(demonstration);
+            const std::uint32_t group = groups.add(demonstration.group);
             frames += demonstration.frames;
             tracks.add(demonstration.track);
             is_complete &= demonstration.is_complete;
             is_divided &= demonstration.is_divided;
             for (std::size_t i = 0; i < predicates.size(); ++i)
-                evidence[i].add(demonstration.scores[i]);
+                evidence[i].add(demonstration.scores[i], group);
         });
     if (!all_scored) return std::nullopt;
     episodes::warn_of_unmarked(demonstrations, sink);
@@ -136,7 +138,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
         const check::Predicate& predicate = model.predicates[predicates[i]];
         const Fit fitted = fit(predicate, evidence[i]);
         if (const auto* refusal = std::get_if<Refusal>(&fitted)) {
-            refuse(model, predicate, evidence[i], *refusal, sink);
+            refuse(model, predicate, evidence[i], groups.are_named(), *refusal, sink);
             continue;
         }
         if (const auto* out = std::get_if<OutOfRange>(&fitted)) {
@@ -154,6 +156,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
                 *check::start(*threshold.adaptation, threshold.value, predicate.upper_bound());
         threshold.n = all.back().n;
         threshold.k = all.back().k;
+        threshold.by_group = groups.are_named() && check::takes_groups(threshold.origin);
         result.file.predicates[predicate.name] =
             entry_of_predicate(model, predicates[i], evidence[i], all.back());
     }
@@ -163,14 +166,16 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     });
     std::vector<LeftOut> out;
     for (std::size_t i = 0; i < predicates.size(); ++i)
-        out.push_back(left_out(model.predicates[predicates[i]], evidence[i], demonstrations));
-    const Others others{guarantees, other_errors(calibrated, predicates, evidence, out),
+        out.push_back(
+            left_out(model.predicates[predicates[i]], evidence[i], demonstrations, groups));
+    const Others others{guarantees, other_errors(calibrated, predicates, evidence, out, groups),
                         other_errors(calibrated, guarantees, predicates, out,
-                                     {tracks, watched, is_complete, is_divided})};
+                                     {tracks, watched, groups, is_complete, is_divided})};
     for (std::size_t i = 0; i < guarantees.size(); ++i)
         warn_of_empty(model, guarantees[i], others.by_guarantee[i], sink);
-    result.report = report(calibrated, predicates, evidence, frames, all, others) +
-                    report_of_folds(model, predicates, evidence, demonstrations, request) +
+    result.report = report(calibrated, predicates, evidence, groups, frames, all, others) +
+                    report_of_folds(model, predicates, evidence, demonstrations, groups,
+                                    request.folds) +
                     episodes::remark_on(allowance);
     return result;
 }

@@ -51,16 +51,20 @@ struct Others {
     std::vector<OtherError> by_guarantee;
 };
 
+/// Returns " in 4 groups", or nothing where no episode has a group.
+std::string in_groups(const episodes::Groups& groups);
+
 /// Describes the thresholds, their scores, their guarantees and the other errors. `model` already
 /// has the thresholds.
 std::string report(const check::Model& model, const std::vector<Index>& predicates,
-                   const std::vector<Evidence>& evidence, std::uint64_t frames,
-                   const std::vector<Fitted>& fitted, const Others& others);
+                   const std::vector<Evidence>& evidence, const episodes::Groups& groups,
+                   std::uint64_t frames, const std::vector<Fitted>& fitted, const Others& others);
 
 /// Reports the thresholds without each fold, and their results on it; empty for 0 folds. They show
 /// how much the thresholds depend on single recordings, and guarantee nothing.
 std::string report_of_folds(const check::Model& model, const std::vector<Index>& predicates,
                             const std::vector<Evidence>& evidence,
-                            const episodes::Identities& episodes, const Request& request);
+                            const episodes::Identities& episodes, const episodes::Groups& groups,
+                            std::uint32_t folds);
 
 }  // namespace etlc::calibrate

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calibrate/fit.hpp"
+#include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/conformal.hpp"
 #include "check/numbers/decimal.hpp"
 #include "episodes/data_warnings.hpp"
@@ -35,6 +36,10 @@ void refuse_too_few(const check::Threshold& threshold, const TooFew& found, diag
                     fmt::format("alpha = {} needs at least {}{}; there {} {}", threshold.alpha,
                                 diag::counted(check::scores_needed(threshold.alpha), found.noun),
                                 found.which, found.scores == 1 ? "is" : "are", found.scores));
+    if (!found.in_groups.empty())
+        error.note(fmt::format("{} are in {}, and the episodes of a group count once, with the "
+                               "worst of them",
+                               found.in_groups, diag::counted(found.all, found.noun)));
     if (found.all <= found.scores) return;
     const std::uint64_t left_out = found.all - found.scores;
     error.note(fmt::format("of {}, {} without such a {} {} left out",
@@ -59,7 +64,7 @@ void warn_of_large_alpha(const std::string& name, const check::Threshold& thresh
         diag::Code::large_alpha,
         fmt::format("alpha = {} of '{}' allows more than half to be missed", threshold.alpha, name),
         threshold.span, sink)
-        .note("it is an error rate, not a coverage: alpha = 0.1 misses at most a tenth");
+        .note(check::large_alpha_note(threshold.alpha));
 }
 
 void warn_of_doubts(const check::Predicate& predicate, const Evidence& evidence,
@@ -71,7 +76,7 @@ void warn_of_doubts(const check::Predicate& predicate, const Evidence& evidence,
                                       predicate.threshold.span, sink);
     };
     const auto ranked =
-        episodes::auroc(evidence.labelled, evidence.demonstrations, episodes::Likely::smaller);
+        episodes::auroc(evidence.labelled, evidence.groups, episodes::Likely::smaller);
     if (episodes::warn_of_labels(predicate, {evidence.positives, evidence.negatives}, ranked, sink))
         return;
     if (ranked && ranked->interval && ranked->interval->low <= 0.5) {

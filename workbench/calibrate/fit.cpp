@@ -137,11 +137,11 @@ Fit ranked(std::uint64_t n, const std::string& alpha, const Kth& kth) {
 Fit fit_rank(const data::Sorted<Evidence::Reach>& reaches, const std::string& alpha,
              const Counts& counts) {
     std::uint64_t n = 0;
-    reaches.for_each([&](const Evidence::Reach& one) { n += counts(one.demonstration) ? 1 : 0; });
+    reaches.for_each([&](const Evidence::Reach& one) { n += counts(one.group) ? 1 : 0; });
     return ranked(n, alpha, [&](std::uint64_t k) {
         double found = 0;
         reaches.for_each([&](const Evidence::Reach& one) {
-            if (k > 0 && counts(one.demonstration) && --k == 0) found = one.reach;
+            if (k > 0 && counts(one.group) && --k == 0) found = one.reach;
         });
         return found;
     });
@@ -207,16 +207,16 @@ Fit fit_f1(const episodes::FramesByScore& labelled, bool strict, const Counts& c
 }
 
 std::vector<Fit> fit_f1_without(const episodes::FramesByScore& labelled, bool strict,
-                                const std::vector<std::uint32_t>& group_of, std::uint32_t groups) {
-    std::vector<std::uint64_t> positives(groups, labelled.positives());
+                                const std::vector<std::uint32_t>& part_of, std::uint32_t parts) {
+    std::vector<std::uint64_t> positives(parts, labelled.positives());
     labelled.for_each([&](const episodes::Scored& frame) {
-        positives[group_of[frame.episode]] -= frame.positive ? 1 : 0;
+        positives[part_of[frame.episode]] -= frame.positive ? 1 : 0;
     });
     std::vector<F1Fit> fits;
-    for (std::uint32_t g = 0; g < groups; ++g) fits.emplace_back(positives[g], strict);
+    for (std::uint32_t p = 0; p < parts; ++p) fits.emplace_back(positives[p], strict);
     labelled.for_each([&](const episodes::Scored& frame) {
-        for (std::uint32_t g = 0; g < groups; ++g)
-            if (g != group_of[frame.episode]) fits[g].add(frame);
+        for (std::uint32_t p = 0; p < parts; ++p)
+            if (p != part_of[frame.episode]) fits[p].add(frame);
     });
     std::vector<Fit> results;
     for (F1Fit& fit : fits) results.push_back(fit.result());
@@ -225,11 +225,11 @@ std::vector<Fit> fit_f1_without(const episodes::FramesByScore& labelled, bool st
 
 Fit fit(const check::Predicate& predicate, const Evidence& evidence, const Counts& counts) {
     const check::Threshold& threshold = predicate.threshold;
-    std::vector<double> by_demonstration;
+    std::vector<double> by_group;
     const auto by_worst = [&] {
-        for (const auto& [reach, demonstration] : evidence.worst)
-            if (counts(demonstration)) by_demonstration.push_back(reach);
-        return fit_rank(by_demonstration, threshold.alpha);
+        for (const auto& [reach, group] : evidence.worst)
+            if (counts(group)) by_group.push_back(reach);
+        return fit_rank(by_group, threshold.alpha);
     };
     Fit fit = threshold.origin == ThresholdOrigin::f1
                   ? fit_f1(evidence.labelled, predicate.strict(), counts)
@@ -237,7 +237,7 @@ Fit fit(const check::Predicate& predicate, const Evidence& evidence, const Count
                   ? fit_rank(evidence.reaches, threshold.alpha, counts)
                   : by_worst();
     if (auto* fitted = std::get_if<Fitted>(&fit)) {
-        if (!by_demonstration.empty()) fitted->scores = std::move(by_demonstration);
+        if (!by_group.empty()) fitted->scores = std::move(by_group);
         mirror(*fitted, predicate.upper_bound());
         const auto& adaptation = threshold.adaptation;
         if (adaptation && !check::start(*adaptation, fitted->epsilon, predicate.upper_bound()))

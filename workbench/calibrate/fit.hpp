@@ -19,7 +19,7 @@ namespace etlc::calibrate {
 
 struct Fitted {
     float epsilon = 0;    ///< for an adaptive threshold: before rounding to its grid
-    std::uint64_t n = 0;  ///< number of scores: demonstrations (conformal) or frames
+    std::uint64_t n = 0;  ///< number of scores: groups of demonstrations (conformal) or frames
     std::uint64_t k = 0;  ///< rank taken; 0 for f1
     /// Conformal: all scores, as far out as any build may measure them, ascending.
     /// Class-conditional: the score taken. F1: the score taken, and the next if epsilon is halfway
@@ -43,8 +43,8 @@ struct OutOfRange {
 
 using Fit = std::variant<Fitted, Refusal, OutOfRange>;
 
-/// Whether a demonstration counts.
-using Counts = std::function<bool(std::uint32_t demonstration)>;
+/// Whether a group counts.
+using Counts = std::function<bool(std::uint32_t group)>;
 inline constexpr auto kAll = [](std::uint32_t) { return true; };
 
 Fit fit(const check::Predicate& predicate, const Evidence& evidence, const Counts& counts = kAll);
@@ -65,22 +65,22 @@ void mirror(Fitted& fitted, bool upper_bound);
 Fit fit_rank(std::vector<double> reaches, const std::string& alpha);
 
 /// Finds the score that has the greatest F1 as epsilon in `score <= epsilon` (< if `strict`), over
-/// the labelled frames of the demonstrations that count; ties go to the least. Then moves epsilon
+/// the labelled frames of the groups that count; ties go to the least. Then moves epsilon
 /// halfway to the next score, which changes the claim for none of these frames.
 Fit fit_f1(const episodes::FramesByScore& labelled, bool strict, const Counts& counts = kAll);
 
-/// Does so without each group of demonstrations, in two passes over the frames; `group_of`: per
-/// demonstration.
+/// Does so without each part of the groups, in two passes over the frames; `part_of`: per group.
 std::vector<Fit> fit_f1_without(const episodes::FramesByScore& labelled, bool strict,
-                                const std::vector<std::uint32_t>& group_of, std::uint32_t groups);
+                                const std::vector<std::uint32_t>& part_of, std::uint32_t parts);
 
 /// A number of scores that is too small for alpha.
 struct TooFew {
     std::uint64_t scores = 0;
-    std::string noun;       ///< what gives a score: "demonstration"
-    std::string which{};    ///< " in which 'p' is true at some frame"
-    std::string unit{};     ///< "frame" or "step", missing in those left out
-    std::uint64_t all = 0;  ///< scores and those left out; 0: none was left out
+    std::string noun;            ///< what gives a score: "demonstration"
+    std::string which{};         ///< " in which 'p' is true at some frame"
+    std::string unit{};          ///< "frame" or "step", missing in those left out
+    std::uint64_t all = 0;       ///< scores and those left out; 0: none was left out
+    std::string in_groups{};     ///< "40 demonstrations"; empty: they have no groups
 };
 void refuse_too_few(const check::Threshold& threshold, const TooFew& found, diag::Sink& sink);
 /// Reports that no threshold or shift (`what`) lies beyond an infinite score.

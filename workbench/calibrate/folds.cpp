@@ -20,7 +20,7 @@ struct HeldOut {
     float least = std::numeric_limits<float>::infinity();  ///< threshold
     float greatest = -std::numeric_limits<float>::infinity();
     std::uint64_t without_threshold = 0;  ///< folds without which there is no threshold
-    std::uint64_t episodes = 0;           ///< held-out episodes with something to miss
+    std::uint64_t groups = 0;             ///< held-out groups with something to miss
     std::uint64_t covered = 0;            ///< those in which nothing was missed
     std::uint64_t hits = 0;               ///< frames
     std::uint64_t false_alarms = 0;
@@ -35,7 +35,7 @@ struct HeldOut {
         std::string text = fmt::format("    {}: ", name);
         if (least <= greatest)
             text += fmt::format("{:.7g} to {:.7g}; held out, {} of {} miss nothing", least,
-                                greatest, covered, counted(episodes, what));
+                                greatest, covered, counted(groups, what));
         if (const std::uint64_t frames = 2 * hits + false_alarms + misses; frames > 0)
             text += fmt::format(", F1 of the frames {:.3f}",
                                 2 * static_cast<double>(hits) / static_cast<double>(frames));
@@ -51,14 +51,14 @@ std::string heading(std::uint32_t folds) {
                        folds);
 }
 
-/// Adds the results of the threshold in the demonstrations of the fold that it was fitted without.
+/// Adds the results of the threshold in the groups of the fold that it was fitted without.
 void judge(const check::Predicate& predicate, float threshold, const Evidence& evidence,
            const Counts& in_fold, HeldOut& result) {
     struct Positives {
         std::uint64_t hits = 0;
         std::uint64_t misses = 0;
     };
-    std::vector<Positives> found(evidence.demonstrations);
+    std::vector<Positives> found(evidence.groups);
     evidence.labelled.for_each([&](const episodes::Scored& frame) {
         if (!in_fold(frame.episode)) return;
         const float delta = predicate.upper_bound() ? frame.score : -frame.score;
@@ -72,7 +72,7 @@ void judge(const check::Predicate& predicate, float threshold, const Evidence& e
         result.hits += hits;
         result.misses += misses;
         if (hits + misses == 0) continue;
-        ++result.episodes;
+        ++result.groups;
         result.covered += misses == 0 ? 1 : 0;
     }
 }
@@ -95,15 +95,15 @@ HeldOut held_out(std::uint32_t folds, const FitOthers& fit_others, const Judge& 
 
 std::string report_of_folds(const check::Model& model, const std::vector<Index>& predicates,
                             const std::vector<Evidence>& evidence,
-                            const episodes::Identities& episodes, const Request& request) {
-    const std::uint32_t folds = request.folds;
+                            const episodes::Identities& episodes, const episodes::Groups& groups,
+                            std::uint32_t folds) {
     if (folds == 0) return "";
-    const auto fold_of = episodes::folds_of(episodes, folds, request.reading);
+    const auto fold_of = episodes::folds_of(episodes, groups, folds);
     std::string text = heading(folds);
     for (std::size_t i = 0; i < predicates.size(); ++i) {
         const check::Predicate& predicate = model.predicates[predicates[i]];
         const auto fit_others = [&](std::uint32_t fold) {
-            return fit(predicate, evidence[i], [&](std::uint32_t d) { return fold_of[d] != fold; });
+            return fit(predicate, evidence[i], [&](std::uint32_t g) { return fold_of[g] != fold; });
         };
         const auto judge_fold = [&](std::uint32_t fold, const Fitted& fitted, HeldOut& result) {
             const auto& moves = predicate.threshold.adaptation;
@@ -111,43 +111,44 @@ std::string report_of_folds(const check::Model& model, const std::vector<Index>&
                 moves ? *check::start(*moves, fitted.epsilon, predicate.upper_bound())
                       : fitted.epsilon;
             result.add(threshold);
-            const auto in_fold = [&](std::uint32_t d) { return fold_of[d] == fold; };
+            const auto in_fold = [&](std::uint32_t g) { return fold_of[g] == fold; };
             judge(predicate, threshold, evidence[i], in_fold, result);
         };
-        text +=
-            held_out(folds, fit_others, judge_fold).text(predicate.name, folds, "demonstration");
+        text += held_out(folds, fit_others, judge_fold)
+                    .text(predicate.name, folds, groups.are_named() ? "group" : "demonstration");
     }
     return text;
 }
 
 std::string report_of_folds(const check::Model& model, const std::vector<Index>& monitors,
                             const std::vector<MonitorScores>& scores,
-                            const episodes::Identities& episodes, const Request& request) {
-    const std::uint32_t folds = request.folds;
+                            const episodes::Identities& episodes, const episodes::Groups& groups,
+                            std::uint32_t folds) {
     if (folds == 0) return "";
-    const auto fold_of = episodes::folds_of(episodes, folds, request.reading);
+    const auto fold_of = episodes::folds_of(episodes, groups, folds);
     std::string text = heading(folds);
     for (std::size_t i = 0; i < monitors.size(); ++i) {
         const check::Monitor& monitor = model.monitors[monitors[i]];
         const auto fit_others = [&](std::uint32_t fold) {
             std::vector<double> others;
-            for (std::size_t e = 0; e < scores.size(); ++e)
-                if (fold_of[e] != fold && scores[e][i].steps > 0)
-                    others.push_back(scores[e][i].worst);
+            for (std::size_t g = 0; g < scores.size(); ++g)
+                if (fold_of[g] != fold && scores[g][i].steps > 0)
+                    others.push_back(scores[g][i].worst);
             return fit_rank(std::move(others), monitor.calibration->threshold.alpha);
         };
         const auto judge_fold = [&](std::uint32_t fold, Fitted& fitted, HeldOut& result) {
             const auto beyond = static_cast<double>(fitted.epsilon);
             mirror(fitted, monitor.calibration->against == check::Against::missed_alarm);
             result.add(fitted.epsilon);
-            for (std::size_t e = 0; e < scores.size(); ++e) {
-                const MonitorScore& score = scores[e][i];
-                if (fold_of[e] != fold || score.steps == 0) continue;
-                ++result.episodes;
+            for (std::size_t g = 0; g < scores.size(); ++g) {
+                const MonitorScore& score = scores[g][i];
+                if (fold_of[g] != fold || score.steps == 0) continue;
+                ++result.groups;
                 result.covered += score.worst < beyond ? 1 : 0;
             }
         };
-        text += held_out(folds, fit_others, judge_fold).text(monitor.name, folds, "episode");
+        text += held_out(folds, fit_others, judge_fold).text(
+            monitor.name, folds, groups.are_named() ? "group" : "episode");
     }
     return text;
 }

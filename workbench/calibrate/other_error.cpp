@@ -17,7 +17,7 @@ using check::Claim;
 using episodes::Fraction;
 using episodes::Label;
 
-/// Counts per episode, for intervals.
+/// Counts per group, for intervals.
 using Fractions = std::vector<Fraction>;
 
 struct Counted {
@@ -25,11 +25,13 @@ struct Counted {
     const Fractions& fractions;
 };
 
-void add(ErrorShare& error, const Fraction& episode) {
-    error.cases += episode.whole;
-    error.errors += static_cast<std::uint64_t>(episode.part);
-    error.episodes += episode.whole > 0 ? 1 : 0;
-    error.wrong += episode.part > 0 ? 1 : 0;
+void add(ErrorShare& error, const Fractions& groups) {
+    for (const Fraction& group : groups) {
+        error.cases += group.whole;
+        error.errors += static_cast<std::uint64_t>(group.part);
+        error.groups += group.whole > 0 ? 1 : 0;
+        error.wrong += group.part > 0 ? 1 : 0;
+    }
 }
 
 /// Sets the intervals of all errors from the same resamples.
@@ -38,12 +40,12 @@ void set_intervals(const std::vector<Counted>& counted) {
     for (const Counted& one : counted) {
         ErrorShare& error = one.error;
         if (!error.why.empty() || error.cases == 0) continue;
-        const double bound = std::pow(0.025, 1 / static_cast<double>(error.episodes));
+        const double bound = std::pow(0.025, 1 / static_cast<double>(error.groups));
         if (error.errors == 0)
             error.interval = {0, 1 - bound};
         else if (error.errors == error.cases)
             error.interval = {bound, 1};
-        else if (error.episodes >= ErrorShare::kLeastEpisodes)
+        else if (error.groups >= ErrorShare::kLeastGroups)
             resampled.push_back(one);
     }
     if (resampled.empty()) return;
@@ -103,13 +105,13 @@ std::string why_no_variants(const check::Model& model, const Tracked& recorded) 
 
 /// Counts the errors in the verdicts on the variants of an episode.
 void add_variants(const std::vector<Broken>& variants, const std::vector<Guaranteed>& all,
-                  std::size_t episode, std::vector<Fractions>& fractions,
+                  std::size_t group, std::vector<Fractions>& fractions,
                   std::vector<OtherError>& errors) {
     for (std::size_t i = 0; i < all.size(); ++i) {
         const Label wrong = all[i].misses_success() ? Label::yes : Label::no;
         const Label right = all[i].misses_success() ? Label::no : Label::yes;
         VariantError& error = errors[i].variants;
-        Fraction& of = fractions[i][episode];
+        Fraction& of = fractions[i][group];
         for (const Broken& broken : variants) {
             ++error.made[static_cast<std::size_t>(broken.variant)];
             const Concluded& verdicts = broken.concluded[i];
@@ -117,12 +119,11 @@ void add_variants(const std::vector<Broken>& variants, const std::vector<Guarant
             ++of.whole;
             of.part += verdicts.said == wrong ? 1 : 0;
         }
-        add(error, of);
     }
 }
 
-/// Counts the errors of guarantees. `thresholds_of(e)` returns those of an episode. An error with
-/// a reason not to be counted is left as it is.
+/// Counts the errors of guarantees. `thresholds_of(g)` returns those of a group. An error with a
+/// reason not to be counted is left as it is.
 template <class ThresholdsOf>
 void count(const check::Model& model, const std::vector<Guaranteed>& all, const Tracked& recorded,
            const ThresholdsOf& thresholds_of, std::vector<OtherError>& errors) {
@@ -136,10 +137,11 @@ void count(const check::Model& model, const std::vector<Guaranteed>& all, const 
     }
     const std::string why_no = why_no_variants(model, recorded);
     for (OtherError& error : errors) error.variants.why = error.why.empty() ? why_no : error.why;
-    std::vector<Fractions> fractions(all.size(), Fractions(recorded.tracks.size()));
+    std::vector<Fractions> fractions(all.size(), Fractions(recorded.groups.count()));
     std::vector<Fractions> of_variants = fractions;
     recorded.tracks.for_each([&](std::size_t e, const std::string& track) {
-        const Thresholds& thresholds = thresholds_of(e);
+        const std::uint32_t group = recorded.groups.of(e);
+        const Thresholds& thresholds = thresholds_of(group);
         const std::vector<Said> episode = replayer->replay(track, thresholds);
         for (std::size_t i = 0; i < all.size(); ++i) {
             const Said& said = episode[i];
@@ -148,16 +150,19 @@ void count(const check::Model& model, const std::vector<Guaranteed>& all, const 
             errors[i].steps += said.steps;
             errors[i].said += success ? said.satisfied : said.violated;
             errors[i].truly += success ? said.truly_satisfied : truly_violated;
-            fractions[i][e] = {
-                static_cast<std::int64_t>(success ? said.falsely_satisfied : said.falsely_violated),
-                success ? truly_violated : said.truly_satisfied};
-            add(errors[i], fractions[i][e]);
+            fractions[i][group].part +=
+                static_cast<std::int64_t>(success ? said.falsely_satisfied : said.falsely_violated);
+            fractions[i][group].whole += success ? truly_violated : said.truly_satisfied;
         }
         if (why_no.empty())
-            add_variants(replayer->replay_variants(track, thresholds), all, e, of_variants, errors);
+            add_variants(replayer->replay_variants(track, thresholds), all, group, of_variants,
+                         errors);
     });
     std::vector<Counted> counted;
     for (std::size_t i = 0; i < all.size(); ++i) {
+        errors[i].by_group = recorded.groups.are_named();
+        add(errors[i], fractions[i]);
+        add(errors[i].variants, of_variants[i]);
         counted.push_back({errors[i], fractions[i]});
         counted.push_back({errors[i].variants, of_variants[i]});
     }
@@ -181,6 +186,11 @@ std::vector<Guaranteed> guaranteed(const check::Model& model) {
 
 namespace {
 
+/// Returns what is left out of the others.
+const char* one_of(const episodes::Groups& groups, const char* otherwise) {
+    return groups.are_named() ? "group" : otherwise;
+}
+
 /// Whether a comparison in the monitor's truth is in no part of the monitor: episodes are kept as
 /// what the monitor measures, and labels.
 bool measures_in_its_truth(const check::Model& model, const check::Monitor& monitor) {
@@ -197,17 +207,20 @@ bool measures_in_its_truth(const check::Model& model, const check::Monitor& moni
 std::vector<OtherError> other_errors(const check::Model& model,
                                      const std::vector<Index>& predicates,
                                      const std::vector<Evidence>& evidence,
-                                     const std::vector<LeftOut>& out) {
+                                     const std::vector<LeftOut>& out,
+                                     const episodes::Groups& groups) {
     std::vector<OtherError> errors(predicates.size());
     std::vector<Fractions> fractions(predicates.size());
     for (std::size_t i = 0; i < predicates.size(); ++i) {
         const check::Predicate& predicate = model.predicates[predicates[i]];
-        errors[i].groups = out[i].groups;
+        errors[i].parts = out[i].parts;
+        errors[i].by_group = groups.are_named();
         if (!out[i].why.empty()) {
-            errors[i].why = "without one demonstration " + out[i].why;
+            errors[i].why = fmt::format("without one {} {}", one_of(groups, "demonstration"),
+                                        out[i].why);
             continue;
         }
-        fractions[i].resize(evidence[i].demonstrations);
+        fractions[i].resize(groups.count());
         evidence[i].labelled.for_each([&](const episodes::Scored& frame) {
             if (frame.positive) return;
             const float delta = predicate.upper_bound() ? frame.score : -frame.score;
@@ -216,7 +229,7 @@ std::vector<OtherError> other_errors(const check::Model& model,
             fractions[i][frame.episode].part +=
                 check::holds(predicate.comparison, delta, threshold) ? 1 : 0;
         });
-        for (const Fraction& episode : fractions[i]) add(errors[i], episode);
+        add(errors[i], fractions[i]);
     }
     std::vector<Counted> counted;
     for (std::size_t i = 0; i < errors.size(); ++i) counted.push_back({errors[i], fractions[i]});
@@ -240,7 +253,8 @@ std::vector<OtherError> other_errors(const check::Model& model, const std::vecto
             if (found == predicates.end()) continue;
             const LeftOut& of = out[static_cast<std::size_t>(found - predicates.begin())];
             if (!of.why.empty() && errors[i].why.empty())
-                errors[i].why = fmt::format("without one demonstration {}, for '{}'", of.why,
+                errors[i].why = fmt::format("without one {} {}, for '{}'",
+                                            one_of(recorded.groups, "demonstration"), of.why,
                                             model.predicates[p].name);
         }
         if (reads_more && !recorded.is_complete && errors[i].why.empty())
@@ -251,9 +265,9 @@ std::vector<OtherError> other_errors(const check::Model& model, const std::vecto
         thresholds.predicates.push_back(predicate.threshold.value);
     count(
         model, all, recorded,
-        [&](std::size_t e) -> const Thresholds& {
+        [&](std::uint32_t group) -> const Thresholds& {
             for (std::size_t i = 0; i < predicates.size(); ++i)
-                if (out[i].why.empty()) thresholds.predicates[predicates[i]] = out[i].thresholds[e];
+                if (out[i].why.empty()) thresholds.predicates[predicates[i]] = out[i].thresholds[group];
             return thresholds;
         },
         errors);
@@ -267,7 +281,8 @@ std::vector<OtherError> other_errors_of_shifts(const check::Model& model,
     std::vector<OtherError> errors(all.size());
     for (std::size_t i = 0; i < all.size(); ++i)
         if (!out[i].why.empty())
-            errors[i].why = "without one episode " + out[i].why;
+            errors[i].why =
+                fmt::format("without one {} {}", one_of(recorded.groups, "episode"), out[i].why);
         else if (measures_in_its_truth(model, model.monitors[all[i].monitor]))
             errors[i].why = "its truth measures something that the monitor does not";
     Thresholds thresholds;
@@ -276,9 +291,9 @@ std::vector<OtherError> other_errors_of_shifts(const check::Model& model,
     thresholds.shifts.resize(all.size());
     count(
         model, all, recorded,
-        [&](std::size_t e) -> const Thresholds& {
+        [&](std::uint32_t group) -> const Thresholds& {
             for (std::size_t i = 0; i < all.size(); ++i)
-                if (out[i].why.empty()) thresholds.shifts[i] = out[i].thresholds[e];
+                if (out[i].why.empty()) thresholds.shifts[i] = out[i].thresholds[group];
             return thresholds;
         },
         errors);

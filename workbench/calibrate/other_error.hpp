@@ -23,14 +23,15 @@ struct ErrorShare {
     std::string why;             ///< why it was not counted; empty if it was
     std::uint64_t cases = 0;     ///< frames, steps or variants at which it can happen
     std::uint64_t errors = 0;    ///< those at which it happens
-    std::uint64_t episodes = 0;  ///< episodes with a case
-    std::uint64_t wrong = 0;     ///< episodes with an error
-    /// The 95 % interval of errors / cases over the episodes, from resamples of them; if all or no
+    std::uint64_t groups = 0;    ///< groups of episodes with a case
+    std::uint64_t wrong = 0;     ///< groups with an error
+    bool by_group = false;       ///< some episode has a group; otherwise each is one
+    /// The 95 % interval of errors / cases over the groups, from resamples of them; if all or no
     /// cases are errors, that of Clopper and Pearson ("The use of confidence or fiducial limits",
-    /// 1934) for as many episodes. Otherwise it takes kLeastEpisodes.
+    /// 1934) for as many groups. Otherwise it takes kLeastGroups.
     std::optional<episodes::Interval> interval{};
 
-    static constexpr std::uint64_t kLeastEpisodes = 5;
+    static constexpr std::uint64_t kLeastGroups = 5;
 
     double share() const { return static_cast<double>(errors) / static_cast<double>(cases); }
 };
@@ -44,7 +45,7 @@ struct OtherError : ErrorShare {
     std::uint64_t steps = 0;   ///< monitors: all steps of known truth
     std::uint64_t said = 0;    ///< those with the wrong verdict, as its cases have if wrong
     std::uint64_t truly = 0;   ///< those at which the truth is that verdict
-    std::uint32_t groups = 0;  ///< episodes were left out in this many groups; 0: one by one
+    std::uint32_t parts = 0;   ///< groups were left out in this many parts; 0: one by one
     VariantError variants;     ///< of a monitor
 };
 
@@ -57,6 +58,7 @@ std::vector<Guaranteed> guaranteed(const check::Model& model);
 struct Tracked {
     const Tracks& tracks;
     const Watched& watched;
+    const episodes::Groups& groups;
     bool is_complete = true;  ///< every episode has the inputs of all watched predicates and flags
     bool is_divided = true;   ///< every episode has all labels that divide it into phases
 };
@@ -65,7 +67,8 @@ struct Tracked {
 std::vector<OtherError> other_errors(const check::Model& model,
                                      const std::vector<Index>& predicates,
                                      const std::vector<Evidence>& evidence,
-                                     const std::vector<LeftOut>& out);
+                                     const std::vector<LeftOut>& out,
+                                     const episodes::Groups& groups);
 
 /// Returns the error of each guarantee. `model` has all thresholds; those of `predicates` are
 /// replaced by `out`.
@@ -85,9 +88,7 @@ std::string describe(const OtherError& error);
 std::string describe(const OtherError& error, const Guaranteed& of, const std::string& indent);
 
 /// Explains these lines at the end of a report.
-inline constexpr const char* kOtherErrors =
-    "    The other error is counted in each episode with the thresholds that the other episodes "
-    "give; in brackets its 95 % interval over episodes.\n";
+std::string note_on_other_errors(bool by_group);
 
 /// Warns of a guarantee that holds and is empty, or whose monitor is wrong on most variants.
 void warn_of_empty(const check::Model& model, const Guaranteed& of, const OtherError& error,

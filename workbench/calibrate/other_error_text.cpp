@@ -50,9 +50,18 @@ std::string describe(const OtherError& error) {
         return *nothing;
     std::string text = fmt::format("{}true at {} of {} negative frames, {}", kHead, error.errors,
                                    error.cases, share_of(error));
-    if (error.groups > 0)
-        text += fmt::format("; demonstrations left out in {} groups", error.groups);
+    if (error.parts > 0)
+        text += fmt::format("; {} left out in {} parts", error.by_group ? "groups" : "demonstrations",
+                            error.parts);
     return text + "\n";
+}
+
+std::string note_on_other_errors(bool by_group) {
+    const char* const each = by_group ? "group" : "episode";
+    return fmt::format(
+        "    The other error is counted in each {0} with the thresholds that the other {0}s give; "
+        "in brackets its 95 % interval over {0}s.\n",
+        each);
 }
 
 namespace {
@@ -109,10 +118,10 @@ std::string describe(const OtherError& error, const Guaranteed& of, const std::s
         text += *nothing;
     else
         text += fmt::format(
-            "{}{} at {} of {} truly {} steps, {}; in {} of {} episodes\n"
+            "{}{} at {} of {} truly {} steps, {}; in {} of {} {}s\n"
             "{}in all {} at {} of {} steps, truly at {}\n",
             kHead, said_word(of), error.errors, error.cases, true_word(of), share_of(error),
-            error.wrong, error.episodes, indent, said_word(of), error.said, error.steps,
+            error.wrong, error.groups, error.by_group ? "group" : "episode", indent, said_word(of), error.said, error.steps,
             error.truly);
     return error.why.empty() ? text + indent + describe(error.variants, of) : text;
 }
@@ -139,7 +148,7 @@ void warn_of_empty(const check::Model& model, const Guaranteed& of, const OtherE
     if (by_steps)
         warning.note(fmt::format(
             "{} of {} in {}, each with the thresholds of the others; 95 % interval from {} to {} %",
-            error.errors, counted(error.cases, "step"), counted(error.episodes, "episode"),
+            error.errors, counted(error.cases, "step"), counted(error.groups, error.by_group ? "group" : "episode"),
             percent(error.interval->low), percent(error.interval->high)));
     if (by_variants)
         warning.note(fmt::format("of {}: {}", made(error.variants), errors_of(error.variants, of)));

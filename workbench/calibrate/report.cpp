@@ -16,6 +16,7 @@ using diag::counted;
 
 std::string how(const check::Predicate& predicate, const Fitted& fitted) {
     const check::Threshold& threshold = predicate.threshold;
+    const char* const each = threshold.by_group ? "group" : "demonstration";
     const auto place = [&](const char* each) {
         return describe_place(fitted, predicate.upper_bound(), each);
     };
@@ -26,9 +27,12 @@ std::string how(const check::Predicate& predicate, const Fitted& fitted) {
         case ThresholdOrigin::conformal:
             return fmt::format(
                 "conformal, alpha = {}: {}\n"
-                "    a new demonstration is covered with probability >= 1 - {}; given these {}, "
-                "with {:.3f} to {:.3f} (5 % and 95 % quantiles of Beta({}, {}), without ties)",
-                threshold.alpha, place("demonstration"), threshold.alpha, fitted.n,
+                "    {} is covered with probability >= 1 - {}; given these {}, with {:.3f} to "
+                "{:.3f} (5 % and 95 % quantiles of Beta({}, {}), without ties)",
+                threshold.alpha, place(each),
+                threshold.by_group ? "a demonstration of a new group" : "a new demonstration",
+                threshold.alpha,
+                threshold.by_group ? counted(fitted.n, "group") : std::to_string(fitted.n),
                 check::coverage_quantile(fitted.n, fitted.k, 0.05),
                 check::coverage_quantile(fitted.n, fitted.k, 0.95), fitted.k,
                 fitted.n + 1 - fitted.k);
@@ -44,7 +48,7 @@ std::string how(const check::Predicate& predicate, const Fitted& fitted) {
                 "adaptive, alpha = {}, gamma = {}, in [{}, {}]: starts {}\n"
                 "    of the first T labelled positive frames it misses at most {}, where H counts "
                 "the misses at the end of its range",
-                threshold.alpha, moves.gamma, moves.lo, moves.hi, place("demonstration"),
+                threshold.alpha, moves.gamma, moves.lo, moves.hi, place(each),
                 check::miss_bound(predicate));
         }
         case ThresholdOrigin::literal: break;
@@ -55,7 +59,6 @@ std::string how(const check::Predicate& predicate, const Fitted& fitted) {
 std::string predicate_report(const check::Model& model, Index index, const Evidence& evidence,
                              const Fitted& fitted, const OtherError& other) {
     const check::Predicate& predicate = model.predicates[index];
-    const std::uint64_t without_score = evidence.demonstrations - evidence.worst.size();
     std::string text =
         fmt::format("\n{}: {}{:.9g}\n    {}\n    labels: {} frames positive, {} negative",
                     predicate.name, predicate.text, predicate.threshold.value,
@@ -70,16 +73,16 @@ std::string predicate_report(const check::Model& model, Index index, const Evide
             evidence.from_array, counted(evidence.demonstrations, "demonstration"), predicate.name);
     const bool by_demonstration =
         predicate.threshold.origin == ThresholdOrigin::conformal || predicate.threshold.adaptation;
-    if (by_demonstration && without_score > 0)
+    if (by_demonstration && evidence.without_score > 0)
         text += fmt::format("    {} without a positive frame left out\n",
-                            counted(without_score, "demonstration"));
+                            counted(evidence.without_score, "demonstration"));
     if (evidence.unmeasured > 0)
         text += fmt::format("    {} of unknown distance skipped\n",
                             counted(evidence.unmeasured, "labelled frame"));
     return text + "    " + describe(other);
 }
 
-std::string monitor_report(const check::Model& model, const Others& others) {
+std::string monitor_report(const check::Model& model, const Others& others, bool by_group) {
     std::size_t widest = 0;
     for (const check::Monitor& monitor : model.monitors)
         widest = std::max(widest, monitor.name.size());
@@ -108,23 +111,31 @@ std::string monitor_report(const check::Model& model, const Others& others) {
     for (const std::string& reservation : model.reservations)
         text += fmt::format("    {}\n", reservation);
     return text +
-           "    Probabilities are over the demonstrations and the new episode together, which must "
-           "be exchangeable, per episode as recorded.\n"
+           (by_group
+                ? "    Probabilities are over the groups of demonstrations and the new group "
+                  "together, which must be exchangeable; a group counts once, with the worst of its "
+                  "demonstrations.\n"
+                : "    Probabilities are over the demonstrations and the new episode together, which "
+                  "must be exchangeable, per episode as recorded.\n") +
            "    Bounds on successes exclude steps with missing samples.\n" +
-           kOtherErrors;
+           note_on_other_errors(by_group);
 }
 
 }  // namespace
 
+std::string in_groups(const episodes::Groups& groups) {
+    return groups.are_named() ? " in " + counted(groups.count(), "group") : "";
+}
+
 std::string report(const check::Model& model, const std::vector<Index>& predicates,
-                   const std::vector<Evidence>& evidence, std::uint64_t frames,
-                   const std::vector<Fitted>& fitted, const Others& others) {
-    std::string text = fmt::format("{}, {}\n", counted(evidence[0].demonstrations, "demonstration"),
-                                   counted(frames, "frame"));
+                   const std::vector<Evidence>& evidence, const episodes::Groups& groups,
+                   std::uint64_t frames, const std::vector<Fitted>& fitted, const Others& others) {
+    std::string text = fmt::format("{}{}, {}\n", counted(groups.episodes(), "demonstration"),
+                                   in_groups(groups), counted(frames, "frame"));
     for (std::size_t i = 0; i < predicates.size(); ++i)
         text +=
             predicate_report(model, predicates[i], evidence[i], fitted[i], others.by_predicate[i]);
-    return text + monitor_report(model, others);
+    return text + monitor_report(model, others, groups.are_named());
 }
 
 }  // namespace etlc::calibrate

@@ -12,17 +12,29 @@ namespace etlc::calibrate {
 using check::ThresholdOrigin;
 using episodes::Label;
 
-void Evidence::add(const Scores& scores) {
-    const auto demonstration = static_cast<std::uint32_t>(demonstrations++);
+void Evidence::add(const Scores& scores, std::uint32_t group) {
+    constexpr std::uint32_t kNowhere = UINT32_MAX;
+    if (group == groups) {
+        ++groups;
+        place_.push_back(kNowhere);
+    }
+    ++demonstrations;
     from_array += scores.from_array ? 1 : 0;
     positives += scores.positives;
     negatives += scores.negatives;
     unlabelled += scores.unlabelled;
     unmeasured += scores.unmeasured;
-    if (scores.has_score) worst.push_back({scores.worst_reach, demonstration});
-    for (const double reach : scores.reaches) reaches.add({reach, demonstration});
+    without_score += scores.has_score ? 0 : 1;
+    if (scores.has_score && place_[group] == kNowhere) {
+        place_[group] = static_cast<std::uint32_t>(worst.size());
+        worst.push_back({scores.worst_reach, group});
+    } else if (scores.has_score) {
+        Reach& known = worst[place_[group]];
+        known.reach = std::max(known.reach, scores.worst_reach);
+    }
+    for (const double reach : scores.reaches) reaches.add({reach, group});
     for (const Scores::Labelled& frame : scores.labelled)
-        labelled.add({frame.score, demonstration, frame.positive});
+        labelled.add({frame.score, group, frame.positive});
 }
 
 namespace {

@@ -58,31 +58,37 @@ void fields(Archive& archive, Demonstration& demonstration) {
             demonstration.track, demonstration.is_complete, demonstration.is_divided);
 }
 
-/// Scores of a predicate in all demonstrations. Memory is 16 bytes per demonstration and that of
+/// Scores of a predicate in all demonstrations, by their groups: those of a group count once, and a
+/// demonstration without one is a group by itself. Memory is 24 bytes per group and that of
 /// data::Sorted, however many frames there are.
 struct Evidence {
     /// The greatest score that any build may have measured.
     struct Reach {
         double reach = 0;
-        std::uint32_t demonstration = 0;
+        std::uint32_t group = 0;
 
         bool operator<(const Reach& other) const {
-            return reach != other.reach ? reach < other.reach : demonstration < other.demonstration;
+            return reach != other.reach ? reach < other.reach : group < other.group;
         }
     };
 
     std::uint64_t demonstrations = 0;
+    std::uint32_t groups = 0;
+    std::uint64_t without_score = 0;  ///< demonstrations
     std::uint64_t from_array = 0;  ///< demonstrations with an array of labels
     std::uint64_t positives = 0;   ///< frames, as in Scores
     std::uint64_t negatives = 0;
     std::uint64_t unlabelled = 0;
     std::uint64_t unmeasured = 0;
-    std::vector<Reach> worst;          ///< one per demonstration with a score
+    std::vector<Reach> worst;          ///< one per group with a score
     data::Sorted<Reach> reaches;       ///< class_conditional: one per positive frame
-    episodes::FramesByScore labelled;  ///< all measured frames; `episode` is the demonstration
+    episodes::FramesByScore labelled;  ///< all measured frames; `episode` is the group
 
-    /// Adds the next demonstration.
-    void add(const Scores& scores);
+    /// Adds the next demonstration. Numbers of groups begin with 0, without a gap.
+    void add(const Scores& scores, std::uint32_t group);
+
+private:
+    std::vector<std::uint32_t> place_;  ///< in `worst`, per group
 };
 
 /// Returns the predicates with a calibrated threshold, in the order of the model.

@@ -166,15 +166,31 @@ void MonitorScorer::note(std::vector<MonitorScore>& scores) const {
     }
 }
 
+/// Adds the scores of an episode to those of its group, which take the worst.
+void add(std::vector<MonitorScores>& groups, std::uint32_t group, MonitorScores scores) {
+    if (group == groups.size()) {
+        groups.push_back(std::move(scores));
+        return;
+    }
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+        MonitorScore& of = groups[group][i];
+        if (scores[i].steps > 0)
+            of.worst = of.steps == 0 ? scores[i].worst : std::max(of.worst, scores[i].worst);
+        of.steps += scores[i].steps;
+        of.unknown += scores[i].unknown;
+    }
+}
+
+/// Scores of a monitor in all groups.
 struct Totals {
     std::uint64_t with_score = 0;
     std::uint64_t steps = 0;
     std::uint64_t unknown = 0;
     std::vector<double> scores;
 
-    Totals(const std::vector<MonitorScores>& episodes, std::size_t of) {
-        for (const MonitorScores& episode : episodes) {
-            const MonitorScore& score = episode[of];
+    Totals(const std::vector<MonitorScores>& groups, std::size_t of) {
+        for (const MonitorScores& group : groups) {
+            const MonitorScore& score = group[of];
             steps += score.steps;
             unknown += score.unknown;
             if (score.steps == 0) continue;
@@ -184,20 +200,21 @@ struct Totals {
     }
 };
 
-void refuse(const check::Monitor& monitor, const Totals& totals, std::size_t episodes,
+void refuse(const check::Monitor& monitor, const Totals& totals, const episodes::Groups& groups,
             Refusal refusal, diag::Sink& sink) {
+    const std::string episodes = counted(groups.episodes(), "episode");
     const check::Threshold& threshold = monitor.calibration->threshold;
     if (refusal == Refusal::no_positives)
         sink.report(Code::no_positive_frame, threshold.span,
                     fmt::format("the ground truth of '{}' is {} at no step of {}, so there is "
                                 "nothing to learn its shift from",
-                                monitor.name, truth_word(monitor), counted(episodes, "episode")));
+                                monitor.name, truth_word(monitor), episodes));
     else if (refusal == Refusal::too_few)
         refuse_too_few(threshold,
-                       {totals.with_score, "episode",
+                       {totals.with_score, groups.are_named() ? "group" : "episode",
                         fmt::format(" in which the ground truth of '{}' is {} at some step",
                                     monitor.name, truth_word(monitor)),
-                        "step", episodes},
+                        "step", groups.count(), groups.are_named() ? episodes : ""},
                        sink);
     else
         refuse_infinite(monitor.name, threshold, "shift", sink);
@@ -216,7 +233,9 @@ thresholds::Entry entry_of_monitor(const check::Model& model, const check::Monit
 }
 
 std::string monitor_report(const check::Model& model, const check::Monitor& monitor,
-                           const Totals& totals, const Fitted& fitted, std::size_t episodes) {
+                           const Totals& totals, const Fitted& fitted,
+                           const episodes::Groups& groups) {
+    const char* const each = groups.are_named() ? "group" : "episode";
     std::string text = fmt::format(
         "\n{}: rho of {} less {:.9g}\n"
         "    conformal, alpha = {}: {} whose ground truth is {} at some step\n"
@@ -224,13 +243,14 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
         "quantiles, without ties)\n",
         monitor.name, check::shown(model, monitor.formula), fitted.epsilon,
         monitor.calibration->threshold.alpha,
-        describe_place(fitted, against_alarms(monitor), "episode"), truth_word(monitor),
-        check::text(check::claims(model, monitor)[0]), fitted.n,
+        describe_place(fitted, against_alarms(monitor), each), truth_word(monitor),
+        check::text(check::claims(model, monitor)[0]),
+        groups.are_named() ? counted(fitted.n, "group") : std::to_string(fitted.n),
         1 - check::coverage_quantile(fitted.n, fitted.k, 0.05),
         1 - check::coverage_quantile(fitted.n, fitted.k, 0.95));
-    if (totals.with_score < episodes)
+    if (totals.with_score < groups.count())
         text += fmt::format("    {} without such a step left out\n",
-                            counted(episodes - totals.with_score, "episode"));
+                            counted(groups.count() - totals.with_score, each));
     if (totals.unknown > 0)
         text += fmt::format("    {} skipped, where a missing label leaves the ground truth open\n",
                             counted(totals.unknown, "step"));
@@ -248,8 +268,8 @@ std::vector<Guaranteed> guaranteed_as_a_whole(const check::Model& model) {
 LeftOut shifts_without_each(const check::Monitor& monitor, const std::vector<MonitorScores>& scores,
                             std::size_t of) {
     std::vector<Evidence::Reach> worst;
-    for (std::uint32_t e = 0; e < scores.size(); ++e)
-        if (scores[e][of].steps > 0) worst.push_back({scores[e][of].worst, e});
+    for (std::uint32_t g = 0; g < scores.size(); ++g)
+        if (scores[g][of].steps > 0) worst.push_back({scores[g][of].worst, g});
     return left_out(*monitor.calibration, worst, scores.size());
 }
 
@@ -297,7 +317,8 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
 
     const episodes::Leaks leaks(model, labelled);
     episodes::Identities recorded;
-    std::vector<MonitorScores> scored;
+    episodes::Groups groups;
+    std::vector<MonitorScores> scored;  // per group
     const std::vector<Guaranteed> guarantees = guaranteed_as_a_whole(model);
     const Watched watched = watched_by(model, guarantees, labelled, *in_first);
     Tracks tracks;
@@ -315,7 +336,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
             frames += episode.frames;
             ++labelling.episodes;
             for (const Index predicate : episode.from_arrays) ++labelling.from_arrays[predicate];
-            scored.push_back(std::move(episode.scores));
+            add(scored, groups.add(episode.group), std::move(episode.scores));
             tracks.add(episode.track);
             is_divided &= episode.is_divided;
         });
@@ -338,7 +359,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         const Totals totals(scored, i);
         Fit fit = fit_rank(totals.scores, monitor.calibration->threshold.alpha);
         if (const auto* refusal = std::get_if<Refusal>(&fit)) {
-            refuse(monitor, totals, scored.size(), *refusal, sink);
+            refuse(monitor, totals, groups, *refusal, sink);
             continue;
         }
         auto& fitted = std::get<Fitted>(fit);
@@ -347,21 +368,27 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         warn_of_large_alpha(monitor.name, monitor.calibration->threshold, sink);
         result.file.monitors[monitor.name] =
             entry_of_monitor(model, monitor, fitted, recorded, labelling);
-        reports.push_back(monitor_report(model, monitor, totals, fitted, scored.size()));
-        shifted.monitors[monitors[i]].calibration->threshold.value = fitted.epsilon;
+        check::Threshold& shift = shifted.monitors[monitors[i]].calibration->threshold;
+        shift.value = fitted.epsilon;
+        shift.n = fitted.n;
+        shift.k = fitted.k;
+        shift.by_group = groups.are_named();
+        reports.push_back(
+            monitor_report(shifted, shifted.monitors[monitors[i]], totals, fitted, groups));
         out.push_back(shifts_without_each(monitor, scored, i));
     }
     if (sink.has_errors()) return std::nullopt;
     const auto others =
-        other_errors_of_shifts(shifted, guarantees, out, {tracks, watched, true, is_divided});
-    result.report =
-        fmt::format("{}, {}\n", counted(scored.size(), "episode"), counted(frames, "frame"));
+        other_errors_of_shifts(shifted, guarantees, out,
+                                               {tracks, watched, groups, true, is_divided});
+    result.report = fmt::format("{}{}, {}\n", counted(groups.episodes(), "episode"),
+                                in_groups(groups), counted(frames, "frame"));
     for (std::size_t i = 0; i < monitors.size(); ++i) {
         result.report += reports[i] + describe(others[i], guarantees[i], "    ");
         warn_of_empty(model, guarantees[i], others[i], sink);
     }
-    result.report += std::string("\n") + kOtherErrors;
-    result.report += report_of_folds(model, monitors, scored, recorded, request);
+    result.report += "\n" + note_on_other_errors(groups.are_named());
+    result.report += report_of_folds(model, monitors, scored, recorded, groups, request.folds);
     thresholds::drop_unused_recordings(result.file);
     for (const thresholds::Allowance& used : result.file.allowances)
         result.report += fmt::format("\n{}\n", thresholds::text(used));

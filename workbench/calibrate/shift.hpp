@@ -64,9 +64,10 @@ void fields(Archive& archive, MonitorEpisode& episode) {
 std::optional<Calibration> calibrate_monitors(const check::Model& model, thresholds::File before,
                                               const Request& request, diag::Sink& sink);
 
-/// Reports the shifts without each fold, as for predicates. `scores` are per episode.
+/// Reports the shifts without each fold, as for predicates. `scores` are per group.
 std::string report_of_folds(const check::Model& model, const std::vector<Index>& monitors,
                             const std::vector<MonitorScores>& scores,
-                            const episodes::Identities& episodes, const Request& request);
+                            const episodes::Identities& episodes, const episodes::Groups& groups,
+                            std::uint32_t folds);
 
 }  // namespace etlc::calibrate

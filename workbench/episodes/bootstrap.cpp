@@ -43,47 +43,73 @@ std::size_t round_of(std::size_t episodes) {
                                    kResamples);
 }
 
-/// Draws the next resamples, one after the other: the draws of each are spread over all episodes.
-Weights draw(Random& random, std::size_t episodes, std::size_t resamples) {
-    const Remainder remainder(episodes);
-    std::vector<Weights::Weight> by_resample(episodes * resamples);
-    for (std::size_t r = 0; r < resamples; ++r) {
-        Weights::Weight* const drawn = by_resample.data() + r * episodes;
-        for (std::size_t i = 0; i < episodes; ++i) ++drawn[remainder.of(random.next())];
+/// What is drawn: episodes, or groups of them.
+struct Drawn {
+    std::size_t episodes;
+    std::size_t groups;
+    const std::vector<std::uint32_t>& group_of;  ///< per episode; empty: each is one
+
+    std::size_t group(std::size_t episode) const {
+        return group_of.empty() ? episode : group_of[episode];
     }
-    Weights weights(episodes, resamples, 0);
-    for (std::size_t e = 0; e < episodes; ++e)
-        for (std::size_t r = 0; r < resamples; ++r) weights[e][r] = by_resample[r * episodes + e];
+};
+
+/// Draws the next resamples, one after the other: the draws of each are spread over all groups.
+Weights draw(Random& random, const Drawn& of, std::size_t resamples) {
+    const Remainder remainder(of.groups);
+    std::vector<Weights::Weight> by_resample(of.groups * resamples);
+    for (std::size_t r = 0; r < resamples; ++r) {
+        Weights::Weight* const drawn = by_resample.data() + r * of.groups;
+        for (std::size_t i = 0; i < of.groups; ++i) ++drawn[remainder.of(random.next())];
+    }
+    Weights weights(of.episodes, resamples, 0);
+    for (std::size_t e = 0; e < of.episodes; ++e)
+        for (std::size_t r = 0; r < resamples; ++r)
+            weights[e][r] = by_resample[r * of.groups + of.group(e)];
     return weights;
 }
 
 /// Draws the next resamples in a batch for each thread.
-std::vector<Weights> draw_batches(Random& random, std::size_t episodes, std::size_t resamples,
+std::vector<Weights> draw_batches(Random& random, const Drawn& of, std::size_t resamples,
                                   std::size_t batches) {
     std::vector<Weights> drawn;
     const std::size_t batch = (resamples + batches - 1) / batches;
     for (std::size_t begin = 0; begin < resamples; begin += batch)
-        drawn.push_back(draw(random, episodes, std::min(batch, resamples - begin)));
+        drawn.push_back(draw(random, of, std::min(batch, resamples - begin)));
     return drawn;
+}
+
+std::vector<std::uint32_t> groups_of_each(const Groups& groups) {
+    std::vector<std::uint32_t> result;
+    for (std::size_t e = 0; e < groups.episodes() && groups.are_named(); ++e)
+        result.push_back(groups.of(e));
+    return result;
 }
 
 }  // namespace
 
 Bootstrap::Bootstrap(std::size_t episodes, unsigned jobs)
     : whole_(episodes, 1, 1),
+      groups_(episodes),
       jobs_(std::max(1U, jobs > 0 ? jobs : std::thread::hardware_concurrency())) {}
+
+Bootstrap::Bootstrap(const Groups& groups, unsigned jobs) : Bootstrap(groups.episodes(), jobs) {
+    group_of_ = groups_of_each(groups);
+    groups_ = groups.count();
+}
 
 void Bootstrap::for_each_round(const std::function<void(const Batches&)>& visit) const {
     const std::size_t episodes = whole_.episodes();
     if (episodes == 0) return;
     Random random(kSeed);
+    const Drawn of{episodes, groups_, group_of_};
     const std::size_t round = round_of(episodes);
     if (round == kResamples) {
-        if (drawn_.empty()) drawn_ = draw_batches(random, episodes, round, jobs_);
+        if (drawn_.empty()) drawn_ = draw_batches(random, of, round, jobs_);
         return visit(drawn_);
     }
     for (std::size_t begin = 0; begin < kResamples; begin += round)
-        visit(draw_batches(random, episodes, std::min(round, kResamples - begin), jobs_));
+        visit(draw_batches(random, of, std::min(round, kResamples - begin), jobs_));
 }
 
 void Bootstrap::for_each_batch(const std::function<void(const Weights&)>& visit) const {
@@ -95,7 +121,7 @@ void Bootstrap::for_each_batch(const std::function<void(const Weights&)>& visit)
 Figure Bootstrap::figure(
     const std::function<std::vector<std::optional<double>>(const Weights&)>& statistic) const {
     Figure result{statistic(whole_)[0], {}};
-    if (!result.value || whole_.episodes() < 2) return result;
+    if (!result.value || groups_ < 2) return result;
     std::vector<std::optional<double>> values;
     values.reserve(kResamples);
     for_each_round([&](const Batches& batches) {

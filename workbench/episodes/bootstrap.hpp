@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "episodes/folds.hpp"
 #include "episodes/ranking/auroc.hpp"
 
 namespace etlc::episodes {
@@ -25,19 +26,23 @@ struct Figure {
     std::optional<Interval> interval;
 };
 
-/// Efron's percentile intervals: the 2.5 % and 97.5 % quantiles over kResamples draws of episodes
-/// with replacement, since frames of one episode are not independent. The seed is fixed, so the
-/// same data give the same interval on every machine and with any number of threads. Resamples that
-/// fit into memory at once are drawn once for all figures.
+/// Efron's percentile intervals: the 2.5 % and 97.5 % quantiles over kResamples draws with
+/// replacement, of episodes, since frames of one episode are not independent, or of groups of them.
+/// The seed is fixed, so the same data give the same interval on every machine and with any number
+/// of threads. Resamples that fit into memory at once are drawn once for all figures.
 class Bootstrap {
 public:
     /// `jobs`: threads that compute a figure; 0: one per core.
     explicit Bootstrap(std::size_t episodes, unsigned jobs = 1);
+    /// Draws groups, with all of their episodes.
+    explicit Bootstrap(const Groups& groups, unsigned jobs = 1);
 
     /// Calls `visit` with all resamples in batches: always the same ones, in the same order.
     void for_each_batch(const std::function<void(const Weights&)>& visit) const;
     /// Returns weights that count every episode once.
     const Weights& whole() const { return whole_; }
+    /// Returns the number of groups, which without names are episodes.
+    std::size_t groups() const { return groups_; }
 
     /// Computes a figure. `statistic(weights)` returns its value for each resample, in order. It is
     /// called once for `whole()`, and then by several threads at a time.
@@ -50,6 +55,8 @@ private:
     void for_each_round(const std::function<void(const Batches&)>& visit) const;
 
     Weights whole_;
+    std::vector<std::uint32_t> group_of_;  ///< per episode; empty: each is drawn by itself
+    std::size_t groups_;
     unsigned jobs_;
     mutable Batches drawn_;  ///< all resamples, if they fit into memory
 };

@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <numeric>
-#include <set>
 #include <utility>
 
 namespace etlc::episodes {
+
+std::uint32_t Groups::add(const std::string& name) {
+    const auto number =
+        name.empty() ? count_ : known_.try_emplace(name, count_).first->second;
+    if (number == count_) ++count_;
+    of_.push_back(number);
+    return number;
+}
 
 std::vector<std::size_t> by_content(const Identities& episodes) {
     std::vector<std::uint64_t> hashes;
@@ -22,13 +28,9 @@ std::vector<std::size_t> by_content(const Identities& episodes) {
 }
 
 std::vector<std::uint32_t> dealt(const std::vector<std::string>& groups, std::size_t folds) {
-    std::vector<std::vector<std::size_t>> together;
-    std::map<std::string, std::size_t> known;
-    for (std::size_t e = 0; e < groups.size(); ++e) {
-        const bool is_new = groups[e].empty() || known.emplace(groups[e], together.size()).second;
-        if (is_new) together.emplace_back();
-        (is_new ? together.back() : together[known.at(groups[e])]).push_back(e);
-    }
+    const Groups numbered(groups);
+    std::vector<std::vector<std::size_t>> together(numbered.count());
+    for (std::size_t e = 0; e < groups.size(); ++e) together[numbered.of(e)].push_back(e);
     std::stable_sort(together.begin(), together.end(),
                      [](const auto& a, const auto& b) { return a.size() > b.size(); });
     std::vector<std::uint32_t> result(groups.size());
@@ -42,17 +44,10 @@ std::vector<std::uint32_t> dealt(const std::vector<std::string>& groups, std::si
     return result;
 }
 
-std::size_t count_apart(const std::vector<std::string>& groups) {
-    const std::set<std::string> named(groups.begin(), groups.end());
-    const auto alone = static_cast<std::size_t>(std::count(groups.begin(), groups.end(), ""));
-    return named.size() - named.count("") + alone;
-}
-
-std::vector<std::uint32_t> folds_of(const Identities& episodes, std::uint32_t folds,
-                                    const ReadOptions& reading) {
-    std::vector<std::string> paths;
-    episodes.for_each([&](std::size_t, const Recorded& episode) { paths.push_back(episode.path); });
-    const std::vector<std::string> groups = groups_of(paths, reading);
+std::vector<std::uint32_t> folds_of(const Identities& episodes, std::uint32_t folds) {
+    std::vector<std::string> groups;
+    episodes.for_each(
+        [&](std::size_t, const Recorded& episode) { groups.push_back(episode.group); });
     const std::vector<std::size_t> order = by_content(episodes);
     std::vector<std::string> in_order;
     for (const std::size_t e : order) in_order.push_back(groups[e]);
@@ -62,14 +57,22 @@ std::vector<std::uint32_t> folds_of(const Identities& episodes, std::uint32_t fo
     return result;
 }
 
+std::vector<std::uint32_t> folds_of(const Identities& episodes, const Groups& groups,
+                                    std::uint32_t folds) {
+    const std::vector<std::uint32_t> of_episodes = folds_of(episodes, folds);
+    std::vector<std::uint32_t> result(groups.count());
+    for (std::size_t e = 0; e < of_episodes.size(); ++e) result[groups.of(e)] = of_episodes[e];
+    return result;
+}
+
 bool can_be_dealt(const std::vector<std::string>& episodes, const ReadOptions& reading,
                   std::uint32_t folds, const check::Model& model, diag::Sink& sink) {
-    const std::size_t apart = count_apart(groups_of(episodes, reading));
-    if (folds <= apart) return true;
-    const bool has_groups = apart < episodes.size();
+    const Groups groups(groups_of(episodes, reading));
+    if (folds <= groups.count()) return true;
     sink.report(diag::Code::too_few_for_folds, model.monitors.front().span,
                 fmt::format("{} folds take at least as many {}; there {} {}", folds,
-                            has_groups ? "groups" : "episodes", apart == 1 ? "is" : "are", apart));
+                            groups.are_named() ? "groups" : "episodes",
+                            groups.count() == 1 ? "is" : "are", groups.count()));
     return false;
 }
 

@@ -88,7 +88,8 @@ struct Wanted {
 /// The identity of an episode that has been read.
 struct Recorded {
     std::string path;
-    std::string hash;  ///< 16 hex digits
+    std::string group;  ///< of labels beside the episode; empty: none
+    std::string hash;   ///< 16 hex digits
     data::EpisodeContent content;
     std::uint64_t frames = 0;
     std::optional<Leak> leak;    ///< the first leak
@@ -98,7 +99,7 @@ struct Recorded {
 
 template <class Archive>
 void fields(Archive& archive, Recorded& recorded) {
-    archive(recorded.path, recorded.hash, recorded.content, recorded.frames, recorded.leak,
+    archive(recorded.path, recorded.group, recorded.hash, recorded.content, recorded.frames, recorded.leak,
             recorded.near, recorded.is_unmarked);
 }
 
@@ -159,7 +160,8 @@ public:
     /// where it was known before.
     Recorded recorded() const {
         const Identity identity = known_ ? *known_ : seen_.identity();
-        return {path_, identity.hash, identity.content, frames_, leak_, near_, is_unmarked_};
+        return {path_, group_, identity.hash, identity.content, frames_, leak_, near_,
+                is_unmarked_};
     }
 
 private:
@@ -177,6 +179,7 @@ private:
     const check::Model* model_;
     const Leaks* leaks_;
     std::string path_;
+    std::string group_;
     bool is_unmarked_ = false;
     bool is_complete_ = true;
     Seen seen_;

@@ -19,7 +19,7 @@ std::optional<std::size_t> find(const std::vector<Named>& all, const std::string
 class Pair {
 public:
     Pair(const Judgement& first, const Judgement& second)
-        : first_(first), second_(second), bootstrap_(first.place.size()) {}
+        : first_(first), second_(second), bootstrap_(first.groups) {}
 
     Difference of_predicate(std::size_t a, std::size_t b) const {
         const Judgement::Predicate& first = first_.predicates[a];

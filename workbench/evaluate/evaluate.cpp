@@ -196,13 +196,16 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
         }
     }
     if (sink.has_errors()) return std::nullopt;
+    result.for_each(result.episodes, [&](std::size_t, const episodes::Recorded& episode) {
+        result.groups.add(episode.group);
+    });
     episodes::warn_of_unmarked(result.episodes, sink);
     warn_of_leaks(first, result, request, sink);
     return result;
 }
 
 void warn_of_doubts(const check::Model& model, const Evaluation& evaluation, diag::Sink& sink) {
-    const bool enough = evaluation.episodes >= kFewEpisodes;
+    const bool enough = evaluation.groups.value_or(evaluation.episodes) >= kFewEpisodes;
     for (const PredicateScore& score : evaluation.predicates) {
         const auto predicate =
             std::find_if(model.predicates.begin(), model.predicates.end(),

@@ -17,6 +17,7 @@
 #include "artifacts/thresholds.hpp"
 #include "data/spill/spool.hpp"
 #include "diag/diag.hpp"
+#include "episodes/folds.hpp"
 #include "episodes/ranking/auroc.hpp"
 #include "episodes/shared/sharing.hpp"
 #include "evaluate/episode_scores.hpp"
@@ -75,6 +76,7 @@ struct Judgement {
     std::vector<Predicate> predicates;  ///< those with labels, then the lets with a truth
     std::vector<Monitor> monitors;
     episodes::Identities episodes;          ///< ordered by fold, as those of predicates, monitors
+    episodes::Groups groups;                ///< of the episodes of the request
     std::vector<std::uint32_t> place;       ///< index in that order, per episode of the request
     std::vector<std::uint32_t> fold_of;     ///< per episode of the request
     std::vector<Fold> folds;                ///< empty without folds
@@ -155,6 +157,7 @@ struct EpisodeRow {
 
 struct Evaluation {
     std::uint64_t episodes = 0;
+    std::optional<std::uint64_t> groups;  ///< nothing where no episode has one
     std::uint64_t frames = 0;
     std::uint64_t repeated = 0;     ///< episodes that repeat an earlier one
     std::uint64_t leaked = 0;       ///< episodes with a frame that is a row of a target

@@ -220,6 +220,7 @@ void fill(Object& to, const EpisodeRow& e) {
 
 void fill(Object& to, const Evaluation& evaluation) {
     to("episodes", evaluation.episodes);
+    if (evaluation.groups) to("groups", *evaluation.groups);
     to("frames", evaluation.frames);
     to("repeated_episodes", evaluation.repeated);
     to("leaked_episodes", evaluation.leaked);

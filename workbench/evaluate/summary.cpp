@@ -22,7 +22,7 @@ Score score(const Bootstrap& bootstrap, const std::vector<Counts>& each,
     });
     const auto figure = [&](Rate rate) {
         Figure result{whole.*rate, {}};
-        if (!result.value || each.size() < 2) return result;
+        if (!result.value || bootstrap.groups() < 2) return result;
         std::vector<std::optional<double>> values;
         for (const Rates& r : resampled) values.push_back(r.*rate);
         result.interval = percentile_interval(values);
@@ -201,6 +201,7 @@ std::vector<std::pair<std::string, Rates>> baselines(const Score& score) {
 Evaluation summarise(const Judgement& judgement, unsigned jobs) {
     Evaluation result;
     result.episodes = judgement.episodes.size();
+    if (judgement.groups.are_named()) result.groups = judgement.groups.count();
     result.step_seconds = judgement.step_seconds;
     result.reservations = judgement.reservations;
     result.folds = judgement.folds;
@@ -218,7 +219,7 @@ Evaluation summarise(const Judgement& judgement, unsigned jobs) {
         result.frames += episode.frames;
         result.leaked += evidence.of(episode) ? 1 : 0;
     });
-    const Bootstrap bootstrap(judgement.episodes.size(), jobs);
+    const Bootstrap bootstrap(judgement.groups, jobs);
     for (std::size_t i = 0; i < judgement.predicates.size(); ++i)
         result.predicates.push_back(predicate_score(bootstrap, judgement, i));
     for (std::size_t m = 0; m < judgement.monitors.size(); ++m)

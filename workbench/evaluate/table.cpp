@@ -252,10 +252,12 @@ std::string by_episode_part(const Evaluation& evaluation) {
 }
 
 std::string tables(const Evaluation& evaluation) {
-    std::string text =
-        fmt::format("{}, {}; in brackets 95 % intervals from {} resamples of the episodes\n",
-                    diag::counted(evaluation.episodes, "episode"),
-                    diag::counted(evaluation.frames, "frame"), kResamples);
+    const auto& groups = evaluation.groups;
+    std::string text = fmt::format(
+        "{}{}, {}; in brackets 95 % intervals from {} resamples of the {}\n",
+        diag::counted(evaluation.episodes, "episode"),
+        groups ? " in " + diag::counted(*groups, "group") : "",
+        diag::counted(evaluation.frames, "frame"), kResamples, groups ? "groups" : "episodes");
     if (evaluation.repeated > 0)
         text += fmt::format(
             "{} of the episodes repeat another's content: the intervals are too narrow\n",

@@ -333,7 +333,7 @@ std::optional<Collection> collect(const check::Model& model, const std::vector<N
     Collection all{std::move(*readings), {}, {}};
     const std::size_t count = all.readings.episodes().size();
     const auto groups = episodes::groups_of(all.readings.paths(), request.reading);
-    all.folds.assign(std::min(kFolds, episodes::count_apart(groups)),
+    all.folds.assign(std::min<std::size_t>(kFolds, episodes::Groups(groups).count()),
                      std::vector<Collected>(needs.size()));
     all.dealt = episodes::dealt(groups, all.folds.size());
     const Shares shares{std::max<std::size_t>(1, kMostFrames / count),

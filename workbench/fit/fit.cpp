@@ -37,12 +37,14 @@ void warn_of_constants(const check::Model& model, const Fitted& fitted, const So
         .note("their values elsewhere are unknown: check how the embedding is made");
 }
 
-/// Returns whether `a` is less than `b` by more than the intervals of both. They are of the same
-/// episodes, so their errors mostly agree, and the true confidence is higher.
+/// Returns whether `a` is less than `b` by more than the intervals of both, and by enough to
+/// matter: intervals of nearly perfect figures are tiny. They are of the same episodes, so their
+/// errors mostly agree, and the true confidence is higher.
 bool surely_less(const std::optional<episodes::Auroc>& a, const std::optional<episodes::Auroc>& b) {
+    constexpr double kMatters = 0.01;
     if (!a || !b || !a->interval || !b->interval) return false;
-    return b->value - a->value >
-           std::hypot(a->interval->high - a->value, b->value - b->interval->low);
+    return b->value - a->value > std::max(kMatters, std::hypot(a->interval->high - a->value,
+                                                               b->value - b->interval->low));
 }
 
 void warn_of_doubts(const check::Predicate& predicate, const Separation& separation,
@@ -150,6 +152,7 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
     for (const episodes::Recorded& episode : read) {
         result.file.episodes.push_back(hash_of(episode));
         result.file.recordings.add(hash_of(episode), episode.content);
+        if (!episode.group.empty()) result.file.groups[episode.hash] = episode.group;
     }
     if (allowance.overlapping + allowance.leaked > 0) result.file.allowances.push_back(allowance);
     result.report = report(all.model, *collection, all.solutions, *separations);

@@ -43,7 +43,10 @@ std::string provenance(const check::Predicate& predicate) {
                            diag::counted(threshold.n, "labelled frame"));
     const bool of_frames = threshold.origin == check::ThresholdOrigin::class_conditional;
     return fmt::format("{}: just beyond score {} of {}, one per {}", threshold.text, threshold.k,
-                       threshold.n, of_frames ? "positive frame" : "demonstration");
+                       threshold.n,
+                       of_frames            ? "positive frame"
+                       : threshold.by_group ? "group of demonstrations"
+                                            : "demonstration");
 }
 
 Json scores_of(const Material& material, const check::Predicate& predicate) {

@@ -48,7 +48,7 @@ void warn_of_large_alpha(Context& c, const ast::Number& alpha) {
     const std::string text = shown(alpha);
     c.report(Code::large_alpha, alpha.span,
              fmt::format("alpha = {} allows more than half to be missed", text))
-        .note("it is an error rate, not a coverage: alpha = 0.1 misses at most a tenth");
+        .note(large_alpha_note(alpha.text));
 }
 
 bool is_alpha(Context& c, const ast::Calibrated::Argument& argument) {
@@ -128,6 +128,12 @@ std::optional<Against> against_of(Context& c, const ast::Calibrated::Argument& a
 }
 
 }  // namespace
+
+std::string large_alpha_note(const std::string& alpha) {
+    return fmt::format(
+        "it is an error rate, not a coverage: to cover a share of {}, write alpha = {:.9g}", alpha,
+        1 - to_double(alpha));
+}
 
 std::string_view method_name(ThresholdOrigin origin) {
     for (const Method& method : methods())

@@ -17,6 +17,14 @@ std::optional<Threshold> check_calibrated(Context& context, const ast::Calibrate
 std::optional<MonitorCalibration> check_monitor_calibrated(Context& context,
                                                            const ast::Calibrated& written);
 
+/// Returns whether the method takes one score of each group of episodes, not of each frame.
+constexpr bool takes_groups(ThresholdOrigin origin) {
+    return origin == ThresholdOrigin::conformal || origin == ThresholdOrigin::adaptive;
+}
+
+/// Says what to write in place of an alpha above 0.5.
+std::string large_alpha_note(const std::string& alpha);
+
 /// Returns the name of the method in specs and thresholds files, "conformal"; empty for literal
 /// thresholds.
 std::string_view method_name(ThresholdOrigin origin);

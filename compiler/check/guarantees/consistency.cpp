@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "check/guarantees/conformal.hpp"
 #include "check/numbers/decimal.hpp"
@@ -17,7 +18,7 @@ namespace {
 using thresholds::Entry;
 using Found = std::optional<Contradiction>;
 
-/// Whether the method keeps all scores, one per demonstration; the others pool frames and keep the
+/// Whether the method keeps all scores, one per group of demonstrations; the others pool frames and keep the
 /// chosen score, f1 also the next.
 bool keeps_all(const Entry& entry) {
     return entry.method == "conformal" || entry.method == "adaptive";
@@ -75,13 +76,19 @@ std::optional<std::size_t> first_again(const std::vector<std::uint64_t>& hashes)
 }
 
 Found episodes_of(const Entry& entry, const std::string& place,
-                  const std::vector<std::uint64_t>& episodes) {
+                  const std::vector<std::uint64_t>& episodes, const thresholds::GroupNames& names) {
     const std::string list = entry.against.empty() ? "episodes" : place + ".episodes";
     const std::uint64_t least = keeps_all(entry) ? entry.n : 1;
     if (episodes.size() < least)
         return Contradiction{fmt::format(
             "'{}' has {}, expected at least {}{}", list, diag::counted(episodes.size(), "element"),
             least, keeps_all(entry) ? fmt::format(": one for each score of '{}'", place) : "")};
+    const thresholds::GroupCount count = thresholds::count_groups(episodes, names);
+    if (keeps_all(entry) && count.groups < entry.n)
+        return Contradiction{fmt::format(
+            "'{}.n' is {}, expected at most {}, the number of groups that '{}' are in: each has "
+            "one score",
+            place, entry.n, count.groups, list)};
     const std::optional<std::size_t> again = first_again(episodes);
     if (!again) return std::nullopt;
     return Contradiction{
@@ -118,9 +125,10 @@ Found threshold(const Entry& entry, const std::string& place, bool upper_bound) 
 }  // namespace
 
 Found contradiction(const Entry& entry, const std::string& place, bool upper_bound,
-                    const std::vector<std::uint64_t>& episodes) {
+                    const std::vector<std::uint64_t>& episodes,
+                    const thresholds::GroupNames& groups) {
     if (Found found = counts(entry, place)) return found;
-    if (Found found = episodes_of(entry, place, episodes)) return found;
+    if (Found found = episodes_of(entry, place, episodes, groups)) return found;
     return threshold(entry, place, upper_bound);
 }
 
@@ -149,9 +157,17 @@ std::optional<std::uint64_t> shared_episode(const std::vector<std::uint64_t>& ep
         const auto overlap = *next++ ? recordings.find(content) : std::nullopt;
         if (overlap && (overlap->equal || file.allowances.empty())) overlapping.push_back(hash);
     });
+    const auto group_of = [&](std::uint64_t episode) {
+        const auto group = file.groups.find(data::hash_text(episode));
+        return group == file.groups.end() ? std::string() : group->second;
+    };
+    std::set<std::string> groups;
+    for (const std::uint64_t episode : known) groups.insert(group_of(episode));
+    groups.erase("");
     const auto found = std::find_if(episodes.begin(), episodes.end(), [&](std::uint64_t episode) {
         return std::binary_search(known.begin(), known.end(), episode) ||
-               std::binary_search(overlapping.begin(), overlapping.end(), episode);
+               std::binary_search(overlapping.begin(), overlapping.end(), episode) ||
+               (file.allowances.empty() && groups.contains(group_of(episode)));
     });
     return found != episodes.end() ? std::optional(*found) : std::nullopt;
 }

@@ -23,10 +23,11 @@ struct Contradiction {
 /// calibration.
 std::optional<Contradiction> contradiction(const thresholds::Entry& entry, const std::string& place,
                                            bool upper_bound,
-                                           const std::vector<std::uint64_t>& episodes);
+                                           const std::vector<std::uint64_t>& episodes,
+                                           const thresholds::GroupNames& groups);
 
 /// Returns one of `episodes` that the file's predicates were calibrated on, or that shares most of
-/// its content with one of those without permission; nothing if there is none.
+/// its content or its group with one of those without permission; nothing if there is none.
 std::optional<std::uint64_t> shared_episode(const std::vector<std::uint64_t>& episodes,
                                             const thresholds::File& file);
 

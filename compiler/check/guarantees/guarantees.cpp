@@ -134,6 +134,11 @@ const Let* judged_let(const Model& model, Index formula) {
     return nullptr;
 }
 
+void count_groups(const Threshold& threshold, Claim& claim) {
+    if (!threshold.by_group) return;
+    claim.groups = claim.groups == 0 ? threshold.n : std::min(claim.groups, threshold.n);
+}
+
 Claim claim(const Model& model, Literal part, Values values) {
     Claim result;
     result.formula = part.formula;
@@ -161,6 +166,7 @@ Claim claim(const Model& model, Literal part, Values values) {
             result.why = fmt::format("'{}' is false when its sample is missing",
                                      model.predicates[predicate].shown());
         alphas.push_back(model.predicates[predicate].threshold.alpha);
+        count_groups(model.predicates[predicate].threshold, result);
         if (polarity.positive) positive = model.predicates[predicate].shown();
         if (polarity.negative) negative = model.predicates[predicate].shown();
         all.positive |= polarity.positive;
@@ -221,6 +227,7 @@ std::vector<Claim> claims(const Model& model, const Monitor& monitor, Values val
         whole.kind = alarms ? Claim::Kind::missed_alarm : Claim::Kind::missed_success;
         whole.formula = monitor.formula;
         whole.bound = Decimal::parse(monitor.calibration->threshold.alpha).text();
+        count_groups(monitor.calibration->threshold, whole);
         return {whole};
     }
     std::vector<Claim> result{claim(model, {monitor.formula, false}, values)};
@@ -243,14 +250,22 @@ std::string text(const Claim& claim) {
             return fmt::format("exact{}: no predicate is calibrated, and each is its own truth",
                                aside);
         case Claim::Kind::missed_success:
-            return fmt::format("P(some verdict of a new episode misses a success) <= {}",
-                               claim.bound);
         case Claim::Kind::missed_alarm:
-            return fmt::format("P(some verdict of a new episode misses an alarm) <= {}{}",
-                               claim.bound, aside);
+            return fmt::format(
+                "P(some verdict of {} misses {}) <= {}{}{}",
+                claim.groups > 0 ? "an episode of a new group" : "a new episode",
+                claim.kind == Claim::Kind::missed_success ? "a success" : "an alarm", claim.bound,
+                claim.groups > 0 ? ", from " + diag::counted(claim.groups, "group") : "", aside);
         case Claim::Kind::nothing: break;
     }
     return "no guarantee: " + claim.why;
+}
+
+std::string place(const Threshold& threshold) {
+    return fmt::format("{} of {}{}", threshold.k, threshold.n,
+                       !threshold.by_group ? ""
+                       : threshold.n == 1  ? " group"
+                                           : " groups");
 }
 
 std::string origin(const Threshold& threshold) {
@@ -258,8 +273,8 @@ std::string origin(const Threshold& threshold) {
         case ThresholdOrigin::literal: return "written in the spec; no guarantee";
         case ThresholdOrigin::f1: return "calibrated for F1; no guarantee";
         case ThresholdOrigin::conformal:
-            return fmt::format("conformal, alpha = {}; score {} of {}, coverage {:.3f} to {:.3f}",
-                               threshold.alpha, threshold.k, threshold.n,
+            return fmt::format("conformal, alpha = {}; score {}, coverage {:.3f} to {:.3f}",
+                               threshold.alpha, place(threshold),
                                coverage_quantile(threshold.n, threshold.k, 0.05),
                                coverage_quantile(threshold.n, threshold.k, 0.95));
         case ThresholdOrigin::class_conditional:
@@ -268,9 +283,9 @@ std::string origin(const Threshold& threshold) {
                 threshold.alpha, threshold.k, threshold.n);
         case ThresholdOrigin::adaptive:
             return fmt::format(
-                "adaptive, alpha = {}, gamma = {}, in [{}, {}]; starts at conformal score {} of {}",
+                "adaptive, alpha = {}, gamma = {}, in [{}, {}]; starts at conformal score {}",
                 threshold.alpha, threshold.adaptation->gamma, threshold.adaptation->lo,
-                threshold.adaptation->hi, threshold.k, threshold.n);
+                threshold.adaptation->hi, place(threshold));
     }
     return "";
 }

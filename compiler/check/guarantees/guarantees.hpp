@@ -28,6 +28,9 @@ struct Claim {
     Index formula = 0;     ///< the conjunct or the whole formula
     bool negated = false;  ///< the conjunct is the negation of `formula`
     std::string bound;     ///< exact decimal sum of the alphas
+    /// The least number of groups of episodes that a threshold was calibrated on; 0: of none that
+    /// has groups, whose demonstrations count one by one.
+    std::uint64_t groups = 0;
     std::string why;       ///< the reason for `nothing`
     /// For exact and missed_alarm: a comparison that is its own truth is false at its threshold,
     /// where robustness is 0.
@@ -42,6 +45,9 @@ std::vector<Claim> claims(const Model& model, const Monitor& monitor,
 
 /// Returns the claim in words: "P(some verdict of a new episode misses a success) <= 0.1".
 std::string text(const Claim& claim);
+
+/// Returns "37 of 40", the rank of a conformal threshold, or "4 of 4 groups".
+std::string place(const Threshold& threshold);
 
 /// Describes the origin of a threshold and its own guarantee: "calibrated for F1; no guarantee".
 std::string origin(const Threshold& threshold);

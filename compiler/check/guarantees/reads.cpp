@@ -171,7 +171,8 @@ private:
     static std::string text_of(const Threshold& threshold) {
         // The entry of a calibrated threshold describes its origin. Adaptive thresholds are not
         // used in such formulas.
-        const auto& [origin, text, alpha, value64, value, n, k, adaptation, span] = threshold;
+        const auto& [origin, text, alpha, value64, value, n, k, by_group, adaptation, span] =
+            threshold;
         if (origin == ThresholdOrigin::literal) return Decimal::parse(text).text();
         return fmt::format("{} from {}", value, text);
     }

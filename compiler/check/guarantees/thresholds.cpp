@@ -211,11 +211,11 @@ void reserve(Context& c, const std::string& labels, const std::string& name) {
 
 /// Sets epsilon, n and k; reports an inconsistent entry.
 void take(Context& c, const thresholds::Entry& entry, const std::string& place,
-          Threshold& threshold, bool upper_bound, const std::string& path,
+          Threshold& threshold, bool upper_bound, const thresholds::File& file,
           const std::vector<std::uint64_t>& episodes) {
-    if (const auto found = contradiction(entry, place, upper_bound, episodes)) {
-        auto& error =
-            c.sink.report(data::in_file({Code::contradictory_thresholds, found->message}, path));
+    if (const auto found = contradiction(entry, place, upper_bound, episodes, file.groups)) {
+        auto& error = c.sink.report(
+            data::in_file({Code::contradictory_thresholds, found->message}, file.path));
         error.note(threshold.span, "it is needed here");
         if (found->by_hand)
             error.note(
@@ -227,6 +227,8 @@ void take(Context& c, const thresholds::Entry& entry, const std::string& place,
     threshold.value64 = static_cast<double>(entry.epsilon);
     threshold.n = entry.n;
     threshold.k = entry.k;
+    threshold.by_group = takes_groups(threshold.origin) &&
+                         thresholds::count_groups(episodes, file.groups).any_named;
 }
 
 void take_threshold(Context& c, Index index, const thresholds::File& file) {
@@ -241,7 +243,7 @@ void take_threshold(Context& c, Index index, const thresholds::File& file) {
                    });
     if (entry == nullptr) return;
     reserve(c, entry->truth, predicate.name);
-    take(c, *entry, "predicates." + predicate.name, threshold, predicate.upper_bound(), file.path,
+    take(c, *entry, "predicates." + predicate.name, threshold, predicate.upper_bound(), file,
          file.episodes);
     if (!threshold.adaptation || std::isnan(threshold.value)) return;
     const auto begin = start(*threshold.adaptation, threshold.value, predicate.upper_bound());
@@ -274,8 +276,8 @@ void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
             .report(data::in_file(
                 {Code::not_disjoint,
                  fmt::format(
-                     "'{}' has '{}', which is one of 'episodes' or shares most of its content with "
-                     "one; the thresholds of predicates were calibrated on those",
+                     "'{}' has '{}', which is one of 'episodes', or shares most of its content or "
+                     "its group with one; the thresholds of predicates were calibrated on those",
                      place + ".episodes", data::hash_text(*shared))},
                 file.path))
             .note(shift.span, "it is needed here")
@@ -285,7 +287,7 @@ void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
         return;
     }
     reserve(c, entry->truth, monitor.name);
-    take(c, *entry, place, shift, calibration.against == Against::missed_alarm, file.path,
+    take(c, *entry, place, shift, calibration.against == Against::missed_alarm, file,
          entry->episodes);
 }
 

@@ -118,6 +118,7 @@ struct Threshold {
     float value = 0;                       ///< epsilon; NaN before calibration
     std::uint64_t n = 0;                   ///< calibrated: number of scores
     std::uint64_t k = 0;                   ///< rank among them; 0 for f1
+    bool by_group = false;                 ///< conformal: a score for each group of episodes
     std::optional<Adaptation> adaptation;  ///< of adaptive thresholds, which start at `value`
     Span span;
 

@@ -67,15 +67,14 @@ public:
         const auto untrained = check({true, true, true});
         if (!untrained) return std::nullopt;
         const std::vector<Stage> stages = stages_of(*untrained);
-        const std::size_t apart =
-            episodes::count_apart(episodes::groups_of(episodes, calibration_.reading));
-        if (apart < stages.size()) {
+        const episodes::Groups groups(episodes::groups_of(episodes, calibration_.reading));
+        if (groups.count() < stages.size()) {
             sink_.report(
                 diag::Code::too_few_for_folds, untrained->monitors.front().span,
                 fmt::format(
                     "fitting and calibration take {} besides those of a fold; there {} {}",
-                    diag::counted(stages.size(), apart < episodes.size() ? "group" : "episode"),
-                    apart == 1 ? "is" : "are", apart));
+                    diag::counted(stages.size(), groups.are_named() ? "group" : "episode"),
+                    groups.count() == 1 ? "is" : "are", groups.count()));
             return std::nullopt;
         }
         const std::vector<Paths> of_stages = parts(episodes, calibration_.reading, stages.size());
@@ -191,7 +190,7 @@ std::optional<Folds> deal(const check::Model& model, const calibrate::Request& r
     if (!read) return std::nullopt;
     const auto recorded = episodes::recorded(*read);
     Folds result{folds,
-                 episodes::folds_of(recorded, folds, request.reading),
+                 episodes::folds_of(recorded, folds),
                  episodes::by_content(recorded),
                  {}};
     // Entries in the file of fitted entries do not matter here.

@@ -54,10 +54,9 @@ public:
             sink.add(of_spec, "");
             return std::nullopt;
         }
-        const std::size_t apart =
-            episodes::count_apart(episodes::groups_of(asked_.episodes, asked_.reading));
+        const episodes::Groups groups(episodes::groups_of(asked_.episodes, asked_.reading));
         request_.folds = static_cast<std::uint32_t>(
-            std::clamp<std::size_t>(apart, 2, kFolds));  // fewer are reported
+            std::clamp<std::size_t>(groups.count(), 2, kFolds));  // fewer are reported
         std::optional<Folds> folds;
         return judge_in_folds(file_, *model, request_, asked_, folds, sink);
     }
@@ -111,7 +110,7 @@ bool may_be_as_good(const evaluate::Figure& difference) {
 
 /// Looks up the figures of the candidates by the names of their trials, and ranks them.
 void fill_in(const evaluate::Judgement& judgement, fit::RankedInTime& ranking) {
-    const evaluate::Bootstrap bootstrap(judgement.place.size());
+    const evaluate::Bootstrap bootstrap(judgement.groups);
     std::map<std::string, evaluate::Statistic> scores;  // by trial
     for (fit::InTime& one : ranking.ranked) {
         const auto score = score_of(judgement, ranking.of_monitor, one.trial);

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <set>
 
 #include "check/points/project.hpp"
 #include "data/files/file.hpp"
+#include "data/files/hash.hpp"
 #include "data/text/quote.hpp"
 #include "episodes/admission/overlaps.hpp"
 
@@ -121,12 +123,15 @@ private:
 /// Refuses episodes that something in a file was made from.
 class Unseen {
 public:
-    /// `source`: its index in the search; `one`: what messages call such an episode; `advice`: the
-    /// note for a repeated one; `allowing`: a further note for a partial overlap.
-    Unseen(const OverlapSearch& search, std::size_t source, bool allows, Code code, std::string one,
-           const std::string& advice, std::string_view allowing)
+    /// `source`: its index in the search; `groups`: of its episodes; `one`: what messages call such
+    /// an episode; `advice`: the note for a repeated one; `allowing`: a further note for a partial
+    /// overlap.
+    Unseen(const OverlapSearch& search, std::size_t source, std::set<std::string> groups,
+           bool allows, Code code, std::string one, const std::string& advice,
+           std::string_view allowing)
         : search_(search),
           source_(source),
+          groups_(std::move(groups)),
           allows_(allows),
           one_(std::move(one)),
           equal_(code, {advice}),
@@ -135,12 +140,16 @@ public:
     enum class Met : std::uint8_t { never, passed_over, refused };
     Met look_at(std::size_t e, const Recorded& episode) {
         const auto found = search_.find(source_, e, episode);
-        if (!found) return Met::never;
-        if (allows_ && !found->equal) return Met::passed_over;
-        if (found->equal)
+        if (!found && !groups_.contains(episode.group)) return Met::never;
+        const bool is_equal = found && found->equal;
+        if (allows_ && !is_equal) return Met::passed_over;
+        if (is_equal)
             equal_.add(episode, "is " + one_);
-        else
+        else if (found)
             in_part_.add(episode, in_common(*found) + " " + one_);
+        else
+            in_part_.add(episode, fmt::format("is of the group {}, as is {}",
+                                              data::in_quotes(episode.group), one_));
         return Met::refused;
     }
 
@@ -152,6 +161,7 @@ public:
 private:
     const OverlapSearch& search_;
     std::size_t source_;
+    std::set<std::string> groups_;
     bool allows_;
     std::string one_;
     Refusals equal_;
@@ -170,11 +180,22 @@ OverlapSearch search(const Identities& episodes, const fitted::File& fitted,
         each_other};
 }
 
+/// Returns the groups of these episodes.
+std::set<std::string> groups_among(const thresholds::GroupNames& names,
+                                   const std::vector<std::uint64_t>& episodes) {
+    std::set<std::string> result;
+    for (const std::uint64_t episode : episodes)
+        if (const auto found = names.find(data::hash_text(episode)); found != names.end())
+            result.insert(found->second);
+    return result;
+}
+
 /// Refuses episodes that something was fitted on.
 Unseen not_fitted_on(const OverlapSearch& search, const fitted::File& file, bool allows,
                      std::string_view allowing) {
     return {search,
             fitted_file,
+            groups_among(file.groups, file.episodes),
             allows,
             Code::episode_fitted_on,
             fmt::format("an episode that the projections, targets or metrics in {} were fitted on",
@@ -218,7 +239,8 @@ public:
           leak_evidence_(episodes),
           search_(search(episodes, fitted, before, before.episodes, true)),
           not_fitted_on_(not_fitted_on(search_, fitted, allows_, kHowToAllow)),
-          unseen_(search_, thresholds_file, allows_, Code::not_disjoint,
+          unseen_(search_, thresholds_file, groups_among(before.groups, before.episodes), allows_,
+                  Code::not_disjoint,
                   "an episode that thresholds of predicates were calibrated on",
                   "calibrate monitors on other episodes: thresholds look too good on those that "
                   "they were calibrated on",
@@ -326,7 +348,9 @@ thresholds::Allowance admit_unseen(const Identities& episodes, const thresholds:
         search(episodes, fitted, thresholds, thresholds::all_episodes(thresholds), false);
     Unseen not_fitted = not_fitted_on(among, fitted, !reason.empty(), kAllowing);
     Unseen unseen(
-        among, thresholds_file, !reason.empty(), Code::episode_calibrated_on,
+        among, thresholds_file,
+        groups_among(thresholds.groups, thresholds::all_episodes(thresholds)), !reason.empty(),
+        Code::episode_calibrated_on,
         fmt::format("an episode that the thresholds in {} were calibrated on", thresholds.path),
         "keep the episodes for evaluation apart from those for calibration", kAllowing);
     episodes.for_each([&](std::size_t e, const Recorded& episode) {
@@ -345,6 +369,7 @@ void record(const Identities& episodes, const thresholds::Allowance& allowance,
             thresholds::File& file) {
     episodes.for_each([&](std::size_t, const Recorded& episode) {
         file.recordings.add(hash_of(episode), episode.content);
+        if (!episode.group.empty()) file.groups[episode.hash] = episode.group;
     });
     if (allowance.overlapping + allowance.leaked > 0) file.allowances.push_back(allowance);
 }

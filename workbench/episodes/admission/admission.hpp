@@ -1,6 +1,6 @@
 // Decides which episodes a guarantee may rest on. Refuses those that void it: with a target among
-// their frames, used twice, used by a fit or a calibration before, or mostly equal to such an
-// episode. Every calibration asks here, so what is calibrated is exchangeable with future episodes
+// their frames, used twice, used by a fit or a calibration before, mostly equal to such an episode,
+// or of its group. Every calibration asks here, so what is calibrated is exchangeable with future episodes
 // as far as data can show; overlaps that the user allows are counted.
 #pragma once
 
