@@ -1,5 +1,5 @@
-# A compiler that compiles nothing, and headers that are not what etlc generates: edited, cut, or made
-# with other options or from another spec.
+# A compiler that compiles nothing, and headers that are not what etlc generates: edited, cut, or
+# made with other options or from another spec.
 cat > soon.etl <<'SPEC'
 spec soon;
 input x : f32 in [-1, 1];

@@ -125,7 +125,7 @@ std::string restarts_of(const plan::Plan& plan, const prove::Proof& proof) {
                        diag::counted(proof.together, "step"));
 }
 
-/// What a certificate says of itself.
+/// The scope of a certificate, in its own text.
 constexpr const char* kScope =
     "\nscope: the header above, which is what this etlc generates from this spec, and no other.\n"
     "Proved are the verdicts that reset(), judge() and finish() give for the values of predicates "
