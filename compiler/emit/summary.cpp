@@ -167,12 +167,11 @@ std::vector<Row> guarantee_rows(const plan::Plan& plan) {
             if (monitor.shifted) {
                 const check::Threshold& shift =
                     plan.model->monitors[monitor.index].calibration->threshold;
-                rows.push_back(
-                    {monitor.name,
-                     fmt::format("{}; rho minus {}, score {}, coverage {:.3f} to {:.3f}",
-                                 check::text(claim), shift.value, check::place(shift),
-                                 check::coverage_quantile(shift.n, shift.k, 0.05),
-                                 check::coverage_quantile(shift.n, shift.k, 0.95))});
+                rows.push_back({monitor.name,
+                                fmt::format("{}; rho minus {}, score {}, coverage {:.3f} to {:.3f}",
+                                            check::text(claim), shift.value, check::place(shift),
+                                            check::coverage_quantile(shift.n, shift.k, 0.05),
+                                            check::coverage_quantile(shift.n, shift.k, 0.95))});
                 continue;
             }
             rows.push_back(

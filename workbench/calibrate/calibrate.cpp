@@ -173,10 +173,10 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
                                      {tracks, watched, groups, is_complete, is_divided})};
     for (std::size_t i = 0; i < guarantees.size(); ++i)
         warn_of_empty(model, guarantees[i], others.by_guarantee[i], sink);
-    result.report = report(calibrated, predicates, evidence, groups, frames, all, others) +
-                    report_of_folds(model, predicates, evidence, demonstrations, groups,
-                                    request.folds) +
-                    episodes::remark_on(allowance);
+    result.report =
+        report(calibrated, predicates, evidence, groups, frames, all, others) +
+        report_of_folds(model, predicates, evidence, demonstrations, groups, request.folds) +
+        episodes::remark_on(allowance);
     return result;
 }
 

@@ -37,9 +37,10 @@ void refuse_too_few(const check::Threshold& threshold, const TooFew& found, diag
                                 diag::counted(check::scores_needed(threshold.alpha), found.noun),
                                 found.which, found.scores == 1 ? "is" : "are", found.scores));
     if (!found.in_groups.empty())
-        error.note(fmt::format("{} are in {}, and the episodes of a group count once, with the "
-                               "worst of them",
-                               found.in_groups, diag::counted(found.all, found.noun)));
+        error.note(
+            fmt::format("{} are in {}, and the episodes of a group count once, with the "
+                        "worst of them",
+                        found.in_groups, diag::counted(found.all, found.noun)));
     if (found.all <= found.scores) return;
     const std::uint64_t left_out = found.all - found.scores;
     error.note(fmt::format("of {}, {} without such a {} {} left out",

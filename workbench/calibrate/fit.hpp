@@ -76,11 +76,11 @@ std::vector<Fit> fit_f1_without(const episodes::FramesByScore& labelled, bool st
 /// A number of scores that is too small for alpha.
 struct TooFew {
     std::uint64_t scores = 0;
-    std::string noun;            ///< what gives a score: "demonstration"
-    std::string which{};         ///< " in which 'p' is true at some frame"
-    std::string unit{};          ///< "frame" or "step", missing in those left out
-    std::uint64_t all = 0;       ///< scores and those left out; 0: none was left out
-    std::string in_groups{};     ///< "40 demonstrations"; empty: they have no groups
+    std::string noun;         ///< what gives a score: "demonstration"
+    std::string which{};      ///< " in which 'p' is true at some frame"
+    std::string unit{};       ///< "frame" or "step", missing in those left out
+    std::uint64_t all = 0;    ///< scores and those left out; 0: none was left out
+    std::string in_groups{};  ///< "40 demonstrations"; empty: they have no groups
 };
 void refuse_too_few(const check::Threshold& threshold, const TooFew& found, diag::Sink& sink);
 /// Reports that no threshold or shift (`what`) lies beyond an infinite score.

@@ -147,8 +147,8 @@ std::string report_of_folds(const check::Model& model, const std::vector<Index>&
                 result.covered += score.worst < beyond ? 1 : 0;
             }
         };
-        text += held_out(folds, fit_others, judge_fold).text(
-            monitor.name, folds, groups.are_named() ? "group" : "episode");
+        text += held_out(folds, fit_others, judge_fold)
+                    .text(monitor.name, folds, groups.are_named() ? "group" : "episode");
     }
     return text;
 }

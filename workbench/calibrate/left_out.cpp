@@ -66,8 +66,8 @@ private:
 /// Takes the thresholds by the rank of one score per group. All groups whose score is among the
 /// best ones leave the same scores at the rank, and so do all others.
 template <class FitWithout>
-void take_by_rank(std::vector<Evidence::Reach> scores, const std::string& alpha,
-                  std::size_t groups, const FitWithout& fit_without, Collected& collected) {
+void take_by_rank(std::vector<Evidence::Reach> scores, const std::string& alpha, std::size_t groups,
+                  const FitWithout& fit_without, Collected& collected) {
     std::sort(scores.begin(), scores.end());
     const std::uint64_t k = scores.empty() ? 0 : check::rank(alpha, scores.size() - 1);
     std::vector<std::uint8_t> classes(groups);  // 0: without a score, 1: among the best, 2: others
@@ -152,8 +152,7 @@ LeftOut left_out(const check::Predicate& predicate, const Evidence& evidence,
                                             predicate.upper_bound());
         return found;
     };
-    take_by_rank(evidence.worst, predicate.threshold.alpha, groups.count(), fit_without,
-                 collected);
+    take_by_rank(evidence.worst, predicate.threshold.alpha, groups.count(), fit_without, collected);
     return std::move(collected).result();
 }
 

@@ -216,8 +216,8 @@ std::vector<OtherError> other_errors(const check::Model& model,
         errors[i].parts = out[i].parts;
         errors[i].by_group = groups.are_named();
         if (!out[i].why.empty()) {
-            errors[i].why = fmt::format("without one {} {}", one_of(groups, "demonstration"),
-                                        out[i].why);
+            errors[i].why =
+                fmt::format("without one {} {}", one_of(groups, "demonstration"), out[i].why);
             continue;
         }
         fractions[i].resize(groups.count());
@@ -267,7 +267,8 @@ std::vector<OtherError> other_errors(const check::Model& model, const std::vecto
         model, all, recorded,
         [&](std::uint32_t group) -> const Thresholds& {
             for (std::size_t i = 0; i < predicates.size(); ++i)
-                if (out[i].why.empty()) thresholds.predicates[predicates[i]] = out[i].thresholds[group];
+                if (out[i].why.empty())
+                    thresholds.predicates[predicates[i]] = out[i].thresholds[group];
             return thresholds;
         },
         errors);

@@ -20,12 +20,12 @@ namespace etlc::calibrate {
 
 /// How often an error happens where it can.
 struct ErrorShare {
-    std::string why;             ///< why it was not counted; empty if it was
-    std::uint64_t cases = 0;     ///< frames, steps or variants at which it can happen
-    std::uint64_t errors = 0;    ///< those at which it happens
-    std::uint64_t groups = 0;    ///< groups of episodes with a case
-    std::uint64_t wrong = 0;     ///< groups with an error
-    bool by_group = false;       ///< some episode has a group; otherwise each is one
+    std::string why;           ///< why it was not counted; empty if it was
+    std::uint64_t cases = 0;   ///< frames, steps or variants at which it can happen
+    std::uint64_t errors = 0;  ///< those at which it happens
+    std::uint64_t groups = 0;  ///< groups of episodes with a case
+    std::uint64_t wrong = 0;   ///< groups with an error
+    bool by_group = false;     ///< some episode has a group; otherwise each is one
     /// The 95 % interval of errors / cases over the groups, from resamples of them; if all or no
     /// cases are errors, that of Clopper and Pearson ("The use of confidence or fiducial limits",
     /// 1934) for as many groups. Otherwise it takes kLeastGroups.
@@ -42,11 +42,11 @@ struct VariantError : ErrorShare {
 };
 
 struct OtherError : ErrorShare {
-    std::uint64_t steps = 0;   ///< monitors: all steps of known truth
-    std::uint64_t said = 0;    ///< those with the wrong verdict, as its cases have if wrong
-    std::uint64_t truly = 0;   ///< those at which the truth is that verdict
-    std::uint32_t parts = 0;   ///< groups were left out in this many parts; 0: one by one
-    VariantError variants;     ///< of a monitor
+    std::uint64_t steps = 0;  ///< monitors: all steps of known truth
+    std::uint64_t said = 0;   ///< those with the wrong verdict, as its cases have if wrong
+    std::uint64_t truly = 0;  ///< those at which the truth is that verdict
+    std::uint32_t parts = 0;  ///< groups were left out in this many parts; 0: one by one
+    VariantError variants;    ///< of a monitor
 };
 
 /// The tracks of all episodes, in order.

@@ -51,8 +51,8 @@ std::string describe(const OtherError& error) {
     std::string text = fmt::format("{}true at {} of {} negative frames, {}", kHead, error.errors,
                                    error.cases, share_of(error));
     if (error.parts > 0)
-        text += fmt::format("; {} left out in {} parts", error.by_group ? "groups" : "demonstrations",
-                            error.parts);
+        text += fmt::format("; {} left out in {} parts",
+                            error.by_group ? "groups" : "demonstrations", error.parts);
     return text + "\n";
 }
 
@@ -121,8 +121,8 @@ std::string describe(const OtherError& error, const Guaranteed& of, const std::s
             "{}{} at {} of {} truly {} steps, {}; in {} of {} {}s\n"
             "{}in all {} at {} of {} steps, truly at {}\n",
             kHead, said_word(of), error.errors, error.cases, true_word(of), share_of(error),
-            error.wrong, error.groups, error.by_group ? "group" : "episode", indent, said_word(of), error.said, error.steps,
-            error.truly);
+            error.wrong, error.groups, error.by_group ? "group" : "episode", indent, said_word(of),
+            error.said, error.steps, error.truly);
     return error.why.empty() ? text + indent + describe(error.variants, of) : text;
 }
 
@@ -148,7 +148,8 @@ void warn_of_empty(const check::Model& model, const Guaranteed& of, const OtherE
     if (by_steps)
         warning.note(fmt::format(
             "{} of {} in {}, each with the thresholds of the others; 95 % interval from {} to {} %",
-            error.errors, counted(error.cases, "step"), counted(error.groups, error.by_group ? "group" : "episode"),
+            error.errors, counted(error.cases, "step"),
+            counted(error.groups, error.by_group ? "group" : "episode"),
             percent(error.interval->low), percent(error.interval->high)));
     if (by_variants)
         warning.note(fmt::format("of {}: {}", made(error.variants), errors_of(error.variants, of)));

@@ -111,12 +111,13 @@ std::string monitor_report(const check::Model& model, const Others& others, bool
     for (const std::string& reservation : model.reservations)
         text += fmt::format("    {}\n", reservation);
     return text +
-           (by_group
-                ? "    Probabilities are over the groups of demonstrations and the new group "
-                  "together, which must be exchangeable; a group counts once, with the worst of its "
-                  "demonstrations.\n"
-                : "    Probabilities are over the demonstrations and the new episode together, which "
-                  "must be exchangeable, per episode as recorded.\n") +
+           (by_group ? "    Probabilities are over the groups of demonstrations and the new group "
+                       "together, which must be exchangeable; a group counts once, with the worst "
+                       "of its "
+                       "demonstrations.\n"
+                     : "    Probabilities are over the demonstrations and the new episode "
+                       "together, which "
+                       "must be exchangeable, per episode as recorded.\n") +
            "    Bounds on successes exclude steps with missing samples.\n" +
            note_on_other_errors(by_group);
 }

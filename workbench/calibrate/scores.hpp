@@ -75,8 +75,8 @@ struct Evidence {
     std::uint64_t demonstrations = 0;
     std::uint32_t groups = 0;
     std::uint64_t without_score = 0;  ///< demonstrations
-    std::uint64_t from_array = 0;  ///< demonstrations with an array of labels
-    std::uint64_t positives = 0;   ///< frames, as in Scores
+    std::uint64_t from_array = 0;     ///< demonstrations with an array of labels
+    std::uint64_t positives = 0;      ///< frames, as in Scores
     std::uint64_t negatives = 0;
     std::uint64_t unlabelled = 0;
     std::uint64_t unmeasured = 0;

@@ -242,9 +242,8 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
         "    {}; given these {}, with probability >= 1 - {:.3f} to 1 - {:.3f} (5 % and 95 % "
         "quantiles, without ties)\n",
         monitor.name, check::shown(model, monitor.formula), fitted.epsilon,
-        monitor.calibration->threshold.alpha,
-        describe_place(fitted, against_alarms(monitor), each), truth_word(monitor),
-        check::text(check::claims(model, monitor)[0]),
+        monitor.calibration->threshold.alpha, describe_place(fitted, against_alarms(monitor), each),
+        truth_word(monitor), check::text(check::claims(model, monitor)[0]),
         groups.are_named() ? counted(fitted.n, "group") : std::to_string(fitted.n),
         1 - check::coverage_quantile(fitted.n, fitted.k, 0.05),
         1 - check::coverage_quantile(fitted.n, fitted.k, 0.95));
@@ -378,8 +377,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         out.push_back(shifts_without_each(monitor, scored, i));
     }
     if (sink.has_errors()) return std::nullopt;
-    const auto others =
-        other_errors_of_shifts(shifted, guarantees, out,
+    const auto others = other_errors_of_shifts(shifted, guarantees, out,
                                                {tracks, watched, groups, true, is_divided});
     result.report = fmt::format("{}{}, {}\n", counted(groups.episodes(), "episode"),
                                 in_groups(groups), counted(frames, "frame"));

@@ -9,8 +9,7 @@
 namespace etlc::episodes {
 
 std::uint32_t Groups::add(const std::string& name) {
-    const auto number =
-        name.empty() ? count_ : known_.try_emplace(name, count_).first->second;
+    const auto number = name.empty() ? count_ : known_.try_emplace(name, count_).first->second;
     if (number == count_) ++count_;
     of_.push_back(number);
     return number;

@@ -99,8 +99,8 @@ struct Recorded {
 
 template <class Archive>
 void fields(Archive& archive, Recorded& recorded) {
-    archive(recorded.path, recorded.group, recorded.hash, recorded.content, recorded.frames, recorded.leak,
-            recorded.near, recorded.is_unmarked);
+    archive(recorded.path, recorded.group, recorded.hash, recorded.content, recorded.frames,
+            recorded.leak, recorded.near, recorded.is_unmarked);
 }
 
 /// Returns the hash as a number, as in files of thresholds and of fitted things.
@@ -160,8 +160,8 @@ public:
     /// where it was known before.
     Recorded recorded() const {
         const Identity identity = known_ ? *known_ : seen_.identity();
-        return {path_, group_, identity.hash, identity.content, frames_, leak_, near_,
-                is_unmarked_};
+        return {path_,   group_, identity.hash, identity.content,
+                frames_, leak_,  near_,         is_unmarked_};
     }
 
 private:

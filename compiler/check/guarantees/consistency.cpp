@@ -18,8 +18,8 @@ namespace {
 using thresholds::Entry;
 using Found = std::optional<Contradiction>;
 
-/// Whether the method keeps all scores, one per group of demonstrations; the others pool frames and keep the
-/// chosen score, f1 also the next.
+/// Whether the method keeps all scores, one per group of demonstrations; the others pool frames and
+/// keep the chosen score, f1 also the next.
 bool keeps_all(const Entry& entry) {
     return entry.method == "conformal" || entry.method == "adaptive";
 }

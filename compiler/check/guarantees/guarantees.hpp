@@ -31,7 +31,7 @@ struct Claim {
     /// The least number of groups of episodes that a threshold was calibrated on; 0: of none that
     /// has groups, whose demonstrations count one by one.
     std::uint64_t groups = 0;
-    std::string why;       ///< the reason for `nothing`
+    std::string why;  ///< the reason for `nothing`
     /// For exact and missed_alarm: a comparison that is its own truth is false at its threshold,
     /// where robustness is 0.
     bool zero_aside = false;

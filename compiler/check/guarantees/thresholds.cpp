@@ -227,8 +227,8 @@ void take(Context& c, const thresholds::Entry& entry, const std::string& place,
     threshold.value64 = static_cast<double>(entry.epsilon);
     threshold.n = entry.n;
     threshold.k = entry.k;
-    threshold.by_group = takes_groups(threshold.origin) &&
-                         thresholds::count_groups(episodes, file.groups).any_named;
+    threshold.by_group =
+        takes_groups(threshold.origin) && thresholds::count_groups(episodes, file.groups).any_named;
 }
 
 void take_threshold(Context& c, Index index, const thresholds::File& file) {

@@ -71,10 +71,9 @@ public:
         if (groups.count() < stages.size()) {
             sink_.report(
                 diag::Code::too_few_for_folds, untrained->monitors.front().span,
-                fmt::format(
-                    "fitting and calibration take {} besides those of a fold; there {} {}",
-                    diag::counted(stages.size(), groups.are_named() ? "group" : "episode"),
-                    groups.count() == 1 ? "is" : "are", groups.count()));
+                fmt::format("fitting and calibration take {} besides those of a fold; there {} {}",
+                            diag::counted(stages.size(), groups.are_named() ? "group" : "episode"),
+                            groups.count() == 1 ? "is" : "are", groups.count()));
             return std::nullopt;
         }
         const std::vector<Paths> of_stages = parts(episodes, calibration_.reading, stages.size());
@@ -189,10 +188,7 @@ std::optional<Folds> deal(const check::Model& model, const calibrate::Request& r
         });
     if (!read) return std::nullopt;
     const auto recorded = episodes::recorded(*read);
-    Folds result{folds,
-                 episodes::folds_of(recorded, folds),
-                 episodes::by_content(recorded),
-                 {}};
+    Folds result{folds, episodes::folds_of(recorded, folds), episodes::by_content(recorded), {}};
     // Entries in the file of fitted entries do not matter here.
     result.allowance = episodes::admit(model, recorded, {}, {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;

@@ -240,8 +240,7 @@ public:
           search_(search(episodes, fitted, before, before.episodes, true)),
           not_fitted_on_(not_fitted_on(search_, fitted, allows_, kHowToAllow)),
           unseen_(search_, thresholds_file, groups_among(before.groups, before.episodes), allows_,
-                  Code::not_disjoint,
-                  "an episode that thresholds of predicates were calibrated on",
+                  Code::not_disjoint, "an episode that thresholds of predicates were calibrated on",
                   "calibrate monitors on other episodes: thresholds look too good on those that "
                   "they were calibrated on",
                   kHowToAllow) {

@@ -1,7 +1,7 @@
 // Decides which episodes a guarantee may rest on. Refuses those that void it: with a target among
 // their frames, used twice, used by a fit or a calibration before, mostly equal to such an episode,
-// or of its group. Every calibration asks here, so what is calibrated is exchangeable with future episodes
-// as far as data can show; overlaps that the user allows are counted.
+// or of its group. Every calibration asks here, so what is calibrated is exchangeable with future
+// episodes as far as data can show; overlaps that the user allows are counted.
 #pragma once
 
 #include <cstdint>
