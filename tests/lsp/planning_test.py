@@ -47,8 +47,9 @@ def newest_text_wins():
     text.replace(after)
     while True:
         found = published(client)
-        assert found["version"] == 3 or not is_planned(found), found
-        if is_planned(found):
+        # The first text may have been planned before the others came.
+        assert found["version"] != 2 or not is_planned(found), found
+        if is_planned(found) and found["version"] == 3:
             break
     assert found["diagnostics"] == expected
     assert client.end() == 0
