@@ -208,7 +208,7 @@ void visit(check::Model& model, check::Past& of, Changing& changing) {
 
 void visit(check::Model&, check::Threshold& of, Changing& changing) {
     changing.of("Threshold");
-    auto& [origin, text, alpha, value64, value, n, k, adaptation, span] = of;
+    auto& [origin, text, alpha, value64, value, n, k, by_group, adaptation, span] = of;
     field(changing, "origin", origin);
     field(changing, "text", text);
     field(changing, "alpha", alpha);
@@ -216,6 +216,7 @@ void visit(check::Model&, check::Threshold& of, Changing& changing) {
     field(changing, "value", value);
     field(changing, "n", n);
     field(changing, "k", k);
+    field(changing, "by_group", by_group);
     field(changing, "adaptation", adaptation);
     field(changing, "span", span);
 }

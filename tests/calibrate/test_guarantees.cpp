@@ -201,7 +201,7 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
         calibrate::Evidence evidence[2];
         for (int i = 0; i < kDemonstrations; ++i) {
             const std::vector<calibrate::Scores> scores = score(random_scored_episode(random));
-            for (const Index p : {0U, 1U}) evidence[p].add(scores[p]);
+            for (const Index p : {0U, 1U}) evidence[p].add(scores[p], evidence[p].groups);
         }
         const ScoredEpisode test = random_scored_episode(random);
         bool fitted = true;

@@ -58,7 +58,7 @@ calibrate::Evidence evidence(const std::vector<Episode>& episodes, bool upper) {
             scores.worst_reach = scores.has_score ? std::max(scores.worst_reach, reach) : reach;
             scores.has_score = true;
         }
-        result.add(scores);
+        result.add(scores, result.groups);
     }
     return result;
 }
@@ -100,9 +100,10 @@ TEST(Fitted, EachIsLeftOutAsByACallOnTheOthers) {
                 episodes::Identities identities;
                 for (int e = 0; e < n; ++e)
                     identities.add({.path = {}, .hash = fmt::format("{:016x}", e * 77 % 64)});
-                const auto out = calibrate::left_out(
-                    predicate, evidence(episodes, predicate.upper_bound()), identities);
-                ASSERT_EQ(out.groups, 0U);
+                const auto out =
+                    calibrate::left_out(predicate, evidence(episodes, predicate.upper_bound()),
+                                        identities, episodes::Groups(identities));
+                ASSERT_EQ(out.parts, 0U);
                 bool all = true;
                 for (std::size_t e = 0; e < episodes.size(); ++e) {
                     std::vector<Episode> others = episodes;

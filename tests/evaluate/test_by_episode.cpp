@@ -166,7 +166,7 @@ TEST(Folds, KeepGroupsTogether) {
             largest = std::max(largest, size);
             apart += first == a ? 1 : 0;
         }
-        EXPECT_EQ(episodes::count_apart(groups), apart);
+        EXPECT_EQ(episodes::Groups(groups).count(), apart);
         std::vector<std::size_t> sizes(folds);
         for (const std::uint32_t fold : of) ++sizes[fold];
         const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());

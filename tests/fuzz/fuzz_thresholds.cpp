@@ -54,10 +54,12 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
     fuzz::require(static_cast<bool>(again), "what is written can be read");
     fuzz::require(thresholds::write(*again) == written, "writing what was read changes nothing");
     for (const auto& [name, entry] : file->predicates)
-        if (const auto found = check::contradiction(entry, "predicates", true, file->episodes))
+        if (const auto found =
+                check::contradiction(entry, "predicates", true, file->episodes, file->groups))
             fuzz::require_printable(found->message);
     for (const auto& [name, entry] : file->monitors)
-        if (const auto found = check::contradiction(entry, "monitors", false, entry.episodes))
+        if (const auto found =
+                check::contradiction(entry, "monitors", false, entry.episodes, file->groups))
             fuzz::require_printable(found->message);
     return 0;
 }

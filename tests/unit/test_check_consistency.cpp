@@ -46,7 +46,7 @@ Entry pooled(const std::string& method) {
 std::string said(Entry entry, const std::function<void(Entry&)>& change, bool upper_bound = true,
                  const std::vector<std::uint64_t>& of = episodes(10)) {
     change(entry);
-    const auto found = contradiction(entry, "predicates.p", upper_bound, of);
+    const auto found = contradiction(entry, "predicates.p", upper_bound, of, {});
     return found ? found->message : "";
 }
 
