@@ -3,6 +3,8 @@
 // of its content, and limits hold before memory is spent.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <functional>
 #include <optional>

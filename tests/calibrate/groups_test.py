@@ -99,9 +99,8 @@ def test_one_score_a_group():
         merged, _ = run("merge", "1", "2")
         assert merged == report and pathlib.Path("s.thresholds.json").read_bytes() == whole
     assert "P(some verdict" not in report, report  # of the adaptive threshold
-    for part, words in ((SPEC.format(method="conformal", alpha=0.25, more=""), "success"),
-                        (SPEC.format(method="conformal", alpha=0.25, more="").replace("F a", "G !a"),
-                         "alarm")):
+    plain = SPEC.format(method="conformal", alpha=0.25, more="")
+    for part, words in ((plain, "success"), (plain.replace("F a", "G !a"), "alarm")):
         pathlib.Path("s.etl").write_text(part)
         report, _ = run("calibrate", "s.etl", "--data", "d")
         claim = f"P(some verdict of an episode of a new group misses a{'n' * (words[0] == 'a')} " \

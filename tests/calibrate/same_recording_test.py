@@ -264,7 +264,8 @@ def test_beside_scalars(world):
                 store_beside(world, "demos", number, z, charge())
             world.spec(spec)
             road = (kind, beside)
-            assert world.run("calibrate", "--data", "demos", "-o", "t.thresholds.json") == set(), road
+            found = world.run("calibrate", "--data", "demos", "-o", "t.thresholds.json")
+            assert found == set(), road
             world.spec(fitted)
             assert world.run("fit", "--data", "demos", "-o", "t.fitted.npz") == set(), road
             for number, repeats in ((3, True), (EPISODES, False)):

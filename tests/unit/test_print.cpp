@@ -2,6 +2,7 @@
 // nothing of a declaration is dropped on the way to it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <random>

@@ -43,7 +43,7 @@ std::size_t round_of(std::size_t episodes) {
                                    kResamples);
 }
 
-/// What is drawn: episodes, or groups of them.
+/// The units that are drawn: episodes, or groups of them.
 struct Drawn {
     std::size_t episodes;
     std::size_t groups;

@@ -44,7 +44,7 @@ bool is_complete(const Sketch& sketch) {
     return sketch.size() < kAtLeastKept;
 }
 
-/// What one input tells about two episodes.
+/// One input's answer about two episodes.
 struct Verdict {
     enum class Kind : std::uint8_t { nothing, different, same };
     Kind kind = Kind::nothing;

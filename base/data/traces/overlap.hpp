@@ -35,7 +35,7 @@ inline std::uint32_t fewest_in_common(const Sketch& sketch) {
     return sketch.size() < kLeastUnits ? kFewestInCommon : kLeastUnits / 2 + 1;
 }
 
-/// What the samples of an input tell about an episode.
+/// How far the samples of an input identify an episode.
 enum class Samples : std::uint8_t {
     runs,       ///< of a scalar, or of few bits: only runs of them tell
     apart,      ///< of an embedding: each tells
