@@ -75,7 +75,8 @@ const std::set<std::string> kUnread{
     // Ranges follow from the expression, the inputs and the threshold.
     "Past.range", "Predicate.delta", "Predicate.robustness",
     // The entry itself records the quality of the threshold.
-    "Threshold.alpha", "Threshold.n", "Threshold.k", "Threshold.adaptation", "Monitor.calibration",
+    "Threshold.alpha", "Threshold.n", "Threshold.k", "Threshold.by_group", "Threshold.adaptation",
+    "Monitor.calibration",
     // Derived.
     "Fitted.name", "Fitted.declaration", "Fitted.index", "Fitted.filled",
     // Names of formulas, and texts for people.

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <regex>
 #include <sstream>
 
 #include "artifacts/thresholds.hpp"
@@ -67,6 +69,15 @@ double moved(const check::Predicate& predicate, double epsilon, const Label& lab
                       std::stod(adaptation.lo), std::stod(adaptation.hi));
 }
 
+/// Returns the number at the end of a predicate that may have an adaptive threshold in its place;
+/// nothing for equalities, constants and predicates that say what a missing sample means.
+std::optional<float> number_compared_with(const std::string& line) {
+    static const std::regex kOrdered(R"(predicate \w+ = [^=!]*[<>]=? (-?[0-9.]+);)");
+    std::smatch match;
+    if (!std::regex_match(line, match, kOrdered)) return {};
+    return std::stof(match[1]);
+}
+
 }  // namespace
 
 AdaptiveSpec random_adaptive_spec(std::uint64_t seed, const SpecShape& shape) {
@@ -75,9 +86,9 @@ AdaptiveSpec random_adaptive_spec(std::uint64_t seed, const SpecShape& shape) {
     std::vector<float> starts;
     std::istringstream lines(random_spec(seed, shape));
     for (std::string line; std::getline(lines, line);) {
-        const bool adaptive = line.starts_with("predicate ") && random.chance(0.7);
-        if (line.starts_with("predicate "))
-            starts.push_back(std::stof(line.substr(line.find_last_of(' ') + 1)));
+        const auto start = number_compared_with(line);
+        const bool adaptive = start && random.chance(0.7);
+        if (line.starts_with("predicate ")) starts.push_back(start.value_or(0));
         result.text += (adaptive ? made_adaptive(line, random) : line) + "\n";
     }
     const auto uncalibrated = load_uncalibrated(result.text);
