@@ -44,6 +44,7 @@ TEST(ProveBoolean, RandomClassesAreRight) {
             continue;
         }
         ++proved;
+        EXPECT_EQ(proof->together, kBooleanSteps);
         ASSERT_FALSE(proof->fault)
             << proof->fault->number << " of " << spec->plan.monitors[proof->fault->monitor].name
             << " after step " << proof->fault->step << "\n"
@@ -58,36 +59,51 @@ constexpr const char* kRestarts =
     "restartable monitor one = F[2, 3] a;\nrepeating monitor other = G (a -> F[1, 2] b);\n"
     "monitor plain = F[1, 2] b;\n";
 
-diag::Result<prove::Proof> proof_without(const pipeline::Compiled& spec, const std::string& line) {
+prove::Proof proof_without(const pipeline::Compiled& spec, const std::string& line) {
     std::string header = header_of(spec.plan);
     const std::size_t at = header.find(line);
     EXPECT_NE(at, std::string::npos) << line;
     header.erase(at, line.size());
-    return prove::prove(spec.plan, {header, "proved", kBooleanSteps});
+    auto proof = prove::prove(spec.plan, {header, "proved", kBooleanSteps});
+    EXPECT_TRUE(proof) << proof.failure().message;
+    return proof ? std::move(*proof) : prove::Proof();
 }
 
 TEST(ProveBoolean, RestartsAndResets) {
     const auto spec = compiled(kRestarts, check::Values::boolean);
     ASSERT_TRUE(spec);
-    for (const char* const line :
-         {"    one_position_ = 0;\n", "    one_ = etlmon::kNo;\n", "    other_position_ = 0;\n"}) {
-        const auto proof = proof_without(*spec, line);
-        EXPECT_TRUE(!proof || proof->fault) << line;
-    }
-    const auto left_over = proof_without(*spec, "    plain_ = etlmon::kNo;\n");
-    ASSERT_TRUE(left_over && left_over->fault);
-    EXPECT_EQ(left_over->fault->monitor, 2U);
+    const prove::Proof unasked = proof_without(*spec, "    one_position_ = 0;\n");
+    ASSERT_TRUE(unasked.fault);
+    ASSERT_EQ(unasked.fault->requests.size(), 1U);
+    EXPECT_EQ(unasked.fault->requests[0].first, 0U);
+    EXPECT_EQ(unasked.fault->position, unasked.fault->requests[0].second);
+
+    const prove::Proof left_over = proof_without(*spec, "    plain_ = etlmon::kNo;\n");
+    ASSERT_TRUE(left_over.fault);
+    EXPECT_EQ(left_over.fault->monitor, 2U);
 }
 
-/// A monitor whose verdict is not final is open or not: each such answer is a way through a step.
 TEST(ProveBoolean, RefusesWhatIsTooLarge) {
     const auto spec = compiled(
         "spec large;\ninput a, b : bool;\nmonitor often = G count(a && b, 30 steps) < 9;\n",
         check::Values::boolean);
     ASSERT_TRUE(spec);
-    const auto proof = prove::prove(spec->plan, {header_of(spec->plan), "proved", 20, 10});
+    const auto proof = prove::prove(spec->plan, {header_of(spec->plan), "proved", 20, 10000});
     ASSERT_FALSE(proof);
-    EXPECT_NE(proof.failure().message.find("too many states and ways"), std::string::npos)
+    EXPECT_NE(proof.failure().message.find("; it is right for all inputs of up to "),
+              std::string::npos)
+        << proof.failure().message;
+}
+
+TEST(ProveBoolean, RefusesTextThatItDoesNotUnderstand) {
+    const auto spec = compiled(kRestarts, check::Values::boolean);
+    ASSERT_TRUE(spec);
+    std::string header = header_of(spec->plan);
+    const std::string line = "  bool missing = false;\n";
+    header.replace(header.find(line), line.size(), line + "  while (position_ == 9) {}\n");
+    const auto proof = prove::prove(spec->plan, {header, "proved", kBooleanSteps});
+    ASSERT_FALSE(proof);
+    EXPECT_NE(proof.failure().message.find("'while' in a step"), std::string::npos)
         << proof.failure().message;
 }
 

@@ -8,9 +8,36 @@
 
 namespace etlc::prove {
 
+namespace {
+
+enum Entry : std::uint32_t {
+    kNumber = 1,
+    kNode,
+    kVerdict,
+    kReset,
+    kTogether,
+    kWindow,
+    kEnd,
+    kStatus,
+    kFinished,
+    kState
+};
+
+/// The exit statuses of the program, as stand_in/etlprove/space.hpp has them.
+constexpr int kBranches = 10;
+constexpr int kExhausted = 11;
+constexpr int kTooMany = 13;
+constexpr int kLeftovers = 14;
+
+}  // namespace
+
 void Answers::end() {
     const int status = child_.exit_status();
-    throw Ended{status, child_.ending()};
+    if (status == kBranches) throw Ended{Ended::Why::branches, ""};
+    if (status == kExhausted) throw Ended{Ended::Why::exhausted, ""};
+    if (status == kLeftovers) throw Ended{Ended::Why::leftovers, ""};
+    if (status == kTooMany) throw Ended{Ended::Why::too_many, ""};
+    throw Ended{Ended::Why::failed, child_.ending()};
 }
 
 std::uint32_t Answers::word() {
@@ -23,15 +50,15 @@ std::uint32_t Answers::word() {
 
 Diagram Answers::known(std::uint32_t theirs) const {
     const auto found = known_.find(theirs);
-    if (found == known_.end()) throw Ended{0, "contradicts itself"};
+    if (found == known_.end()) throw Ended{Ended::Why::failed, "contradicts itself"};
     return found->second;
 }
 
-Answers::Entry Answers::next() {
+std::uint32_t Answers::next() {
     for (;;) {
-        const auto entry = static_cast<Entry>(word());
-        if (entry == Entry::number) throw NewNumber{std::bit_cast<float>(word())};
-        if (entry != Entry::node) return entry;
+        const std::uint32_t kind = word();
+        if (kind == kNumber) throw NewNumber{std::bit_cast<float>(word())};
+        if (kind != kNode) return kind;
         const std::uint32_t theirs = word();
         const Place place = word();
         const Diagram without = known(word());
@@ -40,34 +67,45 @@ Answers::Entry Answers::next() {
     }
 }
 
-Said Answers::verdict() {
-    Said said;
-    said.may_be_missing = word() == 1;
-    for (std::uint32_t* const field : {&said.monitor, &said.step, &said.finishes}) *field = word();
-    said.numbers.decided = word() == 1;
-    for (std::size_t m = 0; m < monitors_; ++m) said.begun.push_back(word());
-    Numbers& numbers = said.numbers;
-    for (Diagram* const field : {&numbers.low, &numbers.high, &numbers.lower, &numbers.upper,
-                                 &said.satisfied, &said.violated, &said.final})
-        *field = known(word());
-    return said;
-}
-
-State Answers::state() {
-    State state;
-    for (std::uint32_t count = word(); count > 0; --count) {
-        State::Word next;
-        next.kind = static_cast<State::Kind>(word());
-        next.value = word();
-        next.counted = word();
-        if (next.kind == State::Kind::diagram) next.value = known(next.value);
-        state.words.push_back(next);
+Numbers Answers::verdict() {
+    if (next() != kVerdict) end();
+    Numbers numbers;
+    numbers.decided = word() == 1;
+    Diagram* const fields[] = {&numbers.low, &numbers.high, &numbers.lower, &numbers.upper};
+    for (Diagram* const field : fields) {
+        const std::uint32_t theirs = word();
+        if (numbers.decided) *field = known(theirs);
     }
-    state.oldest_negated = word();
-    return state;
+    return numbers;
 }
 
-Window Answers::window() {
+bool Answers::forgotten() {
+    if (next() != kReset) end();
+    return word() == 1;
+}
+
+Together Answers::together() {
+    if (next() != kTogether) end();
+    const std::uint32_t steps = word();
+    return {steps, word() == 1};
+}
+
+std::optional<Status> Answers::status() {
+    const std::uint32_t kind = next();
+    if (kind == kFinished) return std::nullopt;
+    if (kind != kStatus) end();
+    Status status;
+    status.begun = word();
+    Diagram* const fields[] = {&status.condition, &status.satisfied, &status.violated,
+                               &status.decided, &status.final};
+    for (Diagram* const field : fields) *field = known(word());
+    return status;
+}
+
+std::optional<Window> Answers::window() {
+    const std::uint32_t kind = next();
+    if (kind == kEnd) return std::nullopt;
+    if (kind != kWindow) end();
     Window window;
     window.length = word();
     const std::uint32_t answer = word();
@@ -76,20 +114,37 @@ Window Answers::window() {
     return window;
 }
 
-std::string why(const Ended& ended) {
-    switch (ended.status) {  // as stand_in/etlprove/space.hpp has them
-        case 10: return "the class compares two values and branches on the result";
-        case 11: return "the diagrams of the class are too large";
-        case 13: return "the class has too many states and ways through a step";
-        case 14: return "the class keeps something after reset(), or after a restart";
-        case 15: return "a verdict may depend on what the class counts for telemetry";
-        case 16: return "step() does something else than measure() and judge() one after the other";
-        case 17: return "the class gives a verdict or an atom the name of another";
-        case 18:
-            return "after a final verdict the class does something else than to count it and to "
-                   "restart that monitor";
-        default: return "the class, compiled for the proof, " + ended.how;
+State Answers::state() {
+    if (next() != kState) end();
+    State state;
+    for (std::uint32_t count = word(); count > 0; --count) {
+        const std::uint32_t kind = word(), value = word();
+        if (kind > static_cast<std::uint32_t>(State::Kind::counter)) end();
+        state.words.push_back({static_cast<State::Kind>(kind), value});
+        State::Word& last = state.words.back();
+        if (last.kind == State::Kind::diagram) last.value = known(value);
     }
+    state.counted = word();
+    state.oldest_negated = word();
+    return state;
+}
+
+std::string why(const Ended& ended) {
+    switch (ended.why) {
+        case Ended::Why::branches:
+            return "the class compares two values and branches on the result";
+        case Ended::Why::exhausted: return "the diagrams of the class are too large";
+        case Ended::Why::too_many: return "the class has too many states and cases of a step";
+        case Ended::Why::leftovers:
+        case Ended::Why::failed: break;
+    }
+    return fmt::format("the class, compiled for the proof, {}", ended.how);
+}
+
+std::string how_far(std::uint32_t steps) {
+    return steps == 0 ? ""
+                      : fmt::format("; it is right for all inputs of up to {}",
+                                    diag::counted(steps, "step"));
 }
 
 }  // namespace etlc::prove

@@ -12,14 +12,11 @@ constexpr std::uint32_t kMostDiagrams = 10U << 20U;
 constexpr std::uint32_t kMostToGoOn = 1U << 19U;  // more steps take too long
 constexpr std::size_t kMostKept = 64U << 20U;
 
-/// Where each value of a counter may have an effect of its own.
-constexpr std::uint32_t kAll = 0xffffffffU;
-
 }  // namespace
 
 Repetition::Repetition(const plan::Plan& plan, const Definition& definition, const Proof& proof,
                        Space& space)
-    : places_(proof.places),
+    : steps_(proof.steps),
       atoms_(proof.atoms),
       space_(space),
       unfolded_(plan, definition, space),
@@ -50,16 +47,10 @@ void Repetition::is_inexact(bool in_ranges) {
 }
 
 void Repetition::note(const State& state) {
-    counted_.emplace_back();
-    is_counting_ = false;
-    for (const State::Word& word : state.words) {
-        if (word.kind != State::Kind::counter) continue;
-        counted_.back().push_back(word.counted);
-        is_counting_ = is_counting_ || word.counted > word.value;
-    }
+    counted_.push_back(state.counted);
     std::uint32_t oldest = step_;
     if (state.oldest_negated >= etlprove::kFirstSample)
-        oldest = places_ - 1 -
+        oldest = steps_ - 1 -
                  static_cast<std::uint32_t>((state.oldest_negated - etlprove::kFirstSample) /
                                             (atoms_.size() * etlprove::kPlacesPerSample));
     negated_.push_back(oldest);
@@ -70,7 +61,7 @@ void Repetition::note(const State& state) {
 
 void Repetition::look(Forms& forms, const State& state, const std::vector<Diagram>& diagrams) {
     const auto first_of = [&](std::uint32_t step) {
-        return etlprove::place_of({step, places_}, 0, atoms_.size(), 0);
+        return etlprove::place_of({step, steps_}, 0, atoms_.size(), 0);
     };
     Form form(space_.diagrams, first_of(step_),
               step_ < forms.recent ? etlprove::kNoPlace : first_of(step_ - forms.recent));
@@ -97,9 +88,7 @@ bool Repetition::leads_to(const Forms& forms, const Seen& before, const Seen& no
     for (std::size_t n = 0; n < before.counters.size(); ++n)
         if (now.counters[n] < before.counters[n]) return false;
     for (std::uint32_t step = before.step + 1; step <= now.step; ++step) {
-        if (counted_[step].size() != before.counters.size()) return false;
-        for (std::size_t n = 0; n < before.counters.size(); ++n)
-            if (counted_[step][n] > before.counters[n]) return false;
+        if (counted_[step] > 0) return false;
         // The negation of a function of older samples is not a function of its value.
         if (negated_[step] + forms.recent <= before.step) return false;
     }
@@ -131,7 +120,8 @@ void Repetition::end_step(const State& state, const std::vector<Diagram>& compar
 
 std::string Repetition::why_not() const {
     if (!why_not_.empty()) return why_not_;
-    if (is_counting_) return "what it does depends on the number of the step";
+    if (!counted_.empty() && counted_.back() > 0)
+        return "what it does depends on the number of the step";
     if (inexact_ && *inexact_ + 1 == step_)
         return "some verdicts are equal only for the samples that there can be";
     return "its state did not come back to a form that was seen";
@@ -155,16 +145,13 @@ std::uint32_t Repetition::period() const {
 }
 
 std::uint32_t Repetition::steps_needed() const {
-    if (is_over() || controls_.empty()) return 0;
-    std::uint32_t counted = 0;
-    for (const std::uint32_t constant : counted_.back()) counted = std::max(counted, constant);
-    if (counted == kAll) return 0;
+    if (is_over() || controls_.empty() || counted_.back() == State::kAll) return 0;
     if (space_.diagrams.size() > kMostToGoOn) return 0;
     const std::uint32_t recent = forms_.back().recent;
     const std::uint64_t begin =
-        std::max(std::uint64_t{5} * recent / 2, std::uint64_t{counted} + recent);
+        std::max(std::uint64_t{5} * recent / 2, std::uint64_t{counted_.back()} + recent);
     const std::uint64_t needed = begin + period() + 2;
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>(needed, kAll));
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(needed, State::kAll));
 }
 
 }  // namespace etlc::prove

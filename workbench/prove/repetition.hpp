@@ -33,9 +33,6 @@ public:
     /// Some verdict of this step is equal only for the samples that there can be, or already for
     /// those whose ends are in their ranges.
     void is_inexact(bool in_ranges);
-    void give_up(const std::string& why) {
-        if (why_not_.empty()) why_not_ = why;
-    }
     /// Takes the state of the class after the step, and what later comparisons read.
     void end_step(const State& state, const std::vector<Diagram>& compared_later);
 
@@ -67,7 +64,7 @@ private:
     std::uint32_t period() const;
     Place first_place(std::uint32_t step) const;
 
-    std::uint32_t places_;
+    std::uint32_t steps_;
     const std::vector<Atom>& atoms_;
     Space& space_;
     Unfolded unfolded_;
@@ -76,8 +73,7 @@ private:
     std::string why_not_;
     std::optional<Repeats> found_;
     std::uint32_t step_ = 0;
-    std::vector<std::vector<std::uint32_t>> counted_;      ///< [step] of each counter
-    bool is_counting_ = false;                             ///< one has not reached its constant
+    std::vector<std::uint32_t> counted_;                   ///< [step] as State has it
     std::optional<std::uint32_t> inexact_, needs_ranges_;  ///< the last such steps
     std::vector<std::uint32_t> negated_;  ///< [step] the oldest step in what was negated
     std::vector<std::vector<std::uint32_t>> controls_;  ///< [step] control words

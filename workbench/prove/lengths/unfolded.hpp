@@ -35,10 +35,10 @@ public:
         const Place at = place - kFirst;
         return {at / 2 % parts_, at % 2 != 0, static_cast<std::uint32_t>(at / 2 / parts_ + 1)};
     }
-    static bool is(Place place) { return place >= kFirst && place < etlprove::kFirstLeft; }
+    static bool is(Place place) { return place >= kFirst && place < etlprove::kFirstSample; }
     /// Whether there are places so far ahead.
     bool reaches(std::uint64_t ahead) const {
-        return ahead * parts_ * 2 <= etlprove::kFirstLeft - kFirst;
+        return ahead * parts_ * 2 <= etlprove::kFirstSample - kFirst;
     }
 
 private:

@@ -24,18 +24,8 @@ Atom atom_of(const check::Model& model, bool is_predicate, Index index) {
     // "counts as false where it is missing": then it is known.
     const double said = missing.value_or(false) ? reference::kInfinity : -reference::kInfinity;
     const bool is_truth = !is_predicate || model.predicates[index].equality();
-    return {is_predicate,
-            index,
-            true,
-            is_truth,
-            missing ? reference::Unseen{said, said} : range,
-            range,
-            is_predicate ? model.predicates[index].threshold.value : 0};
-}
-
-bool is_of(const reference::Node& node, const Atom& atom) {
-    return node.is_atom() && node.index == atom.index &&
-           atom.is_predicate == (node.kind == reference::Node::Kind::predicate);
+    return {is_predicate, index, true, is_truth, missing ? reference::Unseen{said, said} : range,
+            range};
 }
 
 /// The atoms by kind, predicates first, and index.
@@ -62,64 +52,33 @@ std::vector<Atom> atoms_of(const plan::Plan& plan) {
     return atoms;
 }
 
-std::vector<Truths> truths_of(const plan::Plan& plan, const std::vector<Atom>& atoms) {
-    std::vector<Truths> result;
-    if (plan.values != check::Values::boolean) return result;
-    const reference::NormalForm form = reference::normal_form(*plan.model);
-    const reference::Literals ranges =
-        reference::literals(*plan.model, form, {}, check::Values::boolean);
-    for (const Atom& atom : atoms) {
-        const bool is_declared = atom.is_predicate
-                                     ? plan.model->predicates[atom.index].missing.has_value()
-                                     : plan.model->inputs[atom.index].missing.has_value();
-        result.push_back(is_declared ? Truths::known : Truths::any);
-        for (std::size_t n = 0; n < form.nodes.size(); ++n) {
-            if (!is_of(form.nodes[n], atom)) continue;
-            reference::Unseen range = ranges.ranges[n];
-            if (form.nodes[n].negated) range = reference::negate(range);
-            if (range.lowest >= 0) result.back() = Truths::yes;
-            if (range.highest < 0) result.back() = Truths::no;
-        }
-    }
-    return result;
-}
-
-Definition::Definition(const plan::Plan& plan, const std::vector<Atom>& atoms,
-                       const std::vector<Truths>& truths, std::uint32_t steps, bool missing)
+Definition::Definition(const plan::Plan& plan, const std::vector<Atom>& atoms, std::uint32_t steps,
+                       bool missing)
     : plan_(plan), form_(reference::normal_form(*plan.model)), prefixes_(steps) {
     const reference::Literals ranges =
-        reference::literals(*plan.model, form_, {},
-                            truths.empty() ? check::Values::robustness : check::Values::boolean);
+        reference::literals(*plan.model, form_, {}, check::Values::robustness);
     literals_.values.resize(form_.nodes.size());
     literals_.ranges.resize(form_.nodes.size());
     for (std::size_t n = 0; n < form_.nodes.size(); ++n) {
         const reference::Node& node = form_.nodes[n];
+        const auto atom = std::find_if(atoms.begin(), atoms.end(), [&](const Atom& one) {
+            return node.is_atom() && one.index == node.index &&
+                   one.is_predicate == (node.kind == reference::Node::Kind::predicate);
+        });
         if (!node.is_atom()) continue;
-        const auto atom = std::find_if(atoms.begin(), atoms.end(),
-                                       [&](const Atom& one) { return is_of(node, one); });
         literals_.ranges[n] = {ranges.ranges[n].lowest, ranges.ranges[n].highest};
         const auto at = static_cast<std::size_t>(atom - atoms.begin());
         for (std::uint32_t step = 0; step < steps; ++step) {
-            const Place sample = etlprove::place_of({step, steps}, at, atoms.size(), 0);
-            literals_.values[n].push_back(truths.empty() ? number(sample, node.negated, missing)
-                                                         : truth(truths[at], sample, node.negated));
+            const auto end = [&](Place place) {
+                return Symbol::variable(etlprove::place_of({step, steps}, at, atoms.size(), place));
+            };
+            const Place high = missing ? etlprove::kHigh : etlprove::kLow;
+            const Place negated_high = missing ? etlprove::kNegatedHigh : etlprove::kNegatedLow;
+            const Symbol low = end(node.negated ? negated_high : etlprove::kLow);
+            const Symbol up = end(node.negated ? etlprove::kNegatedLow : high);
+            literals_.values[n].push_back({low, low, up, up});
         }
     }
-}
-
-Definition::Literal Definition::number(Place sample, bool negated, bool missing) {
-    const Place high = missing ? etlprove::kHigh : etlprove::kLow;
-    const Place negated_high = missing ? etlprove::kNegatedHigh : etlprove::kNegatedLow;
-    const Symbol low = Symbol::variable(sample + (negated ? negated_high : etlprove::kLow));
-    const Symbol up = Symbol::variable(sample + (negated ? etlprove::kNegatedLow : high));
-    return {low, low, up, up};
-}
-
-Definition::Literal Definition::truth(Truths truths, Place sample, bool negated) {
-    const etlprove::Ends ends = Symbol::ends_of(truths, sample);
-    const Symbol low = Symbol::of(ends.low), high = Symbol::of(ends.high);
-    if (negated) return {-high, -high, -low, -low};
-    return {low, low, high, high};
 }
 
 Numbers Definition::verdict(std::uint32_t monitor, std::uint32_t end, std::uint32_t position) {

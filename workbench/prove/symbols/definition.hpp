@@ -15,7 +15,6 @@
 namespace etlc::prove {
 
 using check::Index;
-using etlprove::Truths;
 
 /// A predicate or a bool input of some formula.
 struct Atom {
@@ -26,14 +25,11 @@ struct Atom {
     /// Range where the sample is missing, and of every value.
     reference::Unseen missing;
     reference::Unseen range;
-    float threshold = 0;  ///< of a predicate
 };
 
 /// Returns the atoms of a class, in the order of its Atoms, and then those of the formulas that it
 /// does not read.
 std::vector<Atom> atoms_of(const plan::Plan& plan);
-/// Returns the truths that each atom may have in a class of truth values; none of another class.
-std::vector<Truths> truths_of(const plan::Plan& plan, const std::vector<Atom>& atoms);
 
 /// The diagrams of a verdict.
 struct Numbers {
@@ -48,9 +44,9 @@ struct Numbers {
 
 class Definition {
 public:
-    /// `steps`: that have variables. `missing`: every sample may be missing; else none is.
-    Definition(const plan::Plan& plan, const std::vector<Atom>& atoms,
-               const std::vector<Truths>& truths, std::uint32_t steps, bool missing);
+    /// `missing`: every sample may be missing; else none is.
+    Definition(const plan::Plan& plan, const std::vector<Atom>& atoms, std::uint32_t steps,
+               bool missing);
 
     /// Returns the verdict about a position after step `end`. A sliding verdict is about a position
     /// whose later samples do not count.
@@ -62,8 +58,6 @@ public:
 
 private:
     using Literal = reference::ValueOf<Symbol>;
-    static Literal number(Place sample, bool negated, bool missing);
-    static Literal truth(Truths truths, Place sample, bool negated);
 
     const plan::Plan& plan_;
     reference::NormalForm form_;

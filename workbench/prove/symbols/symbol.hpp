@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "prove/stand_in/etlprove/diagrams.hpp"
-#include "prove/stand_in/etlprove/truths.hpp"
 
 namespace etlc::prove {
 
@@ -23,13 +22,10 @@ struct NewNumber {
 
 /// The diagrams of one proof, and its numbers.
 struct Space {
-    /// `truths`: values are truth values; else they are robustness.
-    Space(const std::set<float>& known, bool truths)
-        : numbers(diagrams, std::vector<float>(known.begin(), known.end())), are_truths(truths) {}
+    explicit Space(const std::set<float>& known)
+        : numbers(diagrams, std::vector<float>(known.begin(), known.end())) {}
 
-    /// As a truth value, a number is whether it is at least 0.
     Diagram at_least(float x) const {
-        if (are_truths) return x < 0 ? etlprove::kNever : etlprove::kAlways;
         const Diagram found = numbers.at_least(x);
         if (found == etlprove::Numbers::kNoNumber) throw NewNumber{x};
         return found;
@@ -37,7 +33,6 @@ struct Space {
 
     etlprove::Diagrams diagrams{kMostNodes, [] { throw Exhausted(); }};
     etlprove::Numbers numbers;
-    bool are_truths;
 
     static constexpr std::uint32_t kMostNodes = 40U << 20U;
 };
@@ -54,15 +49,10 @@ public:
         return symbol;
     }
     static Symbol variable(Place place) { return of(space().diagrams.variable(place)); }
-    static etlprove::Ends ends_of(etlprove::Truths truths, Place sample) {
-        return etlprove::ends_of(space().diagrams, truths, sample);
-    }
     Diagram diagram() const { return of_; }
 
-    Symbol operator-() const {
-        return of(space().are_truths ? space().diagrams.complement(of_)
-                                     : space().diagrams.negation(of_));
-    }
+    Symbol operator-() const { return of(space().diagrams.negation(of_)); }
+    Symbol operator!() const { return of(space().diagrams.complement(of_)); }
     friend Symbol min(Symbol a, Symbol b) { return of(space().diagrams.both(a.of_, b.of_)); }
     friend Symbol max(Symbol a, Symbol b) { return of(space().diagrams.either(a.of_, b.of_)); }
 

@@ -134,7 +134,7 @@ bool holds(const Diagrams& diagrams, Diagram of, const std::map<Place, bool>& va
 /// Returns a threshold: the first number that reaches it, or one that is above all.
 float threshold_of(const etlprove::Numbers& numbers, const std::map<Place, bool>& variables) {
     for (const auto& [place, reached] : variables)
-        if (reached && place >= etlprove::kFirstNumber && place < etlprove::kFirstLeft)
+        if (reached && place >= etlprove::kFirstNumber && place < kFirstSample)
             return numbers[place];
     return numbers.all().back() + 1;
 }
@@ -185,53 +185,6 @@ std::set<std::vector<std::uint16_t>> ends_in_ranges(Space& space, const std::vec
         result.insert(possible);
     }
     return result;
-}
-
-namespace {
-
-/// Returns a robustness of an atom that is true, or false, in its range and as far from the
-/// threshold as there is room, so that it is not rounded to it.
-float robustness_of(const Atom& atom, bool truth) {
-    if (atom.is_truth) return truth ? INFINITY : -INFINITY;
-    const float far = std::max(1.0F, std::abs(atom.threshold));
-    return std::clamp(truth ? far : -far, static_cast<float>(atom.range.lowest),
-                      static_cast<float>(atom.range.highest));
-}
-
-}  // namespace
-
-Witness truths_where(const Diagrams& diagrams, Diagram condition, const std::vector<Atom>& atoms,
-                     const std::vector<Truths>& truths, std::uint32_t steps,
-                     std::uint32_t most_steps) {
-    std::map<Place, bool> chosen;
-    while (condition > kAlways) {  // a known sample, where there is a choice
-        const Diagrams::Node node = diagrams[condition];
-        const bool is_low = node.place >= kFirstSample &&
-                            (node.place - kFirstSample) % kPlacesPerSample == etlprove::kLow;
-        const bool with = is_low ? node.with != kNever : node.without == kNever;
-        chosen[node.place] = with;
-        condition = with ? node.with : node.without;
-    }
-    const auto is = [&](Place place, bool otherwise) {
-        const auto found = chosen.find(place);
-        return found == chosen.end() ? otherwise : found->second;
-    };
-    Witness witness;
-    for (std::uint32_t step = 0; step < steps; ++step) {
-        witness.values.emplace_back();
-        for (std::size_t a = 0; a < atoms.size(); ++a) {
-            const Place at = etlprove::place_of({step, most_steps}, a, atoms.size(), 0);
-            const bool high = truths[a] == Truths::yes ||
-                              (truths[a] != Truths::no && is(at + etlprove::kHigh, false));
-            const bool low =
-                truths[a] == Truths::any ? high && is(at + etlprove::kLow, true) : high;
-            std::optional<float> value;
-            if (low) value = robustness_of(atoms[a], true);
-            if (!high) value = robustness_of(atoms[a], false);
-            witness.values.back().push_back(value);
-        }
-    }
-    return witness;
 }
 
 std::optional<Witness> difference(Space& space, Diagram first, Diagram second,

@@ -27,12 +27,6 @@ std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
                                   std::uint32_t most_steps, bool may_be_missing,
                                   bool at_zero = false);
 
-/// Returns an input of `steps` steps on which a condition on truths is true, in a proof of
-/// `most_steps`.
-Witness truths_where(const etlprove::Diagrams& diagrams, Diagram condition,
-                     const std::vector<Atom>& atoms, const std::vector<Truths>& truths,
-                     std::uint32_t steps, std::uint32_t most_steps);
-
 /// Whether two functions are equal where every end of a sample, by itself, is in its range.
 bool are_equal_in_ranges(Space& space, Diagram first, Diagram second,
                          const std::vector<Atom>& atoms);

@@ -1,88 +1,63 @@
-// How a step of a class uses its state. Takes: what the class does with members that are
-// uint32_t, each of which is a Word here. Gives: whether a later step, with greater counts and
-// older values, does the same. Keeps true: a word compares itself with constants, or all of its
-// value counts.
+// How a step of a class uses its state, for a proof of all lengths. Takes: what the class does.
+// Gives: whether a later step, with larger counters and older values, does the same. Keeps true: a
+// counter of steps only compares itself with constants, or it says that its value counted.
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <set>
 #include <vector>
 
-#include "etlprove/space.hpp"
+#include "etlprove/diagrams.hpp"
 
 namespace etlprove {
 
-/// Uses of the words of a class by calls.
-struct Used {
-    static constexpr uint32_t kAll = 0xffffffffu;
-
-    std::map<size_t, uint32_t> counts;  ///< by the word: the greatest constant that would count
-    std::set<size_t> advanced;
-    Place oldest = 0;  ///< sample in what was negated
-
-    /// The greatest constant that the word, if it reached it, would have another effect by; kAll
-    /// where each value may have an effect of its own.
-    uint32_t counted(size_t word) const {
-        const auto found = counts.find(word);
-        return found == counts.end() ? 0 : found->second;
-    }
-    void count(size_t word, uint32_t constant) {
-        uint32_t& most = counts[word];
-        if (constant > most) most = constant;
-    }
-};
-
-/// All uses of one object since the last reset().
+/// All uses since the last reset().
 class Uses {
 public:
-    void set_object(const void* begin, size_t bytes) {
-        begin_ = static_cast<const unsigned char*>(begin);
-        bytes_ = bytes;
-    }
-    void reset() { used_ = Used(); }
-    const Used& so_far() const { return used_; }
+    static constexpr uint32_t kAll = 0xffffffffu;
 
-    void advances(const void* word) {
-        if (is_within(word)) used_.advanced.insert(at(word));
+    void reset() {
+        counters_.clear();
+        counted_ = 0;
+        oldest_ = 0;
     }
-    void counts_to(const void* word, uint64_t constant) {
-        if (is_within(word))
-            used_.count(at(word),
-                        constant < Used::kAll ? static_cast<uint32_t>(constant) : Used::kAll);
+
+    /// A counter has advanced.
+    void advances(const void* counter) { counters_.push_back(counter); }
+    /// A counter that reaches a constant would have had another effect.
+    void counts_to(uint64_t constant) {
+        const uint32_t least = constant < kAll ? static_cast<uint32_t>(constant) : kAll;
+        if (least > counted_) counted_ = least;
     }
     /// A value is negated. The negation is a function of its samples, not of the value alone.
-    void negates(Diagram of) {
-        const Place deepest = deepest_in(of);
-        if (deepest > used_.oldest) used_.oldest = deepest;
+    void negates(const Diagrams& diagrams, Diagram of) {
+        const Place deepest = deepest_in(diagrams, of);
+        if (deepest > oldest_) oldest_ = deepest;
     }
 
+    const std::vector<const void*>& counters() const { return counters_; }
+    /// The greatest such constant, or kAll where each value may have an effect of its own.
+    uint32_t counted() const { return counted_; }
+    /// The place of the oldest sample in what was negated.
+    Place oldest() const { return oldest_; }
+
 private:
-    bool is_within(const void* word) const {
-        const auto* const byte = static_cast<const unsigned char*>(word);
-        return byte >= begin_ && byte < begin_ + bytes_;
-    }
-    size_t at(const void* word) const {
-        return static_cast<size_t>(static_cast<const unsigned char*>(word) - begin_) /
-               sizeof(uint32_t);
-    }
-    Place deepest_in(Diagram of) {
+    Place deepest_in(const Diagrams& diagrams, Diagram of) {
         if (of <= kAlways) return 0;
-        if (deepest_.size() <= of) deepest_.resize(diagrams().size(), 0);
+        if (deepest_.size() <= of) deepest_.resize(diagrams.size(), 0);
         if (deepest_[of] != 0) return deepest_[of];
-        const Diagrams::Node node = diagrams()[of];
+        const Diagrams::Node node = diagrams[of];
         Place deepest = node.place;
         for (const Diagram part : {node.without, node.with}) {
-            const Place below = deepest_in(part);
+            const Place below = deepest_in(diagrams, part);
             if (below > deepest) deepest = below;
         }
         deepest_[of] = deepest;
         return deepest;
     }
 
-    const unsigned char* begin_ = nullptr;
-    size_t bytes_ = 0;
-    Used used_;
+    std::vector<const void*> counters_;
+    uint32_t counted_ = 0;
+    Place oldest_ = 0;
     std::vector<Place> deepest_;  ///< [diagram] 0: not yet found
 };
 
@@ -91,28 +66,19 @@ inline Uses& uses() {
     return kept;
 }
 
-/// A uint32_t of the class. That it saturates is in the text of the class: a comparison with the
-/// greatest number is no use of the value, as the driver sees by setting it to that.
-class Word {
+/// A number of steps, in place of a uint32_t member that grows at every step and saturates.
+class Counter {
 public:
-    Word() noexcept = default;
-    constexpr Word(uint32_t value) noexcept : value_(value) {}
-    Word(const Word& other) noexcept : value_(other.all()) {}
-    Word& operator=(const Word& other) noexcept {
-        value_ = other.all();
-        return *this;
-    }
-    constexpr Word& operator=(uint32_t value) noexcept {
+    constexpr Counter() noexcept = default;
+    constexpr Counter& operator=(uint32_t value) noexcept {
         value_ = value;
         return *this;
     }
-    Word& operator++() noexcept {
-        ++value_;
+    void advance() noexcept {
+        if (value_ != 0xffffffffu) ++value_;
         uses().advances(this);
-        return *this;
     }
 
-    operator uint32_t() const noexcept { return all(); }
     template <class Number>
     bool operator>=(Number least) const noexcept {
         return up_to(static_cast<uint32_t>(least)) >= static_cast<uint32_t>(least);
@@ -131,9 +97,7 @@ public:
     }
     template <class Number>
     bool operator==(Number other) const noexcept {
-        const uint32_t number = static_cast<uint32_t>(other);
-        if (number == Used::kAll) return value_ == number;
-        return up_to(uint64_t{number} + 1) == number;
+        return up_to(uint64_t{static_cast<uint32_t>(other)} + 1) == static_cast<uint32_t>(other);
     }
     template <class Number>
     bool operator!=(Number other) const noexcept {
@@ -141,18 +105,18 @@ public:
     }
     /// Returns the lesser of the value and a constant, for what treats all values from there alike.
     uint64_t up_to(uint64_t constant) const noexcept {
-        uses().counts_to(this, value_ < constant ? constant : 1);
-        return value_ < constant ? value_ : constant;
+        if (value_ >= constant) return constant;
+        uses().counts_to(constant);
+        return value_;
     }
-
-private:
-    uint32_t all() const noexcept {
-        uses().counts_to(this, Used::kAll);
+    operator uint32_t() const noexcept {
+        uses().counts_to(Uses::kAll);
         return value_;
     }
 
-    uint32_t value_;
+private:
+    uint32_t value_ = 0;
 };
-static_assert(sizeof(Word) == sizeof(uint32_t), "as large as what it replaces");
+static_assert(sizeof(Counter) == sizeof(uint32_t), "as large as what it replaces");
 
 }  // namespace etlprove

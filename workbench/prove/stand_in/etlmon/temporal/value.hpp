@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Stands in for the runtime's value.hpp when `etlc prove` compiles a class: a robustness is a
 // function of the samples, as a diagram. Takes: what the runtime's file takes. Gives: the same
-// names. Keeps true: min, max and negation are those of diagrams; a comparison of two
+// names and sizes. Keeps true: min, max and negation are those of diagrams; a comparison of two
 // values, which the class would branch on, ends the proof.
 #pragma once
 
@@ -19,6 +19,17 @@ inline Numbers& numbers() {
 }
 [[noreturn]] void ask_for(float number);
 
+/// A diagram in the state of a class is marked, so that counters are told from diagrams.
+constexpr uint32_t kMark = 0xa0000000u;
+constexpr uint32_t kMarkBits = 0xf0000000u;
+constexpr bool is_marked(uint32_t bits) {
+    return (bits & kMarkBits) == kMark;
+}
+
+inline Diagram diagram_of(uint32_t bits) {
+    return is_marked(bits) ? bits & ~kMarkBits : diagrams().variable(kUnwritten);
+}
+
 }  // namespace etlprove
 
 namespace etlmon {
@@ -31,17 +42,13 @@ struct Key {
     Key() noexcept = default;
     /// Numbers of earlier steps are keys too; those in measure() have no diagram.
     constexpr Key(int32_t) noexcept : bits(0) {}
-    static constexpr Key with_bits(uint32_t bits) noexcept {
+    static constexpr Key marked(uint32_t bits) noexcept {
         Key key(0);
         key.bits = bits;
         return key;
     }
-    static Key of(etlprove::Diagram diagram) noexcept {
-        return with_bits(etlprove::marked(diagram));
-    }
+    static Key of(etlprove::Diagram diagram) noexcept { return marked(etlprove::kMark | diagram); }
     etlprove::Diagram diagram() const noexcept { return etlprove::diagram_of(bits); }
-    /// Whether it is at least 0.
-    etlprove::Diagram at_zero() const noexcept { return etlprove::diagrams().at_zero(diagram()); }
     explicit operator uint32_t() const noexcept { etlprove::stop(etlprove::kBranches); }
 };
 
@@ -61,8 +68,8 @@ ETLMON_INLINE float float_of(Key) noexcept {
     return 0;
 }
 
-constexpr Key kTop = Key::with_bits(etlprove::marked(etlprove::kAlways));
-constexpr Key kBottom = Key::with_bits(etlprove::marked(etlprove::kNever));
+constexpr Key kTop = Key::marked(etlprove::kMark | etlprove::kAlways);
+constexpr Key kBottom = Key::marked(etlprove::kMark | etlprove::kNever);
 
 inline Key min_of(Key a, Key b) noexcept {
     return Key::of(etlprove::diagrams().both(a.diagram(), b.diagram()));
@@ -71,7 +78,7 @@ inline Key max_of(Key a, Key b) noexcept {
     return Key::of(etlprove::diagrams().either(a.diagram(), b.diagram()));
 }
 inline Key operator-(Key a) noexcept {
-    etlprove::uses().negates(a.diagram());
+    etlprove::uses().negates(etlprove::diagrams(), a.diagram());
     return Key::of(etlprove::diagrams().negation(a.diagram()));
 }
 /// Windows ask whether both ends of a value are equal. Where the diagrams differ they take the way
@@ -133,7 +140,7 @@ inline Value negate(Value a) noexcept {
 struct Register {
     struct End {
         uint32_t bits;
-        constexpr operator Key() const noexcept { return Key::with_bits(bits); }
+        constexpr operator Key() const noexcept { return Key::marked(bits); }
     };
     Key low;
     End high;
