@@ -17,8 +17,8 @@ using diag::counted;
 std::string how(const check::Predicate& predicate, const Fitted& fitted) {
     const check::Threshold& threshold = predicate.threshold;
     const char* const each = threshold.by_group ? "group" : "demonstration";
-    const auto place = [&](const char* each) {
-        return describe_place(fitted, predicate.upper_bound(), each);
+    const auto place = [&](const char* unit) {
+        return describe_place(fitted, predicate.upper_bound(), unit);
     };
     switch (threshold.origin) {
         case ThresholdOrigin::f1:

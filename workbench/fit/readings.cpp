@@ -22,8 +22,12 @@ public:
 
     diag::Result<Read> score(const std::string& path) const {
         auto recording = episodes::Recording::open(wanted_, path, reading_);
-        if (!recording && recording.failure().code == diag::Code::no_label)
-            return Read{{path}, {}, recording.failure()};
+        if (!recording && recording.failure().code == diag::Code::no_label) {
+            Read result;
+            result.path = path;
+            result.unlabelled = recording.failure();
+            return result;
+        }
         if (!recording) return recording.failure();
         for (;;) {
             const auto more = recording->next();
