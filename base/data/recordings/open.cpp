@@ -107,8 +107,7 @@ diag::Diagnostic in_trace(const diag::Failure& failure, const std::string& path)
     if (failure.code == diag::Code::video_out_of_step)
         result.note(
             "every step has a row: fill a gap with rows whose samples are missing (empty cells of "
-            "a "
-            ".csv file, NaN in arrays), or cut the recording there; a 'time' that is not that of "
+            "a .csv file, NaN in arrays), or cut the recording there; a 'time' that is not that of "
             "the steps needs another name");
     return result;
 }
