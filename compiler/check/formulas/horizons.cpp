@@ -69,10 +69,6 @@ std::vector<Reading> readings(const Model& model) {
     return result;
 }
 
-}  // namespace
-
-namespace {
-
 constexpr std::uint64_t kNever = Decidable::kNever;
 
 std::uint64_t later(std::uint64_t position, std::uint64_t steps) {

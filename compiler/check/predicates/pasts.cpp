@@ -57,11 +57,10 @@ const ast::Expr* undelayed(Context& c, const ast::Expr& written, std::uint64_t& 
     return at;
 }
 
-/// Returns what says of a truth value what the past of a number was meant to say, as notes.
+/// Returns notes with the formulas that may be meant where the past of a truth value is asked for.
 std::vector<std::string> instead(const std::string& name, PastKind kind, const std::string& time) {
-    const std::string since =
-        fmt::format("'held[{}] {}': it holds, and has for {}", time, name, time);
-    const std::string ever = fmt::format("'O[0, {}] {}': it did at some step", time, name);
+    const std::string since = fmt::format("'held[{}] {}': it has held for {}", time, name, time);
+    const std::string ever = fmt::format("'O[0, {}] {}': it held at some step", time, name);
     switch (kind) {
         case PastKind::ago:
             return {fmt::format("whether it held then is 'O[{0}, {0}] {1}'", time, name)};
@@ -74,7 +73,8 @@ std::vector<std::string> instead(const std::string& name, PastKind kind, const s
             fmt::format("'count({}, {}) >= 3': it began to hold three times or more", name, time)};
 }
 
-/// Refuses a predicate, let or bool where a number is expected, and says what does mean something.
+/// Refuses a predicate, let or bool where a number is expected, and names formulas that may be
+/// meant.
 bool is_number(Context& c, const ast::Expr& of, const ast::Past& past) {
     const Reference* const found = of.kind == ExprKind::name ? c.scope.find(of.text) : nullptr;
     if (found == nullptr) return true;
