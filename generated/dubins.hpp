@@ -37,9 +37,10 @@
 #endif
 
 namespace dubins {
-// Another class for each set of compiler flags, and for each text of this header.
+// One program may hold several headers of this name, and units with other flags:
+// each has a class of its own.
 inline namespace ETLMON_BUILD {
-inline namespace text_fae33b9b582134d8 {
+inline namespace text_b4f1d3b26ab9ca46 {
 
 /// The inputs of one step. In Inputs{} all of them are missing.
 struct Inputs {
@@ -371,6 +372,6 @@ inline Verdicts Monitor::judge(const Atoms& now) noexcept {
   return verdicts;
 }
 
-}  // namespace text_fae33b9b582134d8
+}  // namespace text_b4f1d3b26ab9ca46
 }  // namespace ETLMON_BUILD
 }  // namespace dubins

@@ -32,9 +32,10 @@
 #endif
 
 namespace example {
-// Another class for each set of compiler flags, and for each text of this header.
+// One program may hold several headers of this name, and units with other flags:
+// each has a class of its own.
 inline namespace ETLMON_BUILD {
-inline namespace text_46521b4b315e7b83 {
+inline namespace text_305adae252ab4214 {
 
 /// The inputs of one step. In Inputs{} all of them are missing.
 struct Inputs {
@@ -153,6 +154,6 @@ inline Verdicts Monitor::judge(const Atoms& now) noexcept {
   return verdicts;
 }
 
-}  // namespace text_46521b4b315e7b83
+}  // namespace text_305adae252ab4214
 }  // namespace ETLMON_BUILD
 }  // namespace example

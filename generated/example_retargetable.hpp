@@ -39,9 +39,10 @@
 #endif
 
 namespace example {
-// Another class for each set of compiler flags, and for each text of this header.
+// One program may hold several headers of this name, and units with other flags:
+// each has a class of its own.
 inline namespace ETLMON_BUILD {
-inline namespace text_3de5231eed14cd1d {
+inline namespace text_77e250d07347b312 {
 
 /// The inputs of one step. In Inputs{} all of them are missing.
 struct Inputs {
@@ -222,6 +223,6 @@ inline Verdicts Monitor::judge(const Atoms& now) noexcept {
 /// counted (etlmon/params/shadow.hpp).
 using Shadow = etlmon::Shadow<Monitor, Inputs, Verdicts, 1>;
 
-}  // namespace text_3de5231eed14cd1d
+}  // namespace text_77e250d07347b312
 }  // namespace ETLMON_BUILD
 }  // namespace example

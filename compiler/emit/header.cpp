@@ -183,10 +183,11 @@ std::uint64_t shape(const plan::Plan& plan, const std::string& version) {
 /// The inline namespace of one text, while its digest is not known yet.
 constexpr std::string_view kOfText = "text_0000000000000000";
 
-/// Puts the digest of the header into the name of its namespace, so that no two headers have inline
-/// functions or variables of one name: the linker would keep only one of them.
+/// Puts the digest of the header's code into the name of its namespace, so that no two headers have
+/// different inline functions or variables of one name: the linker would keep only one of them.
+/// Comments do not count: the numbers of a retargetable class stand in no other place.
 std::string with_digest(std::string text) {
-    const std::string name = fmt::format("text_{:016x}", data::xxh64(text));
+    const std::string name = fmt::format("text_{:016x}", data::xxh64(without_comments(text)));
     for (const std::string_view before : {"\ninline namespace ", "\n}  // namespace "}) {
         const std::size_t at = text.find(fmt::format("{}{}", before, kOfText));
         text.replace(at + before.size(), kOfText.size(), name);
@@ -209,8 +210,8 @@ std::string header(const plan::Plan& plan, const Options& options) {
     print_includes(out, context, options.version, !options.standalone.empty());
     Printer inner;
     inner.line("namespace {} {{", context.name_space);
-    inner.line(
-        "// Another class for each set of compiler flags, and for each text of this header.");
+    inner.line("// One program may hold several headers of this name, and units with other flags:");
+    inner.line("// each has a class of its own.");
     inner.line("inline namespace ETLMON_BUILD {");
     inner.line("inline namespace {} {{", kOfText);
     inner.line();
