@@ -40,7 +40,7 @@ run_tests() {
 for preset in "${presets[@]}"; do
     start=$SECONDS
     configure "$preset" "${options[@]}"
-    build "$preset" all
+    build "$preset" "$([ "$preset" = sanitized ] && echo all_tests || echo all)"
     printf '%-9s built %23d s\n' "$preset" $((SECONDS - start))
     start=$SECONDS
     run_tests "$preset"

@@ -1,6 +1,7 @@
 // Runs a fuzz target on files, for compilers without libFuzzer.
-// Takes: files and folders. Gives: exit status 0 if every file passed the target. A finding stops
-// the program, and so does an input that takes more than kMostSeconds of processor time.
+// Takes: the name of a target, files and folders. Gives: exit status 0 if every file passed the
+// target. A finding stops the program, and so does an input that takes more than kMostSeconds of
+// processor time.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -13,7 +14,21 @@
 
 #include "fuzz_target.hpp"
 
+#define FUZZER(name) extern "C" int name(const std::uint8_t* data, std::size_t size);
+#include "fuzzers.inc"
+#undef FUZZER
+
 namespace {
+
+struct Target {
+    const char* name;
+    int (*run)(const std::uint8_t* data, std::size_t size);
+};
+constexpr Target kTargets[] = {
+#define FUZZER(name) {#name, name},
+#include "fuzzers.inc"
+#undef FUZZER
+};
 
 #if defined(__SANITIZE_ADDRESS__) || defined(_GLIBCXX_DEBUG)
 constexpr rlim_t kMostSeconds = 60;
@@ -36,8 +51,15 @@ void limit_time() {
 
 int main(int argc, char** argv) {
     namespace fs = std::filesystem;
+    const std::string name = argc > 1 ? argv[1] : "";
+    const auto target = std::find_if(std::begin(kTargets), std::end(kTargets),
+                                     [&](const Target& one) { return one.name == name; });
+    if (target == std::end(kTargets)) {
+        std::printf("no target '%s'\n", name.c_str());
+        return 2;
+    }
     std::vector<fs::path> files;
-    for (int i = 1; i < argc; ++i) {
+    for (int i = 2; i < argc; ++i) {
         if (fs::is_directory(argv[i]))
             std::copy(fs::directory_iterator(argv[i]), {}, std::back_inserter(files));
         else
@@ -54,7 +76,7 @@ int main(int argc, char** argv) {
         }
         const std::string bytes((std::istreambuf_iterator<char>(file)), {});
         limit_time();
-        LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+        target->run(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
     }
     std::printf("%zu files\n", files.size());
     return files.empty() ? 1 : 0;

@@ -94,12 +94,12 @@ as_base g++ -O2 -std=gnu++17 -Wall
 tiny g++ -Os
 debug g++ -O0
 fast g++ -O2 -ffast-math
-finite g++ -O2 -ffinite-math-only
+finite g++ -O0 -ffinite-math-only
 tiny_fast g++ -Os -ffast-math
-plain g++ -O2 -DETLMON_NO_DISPATCH
-scalar g++ -O2 -DETLMON_PORTABLE
+plain g++ -O0 -DETLMON_NO_DISPATCH
+scalar g++ -O0 -DETLMON_PORTABLE
 v2 g++ -O0 -march=x86-64-v2
-v3 g++ -O2 -march=x86-64-v3
+v3 g++ -O0 -march=x86-64-v3
 v4 g++ -O1 -march=x86-64-v4
 as_v4 g++ -O1 -march=skylake-avx512 -mtune=generic
 avx2 g++ -O0 -mavx2

@@ -13,14 +13,14 @@
 namespace etlc::data {
 namespace {
 
-enum class Kind : std::uint8_t { plain, adaptive };
+enum class Mode : std::uint8_t { plain, adaptive };
 
 struct Result {
     std::string name;
     std::vector<float> values;
     std::map<std::string, std::optional<double>> bounds;
     bool alarm = false;
-    Kind kind = Kind::plain;
+    Mode kind = Mode::plain;
 
     friend bool operator==(const Result&, const Result&) = default;
 };
@@ -35,7 +35,7 @@ Result example() {
             .values = {-0.0F, 1.5F, std::numeric_limits<float>::infinity()},
             .bounds = {{"", std::nullopt}, {"near", 0.25}, {"far", -4.0}},
             .alarm = true,
-            .kind = Kind::adaptive};
+            .kind = Mode::adaptive};
 }
 
 TEST(Pack, ReadsWhatItWrote) {
@@ -71,7 +71,7 @@ TEST(Pack, RefusesFlagsThatAreNeitherOneNorZero) {
 
 TEST(Pack, RefusesNumbersThatAreTooWide) {
     EXPECT_FALSE(unpacked<float>(packed(std::uint64_t{1} << 32U)));
-    EXPECT_FALSE(unpacked<Kind>(packed(std::uint64_t{256})));
+    EXPECT_FALSE(unpacked<Mode>(packed(std::uint64_t{256})));
 }
 
 TEST(Pack, RefusesKeysThatAreOutOfOrderOrTwice) {
