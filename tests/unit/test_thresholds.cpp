@@ -344,7 +344,7 @@ TEST(Thresholds, MoreValuesThanAreRead) {
 }
 
 TEST(Thresholds, TheExampleOfTheDocumentsIsSound) {
-    const std::string page = tests::file_bytes(ETLC_SOURCE_DIR "/docs/data.md");
+    const std::string page = tests::file_bytes(ETLC_SOURCE_DIR "/docs/calibration.md");
     const std::size_t begin = page.find("```json\n") + 8;
     const auto file = parse(page.substr(begin, page.find("```", begin) - begin), "x");
     ASSERT_TRUE(file) << file.failure().message;
