@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "artifacts/file.hpp"
 #include "data/arrays/array.hpp"
 #include "data/files/hash.hpp"
-#include "data/frames/reference.hpp"
 #include "data/text/quote.hpp"
 
 namespace etlc::embedded {
@@ -39,11 +39,10 @@ void encoder_members(Archive& archive, auto& encoder, const std::string& array) 
     archive("dimension", dimension);
     std::string found = fingerprint(encoder);
     archive("fingerprint", found, Hash{});
-    const std::uint64_t columns = encoder.references.size() / data::kReferenceFrames;
-    const auto shape =
-        archive("references",
-                artifacts::Array{array, {data::kReferenceFrames, columns}, "frames x dimension"},
-                encoder.references, artifacts::Presence::where_any);
+    const std::uint64_t columns = encoder.references.size() / kReferenceFrames;
+    const auto shape = archive(
+        "references", artifacts::Array{array, {kReferenceFrames, columns}, "frames x dimension"},
+        encoder.references, artifacts::Presence::where_any);
     if constexpr (Archive::kReads) {
         encoder.dimension = static_cast<std::uint32_t>(
             std::min<std::uint64_t>(dimension, std::numeric_limits<std::uint32_t>::max()));
@@ -53,7 +52,7 @@ void encoder_members(Archive& archive, auto& encoder, const std::string& array) 
                             "it",
                             in_quotes(archive.place("fingerprint")), in_quotes(found),
                             in_quotes(fingerprint(encoder))));
-        const std::vector<std::uint64_t> expected = {data::kReferenceFrames, encoder.dimension};
+        const std::vector<std::uint64_t> expected = {kReferenceFrames, encoder.dimension};
         if (!shape.empty() && shape != expected)
             archive.refuse(fmt::format("{} has the shape {} x {}, expected {} x {}",
                                        in_quotes(archive.place("references")), shape[0], shape[1],
@@ -124,6 +123,16 @@ diag::Result<Said> said_in(const std::string& path) {
 }
 
 }  // namespace
+
+double relative_difference(const float* z, const float* r, std::size_t elements) {
+    double difference = 0, length = 0;
+    for (std::size_t i = 0; i < elements; ++i) {
+        difference += (double{z[i]} - r[i]) * (double{z[i]} - r[i]);
+        length += double{r[i]} * r[i];
+    }
+    const double relative = std::sqrt(difference / (length > 0 ? length : 1));
+    return std::isfinite(relative) ? relative : std::numeric_limits<double>::infinity();
+}
 
 std::string fingerprint(const Encoder& encoder) {
     return fmt::format("{:016x}", data::xxh64(fmt::format("{}\n{}\n{}\n", encoder.model,

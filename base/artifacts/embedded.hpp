@@ -4,6 +4,7 @@
 // encoder's fingerprint follows from its fields. check/ decides whether an entry fits the spec.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -18,14 +19,21 @@ namespace etlc::embedded {
 inline constexpr std::string_view kOnnxRuntime = "ONNX Runtime ";
 inline constexpr std::string_view kCommand = "command";
 
+/// Reference frames: pictures that etlc draws, the same in every version. Two encoders are the same
+/// if they make the same embeddings of these.
+inline constexpr std::uint32_t kReferenceFrames = 4;
+/// The relative difference up to which embeddings of a frame are by the same encoder.
+inline constexpr double kSameEncoder = 1e-3;
+/// Returns |z - r| / |r|, or |z| where r is 0; infinity where it is not finite.
+double relative_difference(const float* z, const float* r, std::size_t elements);
+
 struct Encoder {
     std::string declaration;  ///< canonical text, "load(\"dino.onnx\"), image [224, 224]"
     std::string model;        ///< hash of the model's bytes, 16 hex digits
     std::string settings;     ///< canonical text, with those of the .json beside the model
     std::string kind;         ///< kOnnxRuntime and its version, or kCommand
     std::uint32_t dimension = 0;
-    /// Its embeddings of the reference frames (data/frames/reference.hpp), a row each; empty in
-    /// files of earlier versions.
+    /// Its embeddings of the reference frames, a row each; empty in files of earlier versions.
     std::vector<float> references;
 };
 

@@ -6,8 +6,8 @@
 
 #include <string>
 
-#include "data/hdf5/hdf5.hpp"
 #include "fuzz_target.hpp"
+#include "recordings/hdf5/hdf5.hpp"
 
 namespace {
 

@@ -1,8 +1,8 @@
 // Reads incidents: any bytes give an incident whose rows have one shape, or an error. The target
 // corrects the checksum, because hardly any other input would pass it.
 #include "data/files/hash.hpp"
-#include "data/incident.hpp"
 #include "fuzz_target.hpp"
+#include "recordings/incident.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* found, std::size_t size) {
     using namespace etlc;

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "data/parquet/rows.hpp"
 #include "fuzz_target.hpp"
+#include "recordings/parquet/rows.hpp"
 
 namespace {
 

@@ -12,11 +12,11 @@
 
 #include "artifacts/embedded.hpp"
 #include "data/arrays/npz_writer.hpp"
-#include "data/frames/frames.hpp"
-#include "data/frames/protocol.hpp"
 #include "embed/encoder.hpp"
 #include "embed/worker/onnx.hpp"
 #include "fuzz_target.hpp"
+#include "recordings/frames/frames.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace {
 

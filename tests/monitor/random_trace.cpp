@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "data/recordings/open.hpp"
 #include "random.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::tests {
 namespace {

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <locale>
 
-#include "data/recordings/open.hpp"
 #include "data/text/number.hpp"
 #include "data/traces/csv.hpp"
 #include "data/traces/trace_formats.hpp"
 #include "npy_bytes.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::data {
 namespace {

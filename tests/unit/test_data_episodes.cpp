@@ -7,9 +7,9 @@
 #include <fstream>
 #include <set>
 
-#include "data/recordings/episodes.hpp"
-#include "data/recordings/open.hpp"
 #include "data/traces/trace_formats.hpp"
+#include "recordings/episodes.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::data {
 namespace {

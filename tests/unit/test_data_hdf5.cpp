@@ -9,9 +9,9 @@
 #include <fstream>
 #include <string>
 
-#include "data/hdf5/hdf5.hpp"
-#include "data/recordings/episodes.hpp"
-#include "data/recordings/open.hpp"
+#include "recordings/episodes.hpp"
+#include "recordings/hdf5/hdf5.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::data {
 namespace {

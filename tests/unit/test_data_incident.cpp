@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "data/files/hash.hpp"
-#include "data/incident.hpp"
 #include "etlmon/temporal/recorder.hpp"
+#include "recordings/incident.hpp"
 
 namespace etlc::data {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "data/recordings/open.hpp"
 #include "data/traces/trace_formats.hpp"
 #include "npy_bytes.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::data {
 namespace {

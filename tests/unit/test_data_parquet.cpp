@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "data/datasets/metadata.hpp"
-#include "data/parquet/table.hpp"
+#include "recordings/datasets/dataset.hpp"
+#include "recordings/parquet/table.hpp"
 
 namespace etlc::data {
 namespace {

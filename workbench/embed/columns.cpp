@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "data/files/file.hpp"
-#include "data/recordings/open.hpp"
 #include "data/text/number.hpp"
 #include "data/text/quote.hpp"
 #include "data/traces/csv.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::embed {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
 #include "embed/recordings.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::embed {
 

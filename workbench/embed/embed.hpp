@@ -13,10 +13,10 @@
 
 #include "artifacts/embedded.hpp"
 #include "check/model/model.hpp"
-#include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
 #include "embed/encoder.hpp"
 #include "embed/recordings.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::embed {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "artifacts/embedded.hpp"
-#include "data/frames/protocol.hpp"
 #include "data/text/quote.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace etlc::embed {
 

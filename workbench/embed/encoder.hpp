@@ -14,8 +14,8 @@
 
 #include "check/model/model.hpp"
 #include "data/files/child.hpp"
-#include "data/frames/frames.hpp"
 #include "diag/diag.hpp"
+#include "recordings/frames/frames.hpp"
 
 namespace etlc::embed {
 

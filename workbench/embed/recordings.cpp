@@ -8,13 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "data/datasets/dataset.hpp"
-#include "data/datasets/trace.hpp"
 #include "data/files/file.hpp"
-#include "data/frames/frames.hpp"
-#include "data/hdf5/hdf5.hpp"
-#include "data/recordings/image_arrays.hpp"
-#include "data/recordings/open.hpp"
+#include "recordings/datasets/dataset.hpp"
+#include "recordings/datasets/trace.hpp"
+#include "recordings/frames/frames.hpp"
+#include "recordings/hdf5/hdf5.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::embed {
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "data/frames/frames.hpp"
 #include "diag/diag.hpp"
+#include "recordings/frames/frames.hpp"
 
 namespace etlc::embed {
 

@@ -8,8 +8,8 @@
 #include "data/arrays/array.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/frames/reference.hpp"
 #include "embed/embed.hpp"
+#include "recordings/frames/frames.hpp"
 
 namespace etlc::embed {
 
@@ -64,15 +64,15 @@ private:
     std::optional<Trouble> in_two_ways(const std::vector<float>& first,
                                        const std::vector<float>& again) const {
         const double difference =
-            data::relative_difference(again.data(), first.data(), again.size());
-        if (difference <= data::kSameEncoder) return std::nullopt;
+            embedded::relative_difference(again.data(), first.data(), again.size());
+        if (difference <= embedded::kSameEncoder) return std::nullopt;
         return Trouble{
             {Code::encoder_failed,
              fmt::format("'{}' gives another embedding of the same frame the second time, at a "
                          "distance of {:.2g} times its length, expected at most {:g}: probably "
                          "it is in training mode, where dropout draws random numbers; export it "
                          "after model.eval()",
-                         encoder_.name, difference, data::kSameEncoder)}};
+                         encoder_.name, difference, embedded::kSameEncoder)}};
     }
 
     bool add(Encoder& running, const Encoded& encoded) {

@@ -9,8 +9,8 @@
 #include <thread>
 #include <utility>
 
-#include "data/recordings/open.hpp"
 #include "data/text/quote.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::episodes {
 

@@ -9,10 +9,10 @@
 
 #include "artifacts/embedded.hpp"
 #include "check/encoders/encoders.hpp"
-#include "data/datasets/trace.hpp"
 #include "data/text/quote.hpp"
 #include "data/traces/trace_formats.hpp"
 #include "episodes/data_warnings.hpp"
+#include "recordings/datasets/trace.hpp"
 
 namespace etlc::episodes {
 

@@ -12,14 +12,14 @@
 
 #include "check/model/model.hpp"
 #include "data/files/hash.hpp"
-#include "data/recordings/episodes.hpp"
-#include "data/recordings/open.hpp"
 #include "data/spill/spool.hpp"
 #include "diag/diag.hpp"
 #include "episodes/labels/labels.hpp"
 #include "episodes/leaks/leaks.hpp"
 #include "episodes/truth.hpp"
 #include "plan/evaluate/inputs.hpp"
+#include "recordings/episodes.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::episodes {
 

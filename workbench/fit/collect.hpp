@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
 #include "fit/algebra/moments.hpp"
 #include "fit/even_frames.hpp"
 #include "fit/readings.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::fit {
 

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "check/guarantees/provenance.hpp"
-#include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
 #include "episodes/recording.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::fit {
 

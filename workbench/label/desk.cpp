@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "data/files/file.hpp"
-#include "data/recordings/episodes.hpp"
-#include "data/recordings/open.hpp"
 #include "data/text/quote.hpp"
 #include "episodes/labels/episode_names.hpp"
 #include "plan/evaluate/inputs.hpp"
+#include "recordings/episodes.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::label {
 

@@ -9,12 +9,12 @@
 #include <utility>
 
 #include "calibrate/fit.hpp"
-#include "data/recordings/open.hpp"
 #include "data/text/quote.hpp"
 #include "episodes/leaks/leaks.hpp"
 #include "episodes/ranking/auroc.hpp"
 #include "episodes/replay.hpp"
 #include "plan/plan.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::label {
 

@@ -9,14 +9,13 @@
 #include <set>
 #include <utility>
 
-#include "data/datasets/dataset.hpp"
-#include "data/datasets/trace.hpp"
 #include "data/files/file.hpp"
-#include "data/hdf5/hdf5.hpp"
-#include "data/recordings/image_arrays.hpp"
-#include "data/recordings/open.hpp"
 #include "data/text/number.hpp"
 #include "data/text/quote.hpp"
+#include "recordings/datasets/dataset.hpp"
+#include "recordings/datasets/trace.hpp"
+#include "recordings/hdf5/hdf5.hpp"
+#include "recordings/open.hpp"
 #include "report/blob.hpp"
 
 namespace etlc::report {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "data/frames/frames.hpp"
 #include "diag/diag.hpp"
+#include "recordings/frames/frames.hpp"
 
 namespace etlc::report {
 

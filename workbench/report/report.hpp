@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "artifacts/thresholds.hpp"
-#include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
 #include "evaluate/evaluate.hpp"
 #include "pipeline/compile.hpp"
+#include "recordings/open.hpp"
 #include "report/blob.hpp"
 #include "report/pictures.hpp"
 #include "report/tracks.hpp"

@@ -5,7 +5,7 @@
 
 #include "check/encoders/encoded.hpp"
 #include "data/files/file.hpp"
-#include "data/frames/frames.hpp"
+#include "recordings/frames/frames.hpp"
 #include "report/document.hpp"
 #include "report/pictures.hpp"
 

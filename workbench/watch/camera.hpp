@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "data/frames/live.hpp"
 #include "data/traces/trace.hpp"
+#include "recordings/frames/frames.hpp"
 #include "watch/encoders.hpp"
 #include "watch/step_clock.hpp"
 #include "watch/stop.hpp"

@@ -8,7 +8,7 @@
 
 #include "check/encoders/encoders.hpp"
 #include "data/files/file.hpp"
-#include "data/frames/reference.hpp"
+#include "recordings/frames/frames.hpp"
 
 namespace etlc::watch {
 
@@ -87,7 +87,7 @@ bool Encoders::compare(Index input, const Stop& stop) {
     const check::Encoder& of = model_.encoders[model_.inputs[input].encoder];
     embed::Encoder& encoder = *encoders_.at(input);
     const std::vector<float>& expected = of.references;
-    for (std::uint32_t frame = 0; frame < data::kReferenceFrames; ++frame) {
+    for (std::uint32_t frame = 0; frame < embedded::kReferenceFrames; ++frame) {
         std::vector<float> row;
         bool is_there = false;
         const auto done = [&](std::vector<float> found) {
@@ -101,19 +101,19 @@ bool Encoders::compare(Index input, const Stop& stop) {
             data::Child::await({&encoder.child()}, {stop.descriptor()}, kPatienceMilliseconds);
             if (stop.is_asked() || !take(input)) return false;
         }
-        if (expected.size() != data::kReferenceFrames * row.size())
+        if (expected.size() != embedded::kReferenceFrames * row.size())
             return fail(input, {Code::other_encoder,
                                 fmt::format("what '{}' made of the reference frames is not known: "
                                             "run etlc embed again",
                                             of.name)});
         const double difference =
-            data::relative_difference(row.data(), &expected[frame * row.size()], row.size());
-        if (difference > data::kSameEncoder)
+            embedded::relative_difference(row.data(), &expected[frame * row.size()], row.size());
+        if (difference > embedded::kSameEncoder)
             return fail(input, {Code::other_encoder,
                                 fmt::format("'{}' makes other embeddings than when `etlc embed` "
                                             "ran: of reference frame {} they differ by {:.2g}, "
                                             "expected at most {}",
-                                            of.name, frame, difference, data::kSameEncoder)});
+                                            of.name, frame, difference, embedded::kSameEncoder)});
     }
     return true;
 }

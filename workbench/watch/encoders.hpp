@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "data/frames/frames.hpp"
 #include "diag/diag.hpp"
 #include "embed/embed.hpp"
+#include "recordings/frames/frames.hpp"
 #include "watch/stop.hpp"
 
 namespace etlc::watch {

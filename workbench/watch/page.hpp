@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "data/files/descriptor.hpp"
-#include "data/frames/frames.hpp"
 #include "diag/diag.hpp"
 #include "label/service.hpp"
 #include "plan/evaluate/evaluator.hpp"
+#include "recordings/frames/frames.hpp"
 
 namespace etlc::watch {
 

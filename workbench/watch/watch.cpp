@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "data/files/file.hpp"
-#include "data/frames/live.hpp"
 #include "episodes/data_warnings.hpp"
 #include "episodes/replay.hpp"
+#include "recordings/frames/frames.hpp"
 #include "source/escape.hpp"
 #include "watch/camera.hpp"
 #include "watch/changes.hpp"

@@ -9,10 +9,10 @@
 #include <string>
 #include <string_view>
 
-#include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
 #include "embed/encoder.hpp"
 #include "plan/program/program.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::watch {
 

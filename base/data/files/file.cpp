@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -22,6 +23,8 @@ namespace {
 struct CloseFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
+
+const std::vector<std::string> kImageEndings = {".png", ".jpg", ".jpeg"};
 
 }  // namespace
 
@@ -115,6 +118,55 @@ std::optional<std::vector<std::string>> paths_matching(const std::string& patter
     if (status != 0 && status != GLOB_NOMATCH) return std::nullopt;
     std::sort(paths.begin(), paths.end());
     return paths;
+}
+
+bool has_ending(const std::string& path, const std::vector<std::string>& endings) {
+    std::string small = path;
+    std::transform(small.begin(), small.end(), small.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return std::any_of(endings.begin(), endings.end(),
+                       [&](const std::string& ending) { return small.ends_with(ending); });
+}
+
+bool is_image(const std::string& path) {
+    return has_ending(path, kImageEndings);
+}
+
+std::string image_endings() {
+    return diag::alternatives(kImageEndings);
+}
+
+diag::Result<std::vector<std::string>> find_images(const std::string& folder,
+                                                   const std::string& path) {
+    const std::string prefix =
+        folder.empty() || std::filesystem::path(path).is_absolute() ? "" : folder + "/";
+    const std::string whole = prefix + path;
+    std::error_code error;
+    std::vector<std::string> images;
+    if (std::filesystem::is_directory(whole, error)) {
+        const std::string separator = path.empty() || path.ends_with('/') ? "" : "/";
+        for (const auto& entry : std::filesystem::directory_iterator(whole, error))
+            if (is_image(entry.path().string()))
+                images.push_back(path + separator + entry.path().filename().string());
+    } else if (!why_unreadable(whole)) {
+        if (!is_image(path))
+            return diag::Failure{
+                diag::Code::unreadable_image,
+                fmt::format("unknown kind of image, expected {}", image_endings())};
+        images.push_back(path);
+    } else {
+        const auto matches = paths_matching(literal(prefix) + path);
+        for (const std::string& match : matches.value_or(std::vector<std::string>{}))
+            if (is_image(match)) images.push_back(match.substr(prefix.size()));
+    }
+    std::sort(images.begin(), images.end());
+    if (images.empty())
+        return diag::Failure{
+            diag::Code::unreadable_image,
+            fmt::format("no such image, folder of images or pattern of some, expected "
+                        "files that end in {}",
+                        image_endings())};
+    return images;
 }
 
 }  // namespace etlc::data

@@ -60,4 +60,17 @@ std::string literal(const std::string& path);
 /// Returns the paths that match, sorted bytewise; nothing where a folder cannot be read.
 std::optional<std::vector<std::string>> paths_matching(const std::string& pattern);
 
+/// Returns whether a path has one of these endings, ".mp4", in any case.
+bool has_ending(const std::string& path, const std::vector<std::string>& endings);
+
+/// Returns whether the ending of a path is that of an image.
+bool is_image(const std::string& path);
+/// Returns ".png, .jpg or .jpeg".
+std::string image_endings();
+
+/// Finds the images that `path` names, an image, a folder or a pattern, relative to `folder`. They
+/// are sorted bytewise, whatever the file system or the locale. Failures are E1009.
+diag::Result<std::vector<std::string>> find_images(const std::string& folder,
+                                                   const std::string& path);
+
 }  // namespace etlc::data

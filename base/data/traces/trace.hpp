@@ -1,17 +1,15 @@
-// Recorded traces and episodes, read a step at a time.
+// Recorded traces and episodes, read a step at a time, and their paths.
 // Takes: the columns wanted and a file (.npz, .csv or .h5; FILE.h5:GROUP is the episode in a group
-// of it, FOLDER:3 an episode of a data set, data/datasets/trace.hpp). Gives: one sample a step,
-// missing ones marked. Keeps true: memory does not grow with the number of steps (.csv is streamed;
-// of an .npz member only a buffer is held, a Fortran-ordered T x D array is first unpacked to an
-// unnamed temporary file in $TMPDIR or /tmp; .h5 is read by a separate process,
-// data/hdf5/hdf5.hpp).
+// of it, FOLDER:3 an episode of a data set). Gives: one sample a step, missing ones marked. Keeps
+// true: memory does not grow with the number of steps (.csv is streamed; of an .npz member only a
+// buffer is held, a Fortran-ordered T x D array is first unpacked to an unnamed temporary file in
+// $TMPDIR or /tmp; .h5 is read by a separate process).
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "diag/diag.hpp"
@@ -46,5 +44,27 @@ public:
     /// Returns whether the file has this channel; false for optional ones only.
     virtual bool has(std::size_t channel) const = 0;
 };
+
+/// Opens a trace by its path. Failures do not repeat the path.
+using OpenTrace = diag::Result<std::unique_ptr<Trace>> (*)(const std::string& path,
+                                                           const std::vector<Channel>& channels);
+
+bool is_hdf5(const std::string& path);
+
+/// Returns whether a folder is a data set.
+bool is_dataset(const std::string& folder);
+
+/// "pusht:3", or "pusht:0:50" for the episodes from 0 to 49: the folder and the range.
+struct DatasetPath {
+    std::string folder;
+    std::uint64_t first = 0;
+    std::uint64_t end = UINT64_MAX;
+};
+/// Parses such a path; nothing where the folder is not a data set.
+std::optional<DatasetPath> dataset_path(const std::string& path);
+
+/// Returns the file of FILE.h5:GROUP, the folder of an episode of a data set, and any other path
+/// unchanged.
+std::string trace_file(const std::string& path);
 
 }  // namespace etlc::data

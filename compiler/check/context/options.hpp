@@ -6,6 +6,7 @@
 
 #include "artifacts/fitted.hpp"
 #include "artifacts/thresholds.hpp"
+#include "data/traces/trace.hpp"
 
 namespace etlc::check {
 
@@ -17,6 +18,9 @@ struct Setting {
 };
 
 struct Options {
+    /// Opens the recordings whose frames are rows of targets. The readers of most formats are in
+    /// the workbench, so whoever compiles a spec that has some gives their function.
+    data::OpenTrace open_trace = nullptr;
     /// Thresholds file; if empty, SPEC.thresholds.json beside the spec.
     std::string thresholds_path;
     /// Thresholds to use in place of a file.

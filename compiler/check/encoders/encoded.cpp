@@ -12,7 +12,6 @@
 #include "check/matrices/matrices.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/frames/frames.hpp"
 
 namespace etlc::check {
 

@@ -11,7 +11,8 @@
 #include "check/matrices/matrices.hpp"
 #include "check/numbers/decimal.hpp"
 #include "data/arrays/array.hpp"
-#include "data/recordings/open.hpp"
+#include "data/files/file.hpp"
+#include "data/traces/trace.hpp"
 
 namespace etlc::check {
 
@@ -60,8 +61,7 @@ bool take(Context& c, const ast::Frames& written, const Input& input, std::uint6
 
 void report(Context& c, const ast::Frames& written, const std::string& path,
             const diag::Failure& failure) {
-    diag::Diagnostic diagnostic = data::in_trace(failure, path);
-    diagnostic.notes.clear();  // they explain --map, which is for the episodes of a command
+    diag::Diagnostic diagnostic = data::in_file(failure, path);
     diagnostic.span = written.span;
     c.report_data(std::move(diagnostic), !exists(data::trace_file(path)));
 }
@@ -97,7 +97,7 @@ std::optional<Matrix> read_frames(Context& c, const ast::Frames& written) {
     const std::string path = beside_spec(c, written.path);
     c.dependencies.insert(data::trace_file(path));
     const auto trace =
-        data::open_trace(path, {{input->name, data::Channel::Kind::vector, input->dimension}});
+        c.options.open_trace(path, {{input->name, data::Channel::Kind::vector, input->dimension}});
     if (!trace) return report(c, written, path, trace.failure()), std::nullopt;
     if (input->encoder != kNone) {
         const auto marks = embedded::read_marks(path);

@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "data/frames/reference.hpp"
+#include "artifacts/embedded.hpp"
 #include "emit/context.hpp"
 #include "etlmon/reference.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 using check::Encoder;
 
 std::size_t dimension_of(const Encoder& encoder) {
-    return encoder.references.size() / data::kReferenceFrames;
+    return encoder.references.size() / embedded::kReferenceFrames;
 }
 
 /// Prints "{length, {sums}},", an etlmon::Reference.
@@ -66,9 +66,9 @@ void print_references(Printer& out, const Context& context) {
     for (const Encoder& encoder : context.model.encoders) {
         if (encoder.references.empty()) continue;
         out.open(fmt::format("inline constexpr etlmon::Reference {}[{}] = {{", encoder.name,
-                             data::kReferenceFrames));
+                             embedded::kReferenceFrames));
         const std::size_t dimension = dimension_of(encoder);
-        for (std::uint32_t frame = 0; frame < data::kReferenceFrames; ++frame)
+        for (std::uint32_t frame = 0; frame < embedded::kReferenceFrames; ++frame)
             print_sketch(out, &encoder.references[frame * dimension], dimension);
         out.close("};");
     }
@@ -79,7 +79,7 @@ void print_references(Printer& out, const Context& context) {
 void print_reference_interface(Printer& out, const Context& context) {
     if (!has_references(context)) return;
     print_doc(out, "The frames that 'etlc embed --write-reference FOLDER' writes.");
-    out.line("static constexpr uint32_t kReferenceFrames = {};", data::kReferenceFrames);
+    out.line("static constexpr uint32_t kReferenceFrames = {};", embedded::kReferenceFrames);
     for (const Encoder& encoder : context.model.encoders) {
         if (encoder.references.empty()) continue;
         const std::string difference = function_of(context, encoder, "difference");

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "data/recordings/open.hpp"
+#include "data/traces/trace.hpp"
 
 namespace etlc::plan {
 

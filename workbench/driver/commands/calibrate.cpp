@@ -8,12 +8,12 @@
 #include "check/check.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/recordings/open.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
 #include "library/version.hpp"
 #include "parse/parse.hpp"
+#include "recordings/open.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::driver {

@@ -9,13 +9,13 @@
 
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/frames/reference.hpp"
-#include "data/recordings/open.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/process/output_file.hpp"
 #include "embed/embed.hpp"
 #include "library/version.hpp"
 #include "parse/parse.hpp"
+#include "recordings/frames/frames.hpp"
+#include "recordings/open.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::driver {
@@ -129,7 +129,7 @@ std::optional<embed::Progress> make_episodes(const check::Model& model, const em
 
 std::vector<std::string> reference_paths(const std::string& folder) {
     std::vector<std::string> paths;
-    for (std::uint32_t i = 0; i < data::kReferenceFrames && !folder.empty(); ++i)
+    for (std::uint32_t i = 0; i < embedded::kReferenceFrames && !folder.empty(); ++i)
         paths.push_back((fs::path(folder) / fmt::format("reference-{}.png", i)).string());
     return paths;
 }
@@ -175,7 +175,7 @@ std::string constant(const embedded::Encoder& encoder) {
     return fmt::format(
         "  it gives {} for {} different pictures: its weights may be missing, or "
         "image, mean and deviation not those of its training\n",
-        is_zero ? "only zeros" : "one and the same embedding", data::kReferenceFrames);
+        is_zero ? "only zeros" : "one and the same embedding", embedded::kReferenceFrames);
 }
 
 std::string report(const check::Model& model, const embedded::File& file,

@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include "data/files/file.hpp"
-#include "data/recordings/open.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/commands/crossvalidate.hpp"
 #include "driver/process/output_file.hpp"
@@ -12,6 +11,7 @@
 #include "library/open.hpp"
 #include "library/version.hpp"
 #include "parse/parse.hpp"
+#include "recordings/open.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::driver {

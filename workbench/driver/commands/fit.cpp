@@ -1,6 +1,4 @@
 #include "fit/fit.hpp"
-#include "data/recordings/episodes.hpp"
-#include "data/recordings/open.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/commands/suggest_in_time.hpp"
 #include "driver/process/output_file.hpp"
@@ -8,6 +6,8 @@
 #include "fit/suggest/suggest.hpp"
 #include "library/version.hpp"
 #include "parse/parse.hpp"
+#include "recordings/episodes.hpp"
+#include "recordings/open.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::driver {

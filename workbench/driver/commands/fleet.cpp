@@ -13,10 +13,10 @@
 #include "data/files/descriptor.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/recordings/episodes.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
 #include "library/version.hpp"
+#include "recordings/episodes.hpp"
 
 namespace etlc::driver {
 

@@ -9,13 +9,13 @@
 
 #include "check/model/fingerprint.hpp"
 #include "data/files/file.hpp"
-#include "data/incident.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/commands/measurements.hpp"
 #include "driver/process/output_file.hpp"
 #include "etlmon/temporal/recorder.hpp"
 #include "plan/plan.hpp"
 #include "plan/recorder_plan.hpp"
+#include "recordings/incident.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::driver {

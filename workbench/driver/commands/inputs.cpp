@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "data/files/file.hpp"
-#include "data/recordings/open.hpp"
 #include "data/text/quote.hpp"
 #include "driver/commands/commands.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::driver {
 

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "check/check.hpp"
-#include "data/recordings/episodes.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/process/output_file.hpp"
 #include "fit/fit.hpp"
@@ -13,6 +12,7 @@
 #include "label/serve.hpp"
 #include "library/version.hpp"
 #include "parse/parse.hpp"
+#include "recordings/episodes.hpp"
 
 namespace etlc::driver {
 

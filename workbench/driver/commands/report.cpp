@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "data/recordings/episodes.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
 #include "episodes/data_warnings.hpp"
+#include "recordings/episodes.hpp"
 
 namespace etlc::driver {
 

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "check/check.hpp"
-#include "data/recordings/open.hpp"
 #include "embed/encoder.hpp"
 #include "episodes/labels/labels.hpp"
 #include "episodes/shared/sharing.hpp"
 #include "episodes/variants/variants.hpp"
 #include "pipeline/compile.hpp"
+#include "recordings/open.hpp"
 #include "report/report.hpp"
 
 namespace etlc::driver {
@@ -35,7 +35,7 @@ struct ShardRequest {
 struct Request : pipeline::Options {
     /// Settings of constants, and the files of thresholds, fitted entries and embeddings; an empty
     /// path stands for the file beside the spec.
-    check::Options check;
+    check::Options check = {.open_trace = data::open_trace};
     std::string output;  ///< -o; "-" is standard output, empty the usual place of the command
 
     std::vector<std::string> data;  ///< episodes or recordings: files, folders and patterns

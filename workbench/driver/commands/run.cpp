@@ -9,8 +9,6 @@
 #include <vector>
 
 #include "data/files/file.hpp"
-#include "data/recordings/episodes.hpp"
-#include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/process/output_file.hpp"
@@ -20,6 +18,8 @@
 #include "etlmon/temporal/verdict.hpp"
 #include "plan/evaluate/evaluator.hpp"
 #include "plan/recorder_plan.hpp"
+#include "recordings/episodes.hpp"
+#include "recordings/open.hpp"
 #include "source/escape.hpp"
 #include "watch/changes.hpp"
 #include "watch/summary.hpp"

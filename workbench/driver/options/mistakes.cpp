@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "check/names/reserved.hpp"
-#include "data/recordings/open.hpp"
 #include "data/text/number.hpp"
 #include "data/text/quote.hpp"
 #include "diag/diag.hpp"
@@ -21,6 +20,7 @@
 #include "driver/process/output_file.hpp"
 #include "episodes/shared/part.hpp"
 #include "library/settings.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::driver {
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "data/recordings/open.hpp"
 #include "data/text/number.hpp"
 #include "data/text/quote.hpp"
 #include "driver/options/mistakes.hpp"
 #include "driver/options/table.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::driver {
 

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "data/recordings/open.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/options/mistakes.hpp"
 #include "driver/options/option.hpp"
 #include "driver/options/table.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::driver {
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "data/files/file.hpp"
-#include "data/recordings/open.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::driver {
 

@@ -4,9 +4,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "data/frames/protocol.hpp"
 #include "embed/worker/network.hpp"
 #include "embed/worker/worker.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace etlc::embed::worker {
 

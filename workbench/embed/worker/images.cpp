@@ -15,9 +15,9 @@
 
 #include <jerror.h>
 
-#include "data/frames/protocol.hpp"
 #include "embed/worker/prepare.hpp"
 #include "embed/worker/worker.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace etlc::embed::worker {
 

@@ -8,10 +8,10 @@
 #include <string_view>
 #include <thread>
 
-#include "data/frames/protocol.hpp"
 #include "embed/worker/pace.hpp"
 #include "embed/worker/pictures.hpp"
 #include "embed/worker/worker.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace etlc::embed::worker {
 

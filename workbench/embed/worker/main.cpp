@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "data/frames/protocol.hpp"
 #include "embed/worker/worker.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace etlc::embed::worker {
 

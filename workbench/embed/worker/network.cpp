@@ -6,8 +6,8 @@
 #include <numeric>
 #include <regex>
 
-#include "data/frames/protocol.hpp"
 #include "embed/worker/worker.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace etlc::embed::worker {
 

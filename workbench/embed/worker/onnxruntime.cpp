@@ -16,8 +16,8 @@
 #include <string_view>
 #include <vector>
 
-#include "data/frames/protocol.hpp"
 #include "embed/worker/worker.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace etlc::embed::worker {
 

@@ -10,8 +10,8 @@ extern "C" {
 #include <cmath>
 #include <cstdio>
 
-#include "data/frames/protocol.hpp"
 #include "embed/worker/worker.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace etlc::embed::worker {
 

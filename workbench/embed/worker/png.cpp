@@ -1,8 +1,8 @@
 // Writes frames as PNG.
 #include <png.h>
 
-#include "data/frames/protocol.hpp"
 #include "embed/worker/worker.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace etlc::embed::worker {
 

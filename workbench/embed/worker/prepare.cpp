@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "data/frames/protocol.hpp"
 #include "embed/worker/worker.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace etlc::embed::worker {
 

@@ -11,10 +11,10 @@
 #include <string>
 #include <string_view>
 
-#include "data/frames/protocol.hpp"
 #include "embed/worker/pace.hpp"
 #include "embed/worker/pictures.hpp"
 #include "embed/worker/worker.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace etlc::embed::worker {
 

@@ -1,6 +1,6 @@
 // etlc-embed-video: the only part that loads FFmpeg, whose libraries are many.
-#include "data/frames/protocol.hpp"
 #include "embed/worker/worker.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace etlc::embed::worker {
 

@@ -10,7 +10,7 @@
 #include <exception>
 #include <new>
 
-#include "data/frames/protocol.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace etlc::embed::worker {
 

@@ -1,7 +1,7 @@
 // etlc-embed and etlc-embed-video: decode images and video and run networks, in separate processes.
 // Takes: the words of a call, and frames on standard input. Gives: frames or embeddings on standard
-// output, by the protocol of data/frames/protocol.hpp. Keeps true: an error is one line on standard
-// error and an exit status of that header; nothing is written after it.
+// output, by the protocol of recordings/frames/protocol.hpp. Keeps true: an error is one line on
+// standard error and an exit status of that header; nothing is written after it.
 #pragma once
 
 #include <cstdint>

@@ -14,9 +14,9 @@
 #include <tuple>
 #include <vector>
 
-#include "data/recordings/episodes.hpp"
-#include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
+#include "recordings/episodes.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::episodes {
 

@@ -5,10 +5,10 @@
 #include <set>
 #include <string_view>
 
-#include "data/datasets/dataset.hpp"
-#include "data/hdf5/hdf5.hpp"
-#include "data/recordings/episodes.hpp"
-#include "data/recordings/open.hpp"
+#include "recordings/datasets/dataset.hpp"
+#include "recordings/episodes.hpp"
+#include "recordings/hdf5/hdf5.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::episodes {
 

@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
 #include "episodes/kept/kept.hpp"
 #include "episodes/labels/label.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::episodes {
 

@@ -9,13 +9,13 @@
 #include <set>
 #include <utility>
 
-#include "data/datasets/dataset.hpp"
 #include "data/files/file.hpp"
-#include "data/recordings/episodes.hpp"
 #include "data/text/quote.hpp"
 #include "episodes/labels/episode_names.hpp"
 #include "episodes/labels/labels.hpp"
 #include "episodes/labels/table.hpp"
+#include "recordings/datasets/dataset.hpp"
+#include "recordings/episodes.hpp"
 
 namespace etlc::episodes {
 

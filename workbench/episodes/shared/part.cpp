@@ -10,9 +10,9 @@
 #include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/recordings/open.hpp"
 #include "data/spill/pack.hpp"
 #include "data/text/quote.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::episodes {
 

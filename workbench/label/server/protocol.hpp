@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "data/frames/protocol.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace etlc::label::protocol {
 

@@ -1,8 +1,8 @@
 // Queries: measurements, lets, counts, explanations and incidents of a step; encoders.
 #include <cstring>
 
-#include "data/frames/reference.hpp"
 #include "library/interface/call.hpp"
+#include "recordings/frames/frames.hpp"
 
 namespace etlc::library {
 
@@ -18,7 +18,7 @@ etlc_status refuse_undecided(const Session& session, std::uint32_t monitor) {
                   session.plan().monitors[monitor].name);
 }
 
-static_assert(ETLC_REFERENCE_FRAMES == data::kReferenceFrames);
+static_assert(ETLC_REFERENCE_FRAMES == embedded::kReferenceFrames);
 
 /// Returns the encoder of this name, of the only one where there is no name; null where the call
 /// has been refused.
@@ -135,10 +135,10 @@ etlc_status etlc_encoder_difference(etlc_session session, const char* encoder, u
         etlc_status refused = ETLC_OK;
         const check::Encoder* const found = find_encoder(opened, encoder, refused);
         if (found == nullptr) return refused;
-        if (frame >= data::kReferenceFrames)
+        if (frame >= embedded::kReferenceFrames)
             return refuse(ETLC_NO_SUCH, "there is no reference frame {}, only {}", frame,
-                          data::kReferenceFrames);
-        const std::size_t dimension = found->references.size() / data::kReferenceFrames;
+                          embedded::kReferenceFrames);
+        const std::size_t dimension = found->references.size() / embedded::kReferenceFrames;
         if (dimension == 0)
             return refuse(ETLC_NOT_KEPT,
                           "what encoder '{}' makes of the reference frames is not known: run etlc "
@@ -147,8 +147,8 @@ etlc_status etlc_encoder_difference(etlc_session session, const char* encoder, u
         if (elements != dimension)
             return refuse(ETLC_WRONG_NUMBER, "embedding has {} elements, encoder '{}' makes {}",
                           elements, found->name, dimension);
-        *difference =
-            data::relative_difference(embedding, &found->references[frame * dimension], dimension);
+        *difference = embedded::relative_difference(
+            embedding, &found->references[frame * dimension], dimension);
         return ETLC_OK;
     });
 }

@@ -10,6 +10,7 @@
 #include "library/open.hpp"
 #include "library/settings.hpp"
 #include "library/version.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::library {
 
@@ -17,7 +18,7 @@ namespace {
 
 /// The options of a compilation.
 struct Wish {
-    check::Options check;
+    check::Options check = {.open_trace = data::open_trace};
     pipeline::Options plan;
 };
 

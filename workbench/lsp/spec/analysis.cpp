@@ -4,6 +4,7 @@
 
 #include "lsp/text/uri.hpp"
 #include "parse/parse.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::lsp {
 
@@ -13,6 +14,7 @@ Analysis::Analysis(std::string path, std::string text, Encoding encoding,
     spec = parse::parse(file, sink);
     has_syntax_errors = sink.has_errors();
     check::Options options;
+    options.open_trace = data::open_trace;
     options.allow_missing = true;
     checked =
         std::make_unique<const check::Inspected>(check::inspect(spec, file, options, known, sink));
