@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "artifacts/embedded.hpp"
 #include "check/encoders/encoded.hpp"
 #include "check/encoders/encoders.hpp"
 #include "data/arrays/array.hpp"

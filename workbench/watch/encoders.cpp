@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "artifacts/embedded.hpp"
 #include "check/encoders/encoders.hpp"
 #include "data/files/file.hpp"
 #include "recordings/frames/frames.hpp"

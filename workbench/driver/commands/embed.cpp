@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "artifacts/embedded.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "driver/commands/commands.hpp"

@@ -1,8 +1,8 @@
 // Queries: measurements, lets, counts, explanations and incidents of a step; encoders.
 #include <cstring>
 
+#include "artifacts/embedded.hpp"
 #include "library/interface/call.hpp"
-#include "recordings/frames/frames.hpp"
 
 namespace etlc::library {
 
