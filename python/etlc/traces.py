@@ -172,7 +172,7 @@ def incident(
     Args:
         spec: the path of the spec.
         data: one of `Monitor.incidents`, or the path of a file.
-        form: "table", "csv", "trace" or "spec" (docs/data.md).
+        form: "table", "csv", "trace" or "spec" (docs/recordings.md).
         output: also write the text into this file.
         thresholds, fitted, embedded, settings, values, targets_as, max_state, max_code, max_work:
             the arguments that the monitor was opened with.

@@ -45,7 +45,7 @@ struct Seen {
     }
 };
 
-/// Reads a written incident by docs/data.md.
+/// Reads a written incident by docs/recordings.md.
 Seen read(const Bytes& bytes) {
     EXPECT_TRUE(std::equal(etlmon::kIncidentMagic, etlmon::kIncidentMagic + 8, bytes.all.begin()));
     EXPECT_EQ(bytes.word(8), 1U);

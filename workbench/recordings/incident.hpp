@@ -1,4 +1,5 @@
-// An incident, as a monitor's flight recorder writes it: the steps around an alarm, docs/data.md.
+// An incident, as a monitor's flight recorder writes it (docs/recordings.md): the steps around an
+// alarm.
 // Keeps true: no content of a file is used before its checksum fits; an incident has at least one
 // row, all rows have one shape, and the alarm is among them.
 #pragma once

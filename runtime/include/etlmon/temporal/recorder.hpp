@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The flight recorder: inputs and verdicts around each alarm. Takes: a row per step, with the
 // status of every verdict. Gives: incidents, each the steps around an alarm, in the format of
-// docs/data.md. Keeps true: no heap; a step copies its row once, and a row of an incident once
-// more, BEFORE steps later; a complete incident does not change until it is removed, so it may be
-// written while the monitor steps; the bytes are little-endian and the same on every machine.
+// docs/recordings.md. Keeps true: no heap; a step copies its row once, and a row of an incident
+// once more, BEFORE steps later; a complete incident does not change until it is removed, so it may
+// be written while the monitor steps; the bytes are little-endian and the same on every machine.
 #pragma once
 
 #include "etlmon/checksum.hpp"
