@@ -37,10 +37,28 @@ for jobs in 1 4; do
     cmp $jobs.json alone.json
 done
 cmp 1.txt 4.txt && cmp 1.csv 4.csv && cmp 1.json 4.json
-for form in txt csv json; do
+for form in txt json; do
     if [ "${ETLC_UPDATE:-}" = 1 ]; then cp 1.$form "$expected/dock.expected.$form"; fi
     diff -u "$expected/dock.expected.$form" 1.$form
 done
+# The table has the figures of the JSON.
+python3 - <<'END'
+import csv, json
+def flat(value, *path):
+    if not isinstance(value, dict):
+        return {"_".join(path): value}
+    return {k: v for name, inner in value.items() for k, v in flat(inner, *path, name).items()}
+rows, figures = list(csv.DictReader(open("1.csv"))), flat(json.load(open("1.json")))
+assert len(rows) == 114 and len({(*row.values(),) for row in rows}) == 114
+for row in rows:
+    level = "" if row["level"] == "frames" else row["level"] + "_"
+    if row["figure"].startswith(("turns", "delay")):
+        level = "detection_"
+    key = f"{row['kind']}s_{row['name']}_{level}{row['figure']}".replace("delay_", "").replace("turns_", "")
+    assert float(row["value"]) == figures[key], row
+    interval = [row["low"], row["high"]]
+    assert interval == ["", ""] or list(map(float, interval)) == figures[key + "_interval"], row
+END
 
 cat >groups.etl <<'SPEC'
 spec groups;

@@ -1,12 +1,5 @@
 # Quotes, line ends, row lengths; no rows of verdicts remain.
-cat > t.etl <<'END'
-spec t;
-input z : f32[2];
-input grip : f32;
-input held : bool;
-target goal = [[1, 2]];
-monitor m = F (l2(z, goal) <= 1 && grip > 0.5 && held);
-END
+. "$SPECS/../trace.bash"
 row() { printf "z[0],z[1],grip,held\n$1" > trace.csv; "$ETLC" run t.etl --trace trace.csv \
     -o verdicts.csv; }
 row '1,2,0.5,1\n1,2,0.5\n'

@@ -1,12 +1,5 @@
 # Every input that the monitors use needs its columns, or its array, exactly once.
-cat > t.etl <<'END'
-spec t;
-input z : f32[2];
-input grip : f32;
-input held : bool;
-target goal = [[1, 2]];
-monitor m = F (l2(z, goal) <= 1 && grip > 0.5 && held);
-END
+. "$SPECS/../trace.bash"
 header() { echo "$1" > trace.csv; "$ETLC" run t.etl --trace trace.csv; }
 header 'z[0],z[1],gripp,held'
 header 'z[0],grip,held'

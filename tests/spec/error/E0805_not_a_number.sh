@@ -1,12 +1,5 @@
 # Cells that are not numbers, with their place.
-cat > t.etl <<'END'
-spec t;
-input z : f32[2];
-input grip : f32;
-input held : bool;
-target goal = [[1, 2]];
-monitor m = F (l2(z, goal) <= 1 && grip > 0.5 && held);
-END
+. "$SPECS/../trace.bash"
 row() { printf "note,z[0],z[1],grip,held\n,1,2,0.5,1\n$1\n" > trace.csv; "$ETLC" run t.etl \
     --trace trace.csv -o verdicts.csv; }
 row '"two\nlines",1,two,0.5,1'

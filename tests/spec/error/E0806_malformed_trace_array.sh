@@ -1,12 +1,5 @@
 # Arrays of a trace are read as strictly as targets.
-cat > t.etl <<'END'
-spec t;
-input z : f32[2];
-input grip : f32;
-input held : bool;
-target goal = [[1, 2]];
-monitor m = F (l2(z, goal) <= 1 && grip > 0.5 && held);
-END
+. "$SPECS/../trace.bash"
 echo 'no zip' > trace.npz; "$ETLC" run t.etl --trace trace.npz
 "$ETLC" run t.etl --trace "$SPECS/E0806_cut_short.npz" -o verdicts.csv 2>&1 | sed "s|$SPECS/||"
 head -c 600 "$SPECS/E0806_cut_short.npz" > trace.npz; "$ETLC" run t.etl --trace trace.npz
