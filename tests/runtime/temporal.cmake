@@ -9,9 +9,6 @@ etlc_joined(integer_sources temporal_integers test_temporal_costs.cpp test_tempo
 list(APPEND integer_sources ${CMAKE_CURRENT_SOURCE_DIR}/test_temporal_windows.cpp)
 set(temporal_warnings -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror)
 
-etlc_test(test_temporal RUNTIME SOURCES ${float_sources} LIBRARIES etlmon::etlmon)
-target_compile_options(test_temporal PRIVATE ${temporal_warnings} -O2)
-
 # etlc_temporal_variant(NAME SOURCES file... OPTIONS option...): adds them as one test.
 function(etlc_temporal_variant name)
   cmake_parse_arguments(PARSE_ARGV 1 VARIANT "" "" "SOURCES;OPTIONS")
@@ -22,8 +19,9 @@ function(etlc_temporal_variant name)
   target_link_libraries(${name} PRIVATE etlmon::etlmon GTest::gtest_main)
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
 endfunction()
-etlc_temporal_variant(test_temporal_sanitized
+etlc_temporal_variant(test_temporal
   SOURCES ${float_sources} ${integer_sources} OPTIONS ${quick_sanitizers_gcc})
+etlc_quick(test_temporal)
 etlc_temporal_variant(test_temporal_fast_math SOURCES ${float_sources} OPTIONS -O2 -ffast-math)
 
 # The compiler that does not build the project, with its most aggressive flags.
