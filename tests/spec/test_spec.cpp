@@ -1,5 +1,5 @@
-// Each file is a test: error/CODE_name.etl gives the diagnostics of CODE_name.expected, in which
-// the marked text stands behind its position instead of the excerpt; ok/NAME.etl compiles.
+// Each file is a test: error/CODE_name.etl gives the diagnostics of CODE_name.expected, in brief;
+// ok/NAME.etl compiles.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -85,33 +86,52 @@ Outcome check(const fs::path& file) {
                file.parent_path());
 }
 
-/// Replaces each excerpt, a line of the source and the carets below it, by the marked text behind
-/// the position: the case has the rest of the line. Lines that are not ASCII stay.
-std::string without_excerpts(const std::string& output) {
+/// Returns the last line of etlc's output about these diagnostics, as "2 errors, 1 warning".
+std::string summary(const std::map<std::string, int>& told) {
+    std::vector<std::string> parts;
+    for (const char* kind : {"error", "warning", "note"})
+        if (const auto found = told.find(kind); found != told.end())
+            parts.push_back(
+                fmt::format("{} {}{}", found->second, kind, found->second == 1 ? "" : "s"));
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// Leaves out of the output of etlc what the case repeats. The marked text, behind its position,
+/// stands for an excerpt, which is a line of the source and the carets below it; lines that are not
+/// ASCII stay. A summary stays only if it counts otherwise.
+std::string brief(const std::string& output) {
     static const std::regex source(R"( +\d+ \| ?.*)"), carets(R"( +\| *(\^[\^~]*))"),
-        head(R"((\S.*?)(: (?:error|warning|note): .*))");
+        head(R"((\S.*?)(: (?:error|warning|note): .*))"),
+        coded(R"(.*: (error|warning|note): .* \[[EW]\d{4}\])");
+    const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
     std::vector<std::string> lines;
+    std::map<std::string, int> told;
     std::istringstream text(output);
     for (std::string line; std::getline(text, line);) {
-        std::smatch marks, parts;
+        std::smatch marks, parts, diagnostic;
         const std::size_t n = lines.size();
-        const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
-        if (n < 2 || !std::regex_match(line, marks, carets) ||
-            !std::regex_match(lines[n - 1], source) ||
-            !std::ranges::all_of(lines[n - 1], is_ascii) ||
-            !std::regex_match(lines[n - 2], parts, head)) {
+        if (!told.empty() && line == summary(told)) {
+            told.clear();
+        } else if (n >= 2 && std::regex_match(line, marks, carets) &&
+                   std::regex_match(lines[n - 1], source) &&
+                   std::ranges::all_of(lines[n - 1], is_ascii) &&
+                   std::regex_match(lines[n - 2], parts, head)) {
+            const auto from = static_cast<std::size_t>(marks.position(1));
+            const std::string marked =
+                from < lines[n - 1].size()
+                    ? lines[n - 1].substr(from, static_cast<std::size_t>(marks.length(1)))
+                    : "";
+            lines.pop_back();
+            lines.back() = fmt::format("{} '{}'{}", parts.str(1), marked, parts.str(2));
+        } else {
+            if (std::regex_match(line, diagnostic, coded)) ++told[diagnostic.str(1)];
             lines.push_back(line);
-            continue;
         }
-        const auto from = static_cast<std::size_t>(marks.position(1));
-        const std::string marked =
-            from < lines[n - 1].size()
-                ? lines[n - 1].substr(from, static_cast<std::size_t>(marks.length(1)))
-                : "";
-        lines.pop_back();
-        lines.back() = fmt::format("{} '{}'{}", parts.str(1), marked, parts.str(2));
     }
-    return fmt::format("{}{}", fmt::join(lines, "\n"), output.ends_with('\n') ? "\n" : "");
+    if (!told.empty()) lines.push_back(fmt::format("no line says {}", summary(told)));
+    return lines.empty()
+               ? ""
+               : fmt::format("{}{}", fmt::join(lines, "\n"), output.ends_with('\n') ? "\n" : "");
 }
 
 // ---- error/ -------------------------------------------------------------------------------------
@@ -126,12 +146,11 @@ TEST_P(SpecError, IsDiagnosed) {
         const std::string environment =
             fmt::format("ETLC='{}' SPECS='{}'", ETLC_EXECUTABLE, file.parent_path().string());
         const std::string command = fmt::format("{} bash '{}' 2>&1", environment, file.string());
-        expect_golden(without_excerpts(run(command, folder.path()).output),
-                      expected_of(GetParam()));
+        expect_golden(brief(run(command, folder.path()).output), expected_of(GetParam()));
         return;
     }
     const Outcome outcome = check(file);
-    expect_golden(without_excerpts(outcome.output), expected_of(GetParam()));
+    expect_golden(brief(outcome.output), expected_of(GetParam()));
     EXPECT_EQ(outcome.status, code_of(GetParam()).starts_with('W') ? 0 : 1);
 }
 
