@@ -80,9 +80,12 @@ reserved='alignas alignof auto bool break case char class const const_cast const
   static_assert static_cast struct switch template this true typename union unsigned using void
   volatile while mutable protected reinterpret_cast used asm min max
   typedef memcpy atanf sqrt sqrtf log free'
+# clang++ warns before it generates code, g++ also while it optimises.
 silent() {  # COMPILER WARNING...
+    local code=(-c -o "$box/use.o")
+    [ "$1" != "$clangxx" ] || code=(-fsyntax-only)
     "$@" "${defined[@]}" -std=c++17 -O2 -Werror -I "$source/runtime/include" -I "$box" \
-        -c "$box/use.cpp" -o "$box/use.o" || fail "$1 warns of $spec, $values, targets as $targets"
+        "${code[@]}" "$box/use.cpp" || fail "$1 warns of $spec, $values, targets as $targets"
 }
 
 spec=examples/firmware_loop/gauge.etl values=--retargetable targets=f32
