@@ -1,12 +1,11 @@
 #!/usr/bin/env bash
-# bounds_test.sh ETLC CXX SANITIZER...: the bounds of prefix monitors hold on every continuation,
-# which users of final verdicts rely on. At each step lower <= robustness <= upper, and no number of a later step
+# bounds_test.sh ETLC CXX: the bounds of prefix monitors hold on every continuation, which users of
+# final verdicts rely on. At each step lower <= robustness <= upper, and no number of a later step
 # leaves [lower, upper]. The test covers every distance, aggregation, type of input and storage of
 # targets, with and without declared ranges, in `etlc run` and in generated classes. The points are
 # at the extremes of distances: a target, its negative, an orthogonal one, zero, tiny and huge ones.
 set -euo pipefail
 etlc=$1 cxx=$2
-shift 2
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 runtime=$here/../../runtime/include
 box=$(mktemp -d)
@@ -222,8 +221,8 @@ while read -r storage flags; do
   # shellcheck disable=SC2086
   "$cxx" -std=c++17 $flags -DETLMON_NO_DISPATCH -I "$runtime" -I . main.cpp -o compiled
   ./compiled || fail "generated code, targets as $storage, $flags"
-done <<END
+done <<'END'
 f32 -O1 -ffast-math
-f16 $* -DETLMON_NO_DISPATCH
-i8 $* -DETLMON_NO_DISPATCH -ffast-math
+f16 -O1
+i8 -O1 -ffast-math
 END

@@ -52,7 +52,7 @@ etlc_kernel_variant(test_kernels_small
   SOURCES ${kernel_sources} ${twins} ${narrow_sources}
   OPTIONS -Os -DETLMON_PORTABLE)
 # Only the baseline: in the other versions, guarded.hpp detects loads past the end of a row. Twins
-# measure the same rows, and monitor.bounds has narrow ones.
+# measure the same rows, and monitor.narrow_targets has narrow ones.
 etlc_kernel_variant(test_kernels_sanitized
   SOURCES ${kernel_sources} OPTIONS ${quick_sanitizers_gcc} -DETLMON_NO_DISPATCH)
 set_tests_properties(test_kernels_sanitized PROPERTIES COST 80)
