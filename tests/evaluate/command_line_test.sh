@@ -54,7 +54,8 @@ for row in rows:
     level = "" if row["level"] == "frames" else row["level"] + "_"
     if row["figure"].startswith(("turns", "delay")):
         level = "detection_"
-    key = f"{row['kind']}s_{row['name']}_{level}{row['figure']}".replace("delay_", "").replace("turns_", "")
+    figure = row["figure"].replace("delay_", "").replace("turns_", "")
+    key = f"{row['kind']}s_{row['name']}_{level}{figure}"
     assert float(row["value"]) == figures[key], row
     interval = [row["low"], row["high"]]
     assert interval == ["", ""] or list(map(float, interval)) == figures[key + "_interval"], row
