@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "diag/render.hpp"
-#include "library/open.hpp"
+#include "library/settings.hpp"
 #include "plan/targets/kernels.hpp"
 #include "timing.hpp"
 

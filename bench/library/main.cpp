@@ -12,7 +12,7 @@
 
 #include "diag/render.hpp"
 #include "etlmon/distance/widen.hpp"
-#include "library/open.hpp"
+#include "library/settings.hpp"
 #include "plan/evaluate/evaluator.hpp"
 #include "timing.hpp"
 

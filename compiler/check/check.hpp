@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "ast/ast.hpp"
-#include "check/context/matrix.hpp"
+#include "check/context/context.hpp"
 #include "check/context/options.hpp"
 #include "check/context/scope.hpp"
 #include "check/model/model.hpp"

@@ -3,7 +3,7 @@
 
 #include "check/model/fingerprint.hpp"
 #include "emit/context.hpp"
-#include "plan/program/predicate_values.hpp"
+#include "plan/program/value_type.hpp"
 #include "plan/targets/stored.hpp"
 
 namespace etlc::emit {

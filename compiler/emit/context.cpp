@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "plan/program/predicate_values.hpp"
+#include "plan/program/value_type.hpp"
+#include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
-#include "plan/targets/point_checks.hpp"
 
 namespace etlc::emit {
 

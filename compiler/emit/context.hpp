@@ -7,10 +7,8 @@
 #include <string_view>
 
 #include "emit/names.hpp"
-#include "emit/spelling.hpp"
 #include "emit/text/layout.hpp"
 #include "plan/budget/budget.hpp"
-#include "plan/budget/demand.hpp"
 #include "plan/parameters.hpp"
 #include "plan/plan.hpp"
 #include "plan/program/dependents.hpp"

@@ -1,4 +1,5 @@
 // Prints the generated header, in the order of the file.
+
 #include <algorithm>
 #include <set>
 
@@ -6,7 +7,7 @@
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
 #include "emit/standalone.hpp"
-#include "emit/text/macros.hpp"
+#include "emit/text/identifiers.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/targets/narrow_targets.hpp"
 #include "plan/targets/stored.hpp"
@@ -120,10 +121,6 @@ void print_includes(Printer& out, const Context& context, const std::string& ver
     out.line();
 }
 
-}  // namespace
-
-namespace {
-
 Context context_of(const plan::Plan& plan, const Options& options) {
     const check::Model& model = *plan.model;
     Context context{plan,
@@ -225,6 +222,16 @@ std::string header(const plan::Plan& plan, const Options& options) {
 
 std::string params(const plan::Plan& plan, const Options& options) {
     return plan::block(plan, shape(plan, options.version));
+}
+
+const std::vector<Backend>& backends() {
+    static const std::vector<Backend> table = {
+        {"hpp", "the monitor class (what -o writes)", header},
+        {"params", "the parameters that a class of --retargetable takes, as bytes", params},
+        {"dot", "the formulas as a Graphviz graph", dot},
+        {"report", "the budget: state, constants, code, work, horizon, per monitor", report},
+    };
+    return table;
 }
 
 }  // namespace etlc::emit

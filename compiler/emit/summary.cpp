@@ -6,9 +6,9 @@
 #include "check/model/fingerprint.hpp"
 #include "diag/diag.hpp"
 #include "emit/context.hpp"
-#include "emit/text/table.hpp"
+#include "emit/text/layout.hpp"
+#include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
-#include "plan/targets/point_checks.hpp"
 #include "plan/targets/stored.hpp"
 
 namespace etlc::emit {

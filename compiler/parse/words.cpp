@@ -1,7 +1,6 @@
 #include "parse/words.hpp"
 
 #include "EtlLexer.h"
-#include "parse/token_words.hpp"
 
 namespace etlc::parse {
 

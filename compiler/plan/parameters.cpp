@@ -11,7 +11,6 @@
 #include "check/model/fingerprint.hpp"
 #include "data/files/hash.hpp"
 #include "plan/targets/kernels.hpp"
-#include "plan/targets/point_checks.hpp"
 
 namespace etlc::plan {
 

@@ -6,7 +6,7 @@
 #include "fit/algebra/clusters.hpp"
 #include "fit/algebra/dense.hpp"
 #include "fit/algebra/moments.hpp"
-#include "fit/blocks.hpp"
+#include "fit/collect.hpp"
 
 namespace etlc::fit {
 namespace {

@@ -2,7 +2,7 @@
 // changes of a truth.
 #include <gtest/gtest.h>
 
-#include "fit/even_frames.hpp"
+#include "fit/collect.hpp"
 
 namespace etlc::fit {
 namespace {

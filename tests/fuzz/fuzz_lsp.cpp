@@ -5,7 +5,6 @@
 
 #include "../lsp/sound_format.hpp"
 #include "fuzz_target.hpp"
-#include "lsp/protocol/reader.hpp"
 #include "lsp/protocol/session.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "label/marks.hpp"
+#include "label/table.hpp"
 
 namespace etlc::label {
 namespace {

@@ -2,8 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "lsp/spec/analysis.hpp"
-#include "lsp/text/position.hpp"
-#include "lsp/text/uri.hpp"
+#include "lsp/text/json.hpp"
 
 namespace etlc::lsp {
 namespace {

@@ -1,7 +1,7 @@
 // Reads messages in pieces of any size.
 #include <gtest/gtest.h>
 
-#include "lsp/protocol/reader.hpp"
+#include "lsp/protocol/session.hpp"
 #include "lsp/text/json.hpp"
 
 namespace etlc::lsp {

@@ -5,7 +5,7 @@
 #include <regex>
 #include <set>
 
-#include "lsp/answers/words.hpp"
+#include "lsp/answers/answers.hpp"
 
 namespace etlc::lsp {
 namespace {

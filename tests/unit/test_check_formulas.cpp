@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "check/formulas/constancy.hpp"
+#include "check/formulas/horizons.hpp"
 #include "checking.hpp"
 #include "reference/reference.hpp"
 

@@ -10,7 +10,6 @@
 
 #include "check/model/model.hpp"
 #include "check/numbers/decimal.hpp"
-#include "check/numbers/duration.hpp"
 #include "checking.hpp"
 
 namespace etlc::check {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "emit/text/layout.hpp"
-#include "emit/text/table.hpp"
 
 namespace etlc::emit {
 

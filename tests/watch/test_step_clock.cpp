@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "watch/step_clock.hpp"
+#include "watch/camera.hpp"
 
 namespace etlc::watch {
 

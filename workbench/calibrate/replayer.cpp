@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "check/guarantees/provenance.hpp"
-#include "plan/program/predicate_values.hpp"
+#include "plan/program/value_type.hpp"
 
 namespace etlc::calibrate {
 

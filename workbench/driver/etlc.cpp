@@ -19,9 +19,9 @@
 #include "driver/options/mistakes.hpp"
 #include "driver/process/process.hpp"
 #include "label/service.hpp"
-#include "library/open.hpp"
+#include "library/settings.hpp"
 #include "lsp/lsp.hpp"
-#include "report/page.hpp"
+#include "report/document.hpp"
 #include "source/source.hpp"
 
 namespace etlc::driver {

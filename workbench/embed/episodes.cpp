@@ -16,8 +16,6 @@
 #include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
 #include "diag/diag.hpp"
-#include "embed/columns.hpp"
-#include "embed/earlier.hpp"
 #include "embed/embed.hpp"
 #include "embed/recordings.hpp"
 

@@ -4,11 +4,20 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "artifacts/embedded.hpp"
+#include "data/arrays/array.hpp"
 #include "data/files/file.hpp"
+#include "data/files/hash.hpp"
+#include "data/text/number.hpp"
+#include "data/text/quote.hpp"
+#include "data/traces/csv.hpp"
 #include "recordings/datasets/dataset.hpp"
 #include "recordings/datasets/trace.hpp"
 #include "recordings/frames/frames.hpp"
@@ -287,6 +296,189 @@ std::vector<Recording> find_recordings(const Search& search, diag::Sink& sink) {
         for (Recording& recording : *found) recordings.push_back(std::move(recording));
     }
     return recordings;
+}
+
+namespace {
+
+using data::Channel;
+
+/// Returns how a column is read, by its name.
+diag::Result<Channel> channel_of(const check::Model& model, const data::ElementName& column) {
+    Channel channel{column.array, column.element ? Channel::Kind::vector : Channel::Kind::scalar, 1,
+                    false};
+    if (column.array.starts_with("truth.")) channel.kind = Channel::Kind::boolean;
+    for (const check::Input& input : model.inputs) {
+        if (input.name != column.array) continue;
+        if (input.encoder != check::kNone)
+            return Failure{
+                Code::no_such_channel,
+                fmt::format("has a column {}, which '{}' makes of the frames",
+                            data::in_quotes(column.array), model.encoders[input.encoder].name),
+                1, 1};
+        if (input.type == check::InputType::boolean) channel.kind = Channel::Kind::boolean;
+    }
+    return channel;
+}
+
+diag::Result<std::vector<Channel>> channels_of(const check::Model& model, const std::string& path) {
+    auto source = data::open_file(path);
+    if (!source) return source.failure();
+    data::CsvReader header(std::move(*source));
+    const auto read = header.next();
+    if (!read) return read.failure();
+    std::vector<Channel> channels;
+    for (std::size_t i = 0; *read && i < header.cells(); ++i) {
+        const data::ElementName column = data::element_name(header.cell(i));
+        const auto same = [&](const Channel& other) { return other.name == column.array; };
+        const auto known = std::find_if(channels.begin(), channels.end(), same);
+        if (known != channels.end()) {
+            known->width = std::max(known->width, column.element.value_or(0) + 1);
+            continue;
+        }
+        auto channel = channel_of(model, column);
+        if (!channel) return channel.failure();
+        channel->width = column.element.value_or(0) + 1;
+        channels.push_back(std::move(*channel));
+    }
+    constexpr std::uint32_t kMostElements = 1U << 20U;  // no row of a file has more cells
+    for (const Channel& channel : channels)
+        if (channel.width > kMostElements)
+            return Failure{Code::trace_shape,
+                           fmt::format("has a column {}[{}], expected at most {} elements",
+                                       channel.name, channel.width - 1, kMostElements),
+                           1, 1};
+    return channels;
+}
+
+/// Reads every `stride`-th step of a trace.
+diag::Result<std::vector<Array>> read_arrays(data::Trace& trace,
+                                             const std::vector<Channel>& channels,
+                                             std::uint64_t stride) {
+    std::vector<Array> arrays;
+    for (const Channel& channel : channels)
+        arrays.push_back({channel.name, channel.width, {}, channel.kind == Channel::Kind::vector});
+    data::Sample sample;
+    for (std::uint64_t step = 0;; ++step) {
+        const auto more = trace.next(sample);
+        if (!more) return more.failure();
+        if (!*more) return arrays;
+        if (step % stride != 0) continue;
+        for (std::size_t c = 0; c < arrays.size(); ++c)
+            for (const double value : sample.values[c])
+                arrays[c].values.push_back(sample.present[c]
+                                               ? static_cast<float>(value)
+                                               : std::numeric_limits<float>::quiet_NaN());
+    }
+}
+
+}  // namespace
+
+diag::Result<std::vector<Array>> arrays_beside(const check::Model& model, const std::string& path) {
+    const auto channels = channels_of(model, path);
+    if (!channels) return channels.failure();
+    const auto trace = data::open_trace(path, *channels);
+    if (!trace) return trace.failure();
+    return read_arrays(**trace, *channels, 1);
+}
+
+diag::Result<std::vector<Array>> arrays_in(const check::Model& model, const Recording& recording,
+                                           const data::NamesInFile& names) {
+    std::vector<Channel> channels;
+    for (const check::Input& input : model.inputs) {
+        if (input.encoder != check::kNone) continue;
+        Channel channel{input.name, Channel::Kind::scalar, 1, false};
+        if (input.type == check::InputType::boolean) channel.kind = Channel::Kind::boolean;
+        if (input.is_embedding()) {
+            channel.kind = Channel::Kind::vector;
+            channel.width = input.dimension;
+        }
+        channels.push_back(std::move(channel));
+    }
+    for (const auto& [name, in_file] : names)
+        if (name.starts_with("truth."))
+            channels.push_back({name, Channel::Kind::boolean, 1, false});
+    if (channels.empty()) return std::vector<Array>{};
+    const auto trace = data::open_trace(recording.columns, data::renamed(channels, names));
+    if (!trace) return trace.failure();
+    return read_arrays(**trace, channels, recording.stride);
+}
+
+namespace {
+
+std::string hash_of(const std::string& path) {
+    const auto hash = data::hash_of_file(path, diag::Code::unreadable_data_file);
+    return hash ? *hash : "";
+}
+
+/// Returns whether a video is a text, which may be a playlist: its frames are in other files.
+bool may_name_others(const std::string& video) {
+    return data::ends_of_file(video).find('\0') == std::string::npos;
+}
+
+/// Hashes the files that a command names: the program, its script, its weights.
+std::string hashes_of_words(const std::string& command) {
+    constexpr std::string_view kBetweenWords = " \t\n\"'`;&|<>()=";
+    std::string hashes;
+    for (std::size_t begin = 0; begin < command.size();) {
+        const std::size_t end =
+            std::min(command.find_first_of(kBetweenWords, begin), command.size());
+        if (end > begin) hashes += hash_of(command.substr(begin, end - begin)) + "\n";
+        begin = end + 1;
+    }
+    return hashes;
+}
+
+}  // namespace
+
+Earlier::Earlier(const Running& running, const std::string& version)
+    : made_by_(version + "\n" + running.command + "\n" +
+               (running.command.empty() ? hash_of(running.onnxruntime)
+                                        : hashes_of_words(running.command)) +
+               "\n") {}
+
+std::string Earlier::hash(const std::string& path, bool is_shared) {
+    if (!is_shared) return hash_of(path);
+    std::string& known = shared_[path];
+    if (known.empty()) known = hash_of(path);
+    return known;
+}
+
+std::string Earlier::origin(const Recording& recording, const std::string& input,
+                            const std::string& encoder) {
+    const Origin from = recording.origin(input);
+    if (!from.video.empty() && may_name_others(from.video)) return {};
+    std::string text = made_by_ + encoder + "\n" + from.choice + "\n";
+    const auto add = [&](const std::string& path) {
+        const std::string found = hash(path, recording.files.empty());
+        text += found + "\n";
+        return !found.empty();
+    };
+    if (!from.video.empty() && !add(from.video)) return {};
+    for (const std::string& path : from.files)
+        if (!add(path)) return {};
+    return text;
+}
+
+std::string bound(const std::string& origin, std::uint32_t dimension,
+                  const std::vector<float>& rows) {
+    const std::string content = data::content_hash({rows.size() / dimension, dimension}, rows);
+    return data::hash_text(data::xxh64(origin + content));
+}
+
+std::optional<std::vector<float>> embeddings_in(const std::string& episode,
+                                                const std::string& input, std::uint32_t dimension,
+                                                const std::string& origin) {
+    if (origin.empty()) return std::nullopt;
+    const embedded::Origins origins = embedded::read_origins(episode);
+    const auto known = origins.find(input);
+    if (known == origins.end()) return std::nullopt;
+    const auto array = data::read_npz(episode, input);
+    if (!array || array->element != data::Element::f32 || array->shape.size() != 2 ||
+        array->shape[1] != dimension)
+        return std::nullopt;
+    std::vector<float> rows(array->values.begin(), array->values.end());
+    if (bound(origin, dimension, rows) != known->second) return std::nullopt;
+    return rows;
 }
 
 }  // namespace etlc::embed

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "etlmon/temporal/predicate.hpp"
-#include "plan/program/predicate_values.hpp"
+#include "plan/program/value_type.hpp"
 
 namespace etlc::explain {
 

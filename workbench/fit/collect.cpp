@@ -1,19 +1,21 @@
 #include "fit/collect.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <iterator>
 #include <map>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include "check/guarantees/guarantees.hpp"
 #include "check/guarantees/provenance.hpp"
+#include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
 #include "episodes/recent_frames.hpp"
 #include "episodes/truth.hpp"
-#include "fit/blocks.hpp"
 
 namespace etlc::fit {
 
@@ -356,6 +358,197 @@ std::optional<Collection> collect(const check::Model& model, const std::vector<N
     episodes::report(faults, count, sink);
     if (!done || !faults.empty()) return std::nullopt;
     return all;
+}
+
+Blocks::Blocks(Eigen::Index dimension, std::vector<bool> with_scatter)
+    : frames_(dimension, kFrames),
+      with_scatter_(std::move(with_scatter)),
+      classes_(with_scatter_.size()),
+      moments_(with_scatter_.size(), Moments(dimension)) {}
+
+void Blocks::add(const std::vector<float>& point, const std::vector<std::int8_t>& classes) {
+    frames_.col(filled_++) = Eigen::Map<const Eigen::VectorXf>(point.data(), frames_.rows());
+    for (std::size_t i = 0; i < classes.size(); ++i) classes_[i].push_back(classes[i]);
+    if (filled_ == kFrames) flush();
+}
+
+std::vector<Moments> Blocks::take() {
+    flush();
+    std::vector<Moments> result(moments_.size(), Moments(frames_.rows()));
+    std::swap(result, moments_);
+    return result;
+}
+
+void Blocks::flush() {
+    std::map<std::vector<bool>, std::shared_ptr<Scatter>> scatters;  // by the frames in them
+    std::vector<Moments> block;
+    for (std::size_t i = 0; i < classes_.size(); ++i) {
+        std::shared_ptr<Scatter> shared;
+        if (with_scatter_[i]) {
+            std::vector<bool> selected;
+            for (const std::int8_t c : classes_[i]) selected.push_back(c != kNone);
+            std::shared_ptr<Scatter>& found = scatters[selected];
+            if (found == nullptr) found = scatter(selected);
+            shared = found;
+        }
+        block.emplace_back(Moments::Means{mean(i, 0), mean(i, 1)}, std::move(shared));
+    }
+    scatters.clear();  // drops the other references
+    std::vector<Moments*> all;
+    std::vector<const Moments*> more;
+    for (std::size_t i = 0; i < block.size(); ++i) {
+        all.push_back(&moments_[i]);
+        more.push_back(&block[i]);
+        classes_[i].clear();
+    }
+    Moments::merge(all, more);
+    filled_ = 0;
+}
+
+std::shared_ptr<Scatter> Blocks::scatter(const std::vector<bool>& selected) {
+    selected_.resize(frames_.rows(), kFrames);
+    Eigen::Index to = 0;
+    for (std::size_t f = 0; f < selected.size(); ++f)
+        if (selected[f])
+            selected_.col(to++) = frames_.col(static_cast<Eigen::Index>(f)).cast<double>();
+    std::shared_ptr<Scatter> result = unused_scatter();
+    result->set(selected_.leftCols(to));
+    return result;
+}
+
+std::shared_ptr<Scatter> Blocks::unused_scatter() {
+    for (const std::shared_ptr<Scatter>& one : scatters_) {
+        if (one.use_count() > 1) continue;
+        std::atomic_thread_fence(std::memory_order_acquire);  // another thread may have held it
+        return one;
+    }
+    scatters_.push_back(std::make_shared<Scatter>());
+    return scatters_.back();
+}
+
+Mean Blocks::mean(std::size_t need, std::size_t of_class) const {
+    Mean result = Mean::none(frames_.rows());
+    for (std::size_t f = 0; f < classes_[need].size(); ++f) {
+        if (classes_[need][f] != static_cast<std::int8_t>(of_class)) continue;
+        result.mean += frames_.col(static_cast<Eigen::Index>(f)).cast<double>();
+        ++result.n;
+    }
+    if (result.n > 0) result.mean /= static_cast<double>(result.n);
+    return result;
+}
+
+void EvenFrames::add(std::uint64_t step, const std::vector<float>& values) {
+    const bool far_enough = since_change_ == away_;
+    if (!far_enough) ++since_change_;
+    pending_.push_back({step, far_enough ? values : std::vector<float>{}});
+    if (pending_.size() <= away_) return;
+    keep(std::move(pending_.front()));
+    pending_.pop_front();
+}
+
+void EvenFrames::add_other() {
+    pending_.clear();
+    since_change_ = 0;
+}
+
+void EvenFrames::keep(TakenFrame frame) {
+    if (frame.values.empty()) return;
+    if (sound_++ % stride_ != 0) return;
+    kept_.push_back(std::move(frame));
+    if (kept_.size() < 2 * most_) return;
+    for (std::size_t i = 0; 2 * i < kept_.size(); ++i)
+        if (i > 0) kept_[i] = std::move(kept_[2 * i]);
+    kept_.resize(most_);
+    stride_ *= 2;
+}
+
+std::vector<TakenFrame> EvenFrames::take() {
+    for (TakenFrame& frame : pending_) keep(std::move(frame));
+    pending_.clear();
+    if (kept_.size() <= most_) return std::move(kept_);
+    std::vector<TakenFrame> result;
+    for (std::size_t i = 0; i < most_; ++i)
+        result.push_back(std::move(kept_[i * kept_.size() / most_]));
+    return result;
+}
+
+namespace {
+
+struct Read : episodes::Recorded {
+    std::vector<Index> from_arrays;
+    std::optional<diag::Failure> unlabelled{};  ///< why it has no label of a predicate
+};
+
+class OrderedReader {
+public:
+    OrderedReader(const episodes::Wanted& wanted, const episodes::ReadOptions& reading)
+        : wanted_(wanted), reading_(reading) {}
+
+    diag::Result<Read> score(const std::string& path) const {
+        auto recording = episodes::Recording::open(wanted_, path, reading_);
+        if (!recording && recording.failure().code == diag::Code::no_label) {
+            Read result;
+            result.path = path;
+            result.unlabelled = recording.failure();
+            return result;
+        }
+        if (!recording) return recording.failure();
+        for (;;) {
+            const auto more = recording->next();
+            if (!more) return more.failure();
+            if (!*more) break;
+        }
+        Read result{recording->recorded(), {}};
+        for (const Index predicate : wanted_.predicates)
+            if (recording->from_array(predicate)) result.from_arrays.push_back(predicate);
+        return result;
+    }
+
+private:
+    const episodes::Wanted& wanted_;
+    const episodes::ReadOptions& reading_;
+};
+
+}  // namespace
+
+std::optional<Readings> Readings::read(episodes::Wanted wanted, const Request& request,
+                                       diag::Sink& sink) {
+    Readings result;
+    result.wanted_ = std::make_unique<const episodes::Wanted>(std::move(wanted));
+    result.reading_ = request.reading;
+    if (!result.reading_.kept)
+        result.reading_.kept = std::make_shared<episodes::KeptTraces>(request.most_kept);
+    auto all = episodes::over_episodes<Read>(request.episodes, request, sink, [&] {
+        return std::make_unique<OrderedReader>(*result.wanted_, result.reading_);
+    });
+    if (!all) return std::nullopt;
+    std::vector<episodes::Fault> unlabelled;
+    for (const Read& one : *all)
+        if (one.unlabelled) unlabelled.push_back({one.path, *one.unlabelled});
+    if (unlabelled.size() == all->size()) {
+        episodes::report(unlabelled, all->size(), sink);
+        return std::nullopt;
+    }
+    for (const episodes::Fault& one : unlabelled) result.unlabelled_.push_back(one.path);
+    std::erase_if(*all, [](const Read& one) { return one.unlabelled.has_value(); });
+    result.labelling_.episodes = all->size();
+    for (const std::size_t e : episodes::by_content(episodes::recorded(*all))) {
+        Read& one = (*all)[e];
+        for (const Index predicate : one.from_arrays) ++result.labelling_.from_arrays[predicate];
+        result.index_.emplace(one.path, result.episodes_.size());
+        result.episodes_.push_back(std::move(static_cast<episodes::Recorded&>(one)));
+    }
+    return result;
+}
+
+std::vector<std::string> Readings::paths() const {
+    std::vector<std::string> result;
+    for (const episodes::Recorded& episode : episodes_) result.push_back(episode.path);
+    return result;
+}
+
+diag::Result<episodes::Recording> Readings::open(std::size_t episode) const {
+    return episodes::Recording::open(*wanted_, episodes_[episode].path, reading_);
 }
 
 }  // namespace etlc::fit

@@ -3,18 +3,109 @@
 // order or the number of threads.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
+#include "check/guarantees/provenance.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
+#include "episodes/recording.hpp"
 #include "fit/algebra/moments.hpp"
-#include "fit/even_frames.hpp"
-#include "fit/readings.hpp"
 #include "recordings/open.hpp"
 
 namespace etlc::fit {
+
+// Takes up to `most` frames of an episode, evenly spaced and away from changes of the label. The
+// choice depends on this episode alone, and memory on `most` and `away`. The ends of an episode are
+// no changes: the label before and after is unknown.
+
+struct TakenFrame {
+    std::uint64_t step = 0;
+    std::vector<float> values;
+};
+
+class EvenFrames {
+public:
+    /// `away`: the least distance in steps to a frame at which `where` does not hold, less one.
+    EvenFrames(std::size_t most, std::uint64_t away)
+        : most_(most), away_(away), since_change_(away) {}
+
+    /// Adds a frame at which `where` holds; without values it is missing, and is not taken.
+    void add(std::uint64_t step, const std::vector<float>& values);
+    /// Adds a frame at which `where` does not hold, or may not.
+    void add_other();
+    /// Returns the taken frames at the end of the episode.
+    std::vector<TakenFrame> take();
+
+private:
+    void keep(TakenFrame frame);
+
+    std::size_t most_;
+    std::uint64_t away_;
+    std::uint64_t since_change_;  ///< frames at which it held since the last change; at most `away`
+    std::deque<TakenFrame> pending_;  ///< the last `away` frames, dropped when the label changes
+    std::uint64_t sound_ = 0;         ///< frames eligible so far
+    std::uint64_t stride_ = 1;        ///< one of so many is kept
+    std::vector<TakenFrame> kept_;
+};
+
+// Reads the episodes of a call once, in the order of their content, and gives their frames again
+// for later passes. Neither names of files nor the order of arguments count.
+
+/// The arguments of `etlc fit`.
+struct Request {
+    std::vector<std::string> episodes;  ///< as data::find_episodes gives them
+    episodes::ReadOptions reading;
+    /// The reason of --allow-overlap; empty without the option.
+    std::string allow_overlap;
+    unsigned jobs = 0;  ///< threads; 0: as many as the machine has
+    /// Whether to measure how well predicates separate frames that were not fitted on, which takes
+    /// another fit without each fold.
+    bool separation = true;
+    std::string version;  ///< version of etlc
+    /// Called by any thread, one at a time.
+    std::function<void(std::size_t done, std::size_t total)> progress;
+    /// The most bytes of samples to keep in memory, unless `reading` keeps them.
+    std::size_t most_kept = episodes::kMostKept;
+};
+
+using check::Index;
+
+class Readings {
+public:
+    /// Leaves out episodes without a label that is wanted, unless all are. Returns nothing after an
+    /// error.
+    static std::optional<Readings> read(episodes::Wanted wanted, const Request& request,
+                                        diag::Sink& sink);
+
+    /// Returns the episodes in the order of episodes/folds.hpp.
+    const std::vector<episodes::Recorded>& episodes() const { return episodes_; }
+    /// Returns their paths.
+    std::vector<std::string> paths() const;
+    /// Returns the paths of those that were left out.
+    const std::vector<std::string>& unlabelled() const { return unlabelled_; }
+    const check::Labelling& labelling() const { return labelling_; }
+    std::size_t index_of(const std::string& path) const { return index_.at(path); }
+    const episodes::Wanted& wanted() const { return *wanted_; }
+
+    /// Opens an episode at its first frame. Thread-safe. Failures do not name the episode.
+    diag::Result<episodes::Recording> open(std::size_t episode) const;
+
+private:
+    std::unique_ptr<const episodes::Wanted> wanted_;
+    episodes::ReadOptions reading_;
+    std::vector<episodes::Recorded> episodes_;
+    std::vector<std::string> unlabelled_;
+    std::unordered_map<std::string, std::size_t> index_;
+    check::Labelling labelling_;
+};
 
 /// The number of folds, to which episodes/folds.hpp deals the episodes.
 inline constexpr std::size_t kFolds = 5;
@@ -86,5 +177,39 @@ std::optional<Collection> collect(const check::Model& model, const std::vector<N
 
 /// Returns the innermost point, without projections.
 Index innermost(const check::Model& model, Index point);
+
+// Collects frames in blocks and turns them into moments. Frames that several needs share are
+// scattered once; memory is that of a block.
+
+class Blocks {
+public:
+    /// The class of a frame that counts in none.
+    static constexpr std::int8_t kNone = -1;
+
+    /// `with_scatter`: per need.
+    Blocks(Eigen::Index dimension, std::vector<bool> with_scatter);
+
+    /// `classes`: per need.
+    void add(const std::vector<float>& point, const std::vector<std::int8_t>& classes);
+    /// Returns the moments of all frames since the last call, per need.
+    std::vector<Moments> take();
+
+private:
+    void flush();
+    std::shared_ptr<Scatter> scatter(const std::vector<bool>& selected);
+    std::shared_ptr<Scatter> unused_scatter();
+    Mean mean(std::size_t need, std::size_t of_class) const;
+
+    static constexpr Eigen::Index kFrames = 512;
+
+    Eigen::MatrixXf frames_;  ///< frames, as columns
+    Eigen::Index filled_ = 0;
+    std::vector<bool> with_scatter_;
+    std::vector<std::vector<std::int8_t>> classes_;  ///< per need, then per frame of the block
+    std::vector<Moments> moments_;
+    // These are large, so they are allocated once.
+    Matrix selected_;                                 ///< frames
+    std::vector<std::shared_ptr<Scatter>> scatters_;  ///< may be in use by moments
+};
 
 }  // namespace etlc::fit

@@ -10,7 +10,7 @@
 #include "artifacts/fitted.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
-#include "fit/readings.hpp"
+#include "fit/collect.hpp"
 #include "fit/separation.hpp"
 #include "fit/solve.hpp"
 

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "fit/algebra/dense.hpp"
-#include "fit/algebra/linear.hpp"
+#include "fit/algebra/moments.hpp"
 
 namespace etlc::fit {
 

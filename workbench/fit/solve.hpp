@@ -11,7 +11,7 @@
 
 #include "check/points/project.hpp"
 #include "fit/algebra/clusters.hpp"
-#include "fit/algebra/linear.hpp"
+#include "fit/algebra/moments.hpp"
 #include "fit/collect.hpp"
 
 namespace etlc::fit {

@@ -15,7 +15,6 @@
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
 #include "episodes/labels/labels.hpp"
-#include "label/marks.hpp"
 #include "label/table.hpp"
 
 namespace etlc::label {

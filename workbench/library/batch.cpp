@@ -7,7 +7,7 @@
 #include <system_error>
 #include <thread>
 
-#include "library/samples.hpp"
+#include "library/program.hpp"
 
 namespace etlc::library {
 

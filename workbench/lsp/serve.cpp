@@ -5,7 +5,6 @@
 
 #include "data/files/descriptor.hpp"
 #include "lsp/lsp.hpp"
-#include "lsp/protocol/reader.hpp"
 #include "lsp/protocol/session.hpp"
 
 namespace etlc::lsp {

@@ -12,7 +12,6 @@
 #include "data/files/file.hpp"
 #include "episodes/parallel.hpp"
 #include "report/document.hpp"
-#include "report/page.hpp"
 #include "report/pictures.hpp"
 
 namespace etlc::report {

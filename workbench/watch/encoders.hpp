@@ -15,7 +15,7 @@
 #include "diag/diag.hpp"
 #include "embed/embed.hpp"
 #include "recordings/frames/frames.hpp"
-#include "watch/stop.hpp"
+#include "watch/watch.hpp"
 
 namespace etlc::watch {
 

@@ -10,11 +10,10 @@
 
 #include "check/guarantees/guarantees.hpp"
 #include "label/frames.hpp"
-#include "label/page.hpp"
+#include "label/serve.hpp"
 #include "report/blob.hpp"
 #include "report/pictures.hpp"
 #include "report/tracks.hpp"
-#include "watch/page_files.hpp"
 
 namespace etlc::watch {
 

@@ -19,6 +19,7 @@
 #include "label/service.hpp"
 #include "plan/evaluate/evaluator.hpp"
 #include "recordings/frames/frames.hpp"
+#include "report/document.hpp"
 
 namespace etlc::watch {
 
@@ -66,5 +67,9 @@ private:
     std::optional<std::string> ending_;
     std::thread thread_;
 };
+
+// The files of the page, embedded when etlc was built.
+
+const std::vector<report::PageFile>& page_files();
 
 }  // namespace etlc::watch

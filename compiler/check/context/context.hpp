@@ -3,6 +3,7 @@
 // declaration, in file order; elements with errors are marked broken in `scope`.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -17,7 +18,6 @@
 #include "artifacts/embedded.hpp"
 #include "artifacts/fitted.hpp"
 #include "ast/ast.hpp"
-#include "check/context/matrix.hpp"
 #include "check/context/options.hpp"
 #include "check/context/scope.hpp"
 #include "check/model/model.hpp"
@@ -25,6 +25,29 @@
 #include "diag/diag.hpp"
 
 namespace etlc::check {
+
+// A matrix of float32 that a spec loads or contains, and a cache of loaded ones.
+
+struct Matrix {
+    std::uint32_t rows = 0;
+    std::uint32_t columns = 0;
+    /// A one-dimensional array in a file, or a literal [1, 2, 3]; rows is then 1.
+    bool one_dimensional = false;
+    std::vector<float> values;  ///< row-major
+    std::string origin;         ///< "targets/goal_a.npy", "file.npz:key" or "literal"
+    std::string path;  ///< of the file, relative to the working directory; empty for a literal
+    std::string hash;
+    std::vector<EncodedRows> encoded;  ///< rows made from images
+};
+
+/// A loaded matrix, by path and key, for callers that check a spec repeatedly. It is valid while
+/// the file has the same time and size.
+struct KnownMatrix {
+    std::filesystem::file_time_type time;
+    std::uintmax_t size = 0;
+    Matrix matrix;
+};
+using KnownMatrices = std::map<std::pair<std::string, std::string>, KnownMatrix>;
 
 /// Limit on the depth of formulas with their lets written out, so that later stages may recurse.
 inline constexpr std::uint32_t kMaxDepth = 1000;

@@ -2,6 +2,7 @@
 // not support. A horizon is the sum of the upper bounds on the deepest path as written.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -57,5 +58,18 @@ std::uint64_t steps_read_back(const Model& model, Index formula);
 
 /// Returns how many steps of past a predicate needs to be known: none where its range decides it.
 std::uint64_t past_needed(const Model& model, const Predicate& predicate);
+
+// Finds formulas whose verdict does not depend on the inputs, where predicates may have any value.
+// A constant formula has robustness +inf or -inf at every position of every prefix.
+
+enum class Constancy : std::uint8_t { varies, always, never };
+
+struct Constancies {
+    Constancy anywhere = Constancy::varies;  ///< at every position
+    Constancy at_start = Constancy::varies;  ///< at position 0, which has no past
+};
+
+/// Parallel to model.formulas.
+std::vector<Constancies> constancies(const Model& model);
 
 }  // namespace etlc::check

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "check/context/context.hpp"
-#include "check/formulas/constancy.hpp"
 #include "check/formulas/horizons.hpp"
 #include "check/numbers/decimal.hpp"
 #include "check/time/time.hpp"

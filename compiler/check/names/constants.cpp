@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "check/context/context.hpp"
-#include "check/numbers/duration.hpp"
+#include "check/numbers/decimal.hpp"
 #include "data/files/file.hpp"
 #include "data/text/quote.hpp"
 

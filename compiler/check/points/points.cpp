@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "check/numbers/bounds.hpp"
+#include "check/numbers/range.hpp"
 #include "check/points/project.hpp"
 #include "check/time/time.hpp"
 

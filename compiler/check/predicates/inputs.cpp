@@ -5,7 +5,6 @@
 
 #include "check/context/context.hpp"
 #include "check/numbers/decimal.hpp"
-#include "check/numbers/duration.hpp"
 #include "check/time/time.hpp"
 
 namespace etlc::check {

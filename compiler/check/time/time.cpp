@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "check/context/context.hpp"
-#include "check/numbers/duration.hpp"
+#include "check/numbers/decimal.hpp"
 
 namespace etlc::check {
 

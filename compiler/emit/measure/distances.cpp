@@ -2,7 +2,6 @@
 #include "emit/measure/measurements.hpp"
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
-#include "plan/targets/point_checks.hpp"
 #include "plan/targets/stored.hpp"
 
 namespace etlc::emit {

@@ -1,8 +1,8 @@
 // Prints the samples of a step in measure(): checks that they are present, and declares their
 // locals.
 #include "emit/measure/measurements.hpp"
-#include "plan/program/predicate_values.hpp"
-#include "plan/targets/point_checks.hpp"
+#include "plan/program/value_type.hpp"
+#include "plan/targets/kernels.hpp"
 
 namespace etlc::emit {
 

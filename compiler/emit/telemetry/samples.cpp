@@ -1,4 +1,5 @@
 // Prints explanations: values that carry their sample, and why_NAME().
+
 #include "emit/context.hpp"
 #include "source/escape.hpp"
 
@@ -99,6 +100,119 @@ void print_why_of(Printer& out, const Context& context) {
     out.line("return etlmon::sample_of<{}>(deciding_[m], places);", context.sampled.codes);
     out.close();
     out.line();
+}
+
+// Prints the telemetry of lets: the verdict of each at the last step.
+
+std::vector<Member> let_members(const Context& context) {
+    std::vector<Member> result;
+    const std::string verdict(context.spelling.verdict);
+    for (std::size_t l = 0; l < context.plan.lets.size(); ++l) {
+        const std::string& name = context.names.let_member[l];
+        result.push_back(
+            {verdict, name,
+             "what " + context.model.lets[context.plan.lets[l].index].name + " said last",
+             fmt::format("{} = {}();", name, verdict), ""});
+    }
+    return result;
+}
+
+void print_let_interface(Printer& out, const Context& context) {
+    if (context.plan.lets.empty()) return;
+    print_doc(out, fmt::format("The verdict of each let at the last step{}.",
+                               context.on_demand ? "" : ", and its robustness"));
+    for (std::size_t l = 0; l < context.plan.lets.size(); ++l) {
+        const std::string& name = context.model.lets[context.plan.lets[l].index].name;
+        const std::string& member = context.names.let_member[l];
+        out.line("{} let_{}() const noexcept {{ return {}; }}", context.spelling.verdict, name,
+                 member);
+        if (!context.on_demand)
+            out.line("float robustness_{}() const noexcept {{ return {}.robustness; }}", name,
+                     member);
+    }
+    out.line();
+}
+
+namespace {
+
+/// Returns the value of a let, without its sample.
+std::string value_of(const Context& context, const plan::Let& let) {
+    const std::string value = context.value(let.stream);
+    return context.explains ? fmt::format("etlmon::unsourced({})", value) : value;
+}
+
+}  // namespace
+
+/// Lets keep their last verdict during finish().
+void print_lets(Printer& out, const Context& context) {
+    const plan::Plan& plan = context.plan;
+    if (plan.lets.empty()) return;
+    out.gap();
+    if (plan.has_sliding) out.open("if (finishes_ == 0) {");
+    for (std::size_t l = 0; l < plan.lets.size(); ++l)
+        print_with_comment(
+            out,
+            fmt::format("{} = etlmon::sliding_verdict({});", context.names.let_member[l],
+                        value_of(context, plan.lets[l])),
+            context.place(context.model.lets[plan.lets[l].index].span));
+    if (plan.has_sliding) out.close();
+}
+
+// Prints the telemetry of predicates: its members, and the functions that return it.
+
+namespace {
+
+/// Prints threshold_P() of a predicate that is not adaptive.
+void print_threshold(Printer& out, const Context& context, Index p) {
+    const check::Predicate& predicate = context.model.predicates[p];
+    if (!context.retargetable())
+        return out.line("static constexpr float threshold_{}() noexcept {{ return {}; }}",
+                        predicate.name, float_literal(predicate.threshold.value));
+    out.open(fmt::format("float threshold_{}() const noexcept {{", predicate.name));
+    out.line("return ready() ? {} : etlmon::kMissing;",
+             context.parameter(plan::Parameter::Kind::threshold, p));
+    out.close();
+}
+
+}  // namespace
+
+std::vector<Member> telemetry_members(const Context& context) {
+    std::vector<Member> result;
+    for (const auto& [p, name] : context.names.predicate_member) {
+        const bool plain = context.model.predicates[p].plain_distance();
+        result.push_back({plain ? "etlmon::Measured" : "float", name,
+                          "telemetry of " + context.model.predicates[p].name,
+                          fmt::format("{} = etlmon::{};", name, plain ? "kUnmeasured" : "kMissing"),
+                          ""});
+    }
+    for (const auto& [of, nearest] : context.names.nearest)
+        result.push_back({"uint32_t", nearest.member,
+                          fmt::format("nearest row by {}", context.model.distances[of.second].text),
+                          nearest.member + " = 0;", ""});
+    return result;
+}
+
+void print_telemetry(Printer& out, const Context& context) {
+    for (const auto& [p, member] : context.names.predicate_member) {
+        const check::Predicate& predicate = context.model.predicates[p];
+        const bool plain = predicate.plain_distance();
+        out.line("float distance_{}() const noexcept {{ return {}{}; }}", predicate.name, member,
+                 plain ? ".delta" : "");
+        const auto adaptive = context.names.threshold_member.find(p);
+        if (adaptive == context.names.threshold_member.end())
+            print_threshold(out, context, p);
+        else
+            out.line("float threshold_{}() const noexcept {{ return {}; }}", predicate.name,
+                     adaptive->second);
+        if (plain)
+            out.line("uint32_t nearest_{}() const noexcept {{ return {}.nearest; }}",
+                     predicate.name, member);
+        for (check::Index d : predicate.distances())
+            if (const auto nearest = context.names.nearest.find({p, d});
+                nearest != context.names.nearest.end())
+                out.line("uint32_t {}() const noexcept {{ return {}; }}", nearest->second.function,
+                         nearest->second.member);
+    }
 }
 
 }  // namespace etlc::emit

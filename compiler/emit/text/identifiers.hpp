@@ -25,4 +25,9 @@ std::string name_of(const check::Model& model, const check::Past& past);
 /// Returns the name of a max or min after one of its operands: "p_or_more".
 std::string with_more(const std::string& operand, bool max);
 
+// Shields generated code from macros: of platform headers, and single capital letters. Directives
+// around the code remove macros with names that it uses, and restore them after it.
+
+std::string shielded(const std::string& code);
+
 }  // namespace etlc::emit

@@ -1,8 +1,12 @@
 #include "emit/text/layout.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+
+#include "plan/program/value_type.hpp"
 
 namespace etlc::emit {
 
@@ -303,6 +307,100 @@ void print_aligned(Printer& out,
 
 std::string counted(std::string_view counter) {
     return fmt::format("if ({0} != UINT32_MAX) ++{0};", counter);
+}
+
+std::set<std::string> function_names(const plan::Plan& plan) {
+    const check::Model& model = *plan.model;
+    std::set<std::string> names{"max_of", "min_of"};
+    for (check::Index p : plan.predicates)
+        for (const char* prefix : {"distance_", "nearest_", "threshold_", "unseen_",
+                                   "initial_threshold_", "set_threshold_", "observe_"})
+            names.insert(prefix + model.predicates[p].name);
+    if (plan::value_type(plan.values).sourced)
+        for (const plan::Monitor& monitor : plan.monitors) names.insert("why_" + monitor.name);
+    for (const plan::Monitor& monitor : plan.monitors)
+        for (const char* prefix : {"restart_", "alarms_", "fulfilled_"})
+            if (monitor.restarts != check::Restarts::never) names.insert(prefix + monitor.name);
+    for (check::Index p : plan.predicates)
+        for (check::Index d : check::measured_targets(model, model.predicates[p]))
+            names.insert(fmt::format("nearest_{}_{}", model.predicates[p].name,
+                                     model.targets[model.distances[d].target].name));
+    for (const plan::Let& let : plan.lets)
+        for (const char* prefix : {"let_", "robustness_"})
+            names.insert(prefix + model.lets[let.index].name);
+    return names;
+}
+
+std::string shortened(const std::string& formula) {
+    constexpr std::size_t kLongest = 60;
+    if (formula.size() <= kLongest) return formula;
+    return formula.substr(0, std::min(fitting(formula, kLongest - 4), kLongest - 4)) + " ...";
+}
+
+std::string number(std::uint64_t x) {
+    return fmt::format("{}", x);
+}
+
+bool is_comment(const std::string& prefix) {
+    return prefix.starts_with("//");
+}
+
+namespace {
+
+/// Breaks the words of a cell into lines of at most `width`, unless a word is longer.
+std::vector<std::string> lines_of(std::string_view cell, std::size_t width) {
+    std::vector<std::string> lines;
+    while (cell.size() > width) {
+        const std::size_t end = fitting(cell, width);
+        if (end == cell.size()) break;
+        lines.emplace_back(cell.substr(0, end));
+        cell.remove_prefix(end + 1);
+    }
+    lines.emplace_back(cell);
+    return lines;
+}
+
+/// Returns the width of each column: of its widest cell. In a comment, words that do not fit
+/// continue below.
+std::vector<std::size_t> column_widths(const std::string& prefix, const std::vector<Row>& rows,
+                                       std::size_t first_number) {
+    constexpr std::size_t kWidestText = 40;
+    std::vector<std::size_t> widths(rows.front().size(), 0);
+    for (const Row& row : rows)
+        for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+    if (!is_comment(prefix)) return widths;
+    std::size_t before = prefix.size();
+    for (std::size_t c = 0; c < widths.size() && c < first_number; ++c) {
+        const bool last = c + 1 == widths.size();
+        widths[c] = std::min(widths[c], last ? kLineWidth - before : kWidestText);
+        before += widths[c] + 2;
+    }
+    return widths;
+}
+
+}  // namespace
+
+void print_table(Printer& out, const std::string& prefix, const std::vector<Row>& rows,
+                 std::size_t first_number) {
+    const std::vector<std::size_t> widths = column_widths(prefix, rows, first_number);
+    for (const Row& row : rows) {
+        std::vector<std::vector<std::string>> cells;
+        std::size_t height = 1;
+        for (std::size_t c = 0; c < row.size(); ++c) {
+            cells.push_back(lines_of(row[c], widths[c]));
+            height = std::max(height, cells.back().size());
+        }
+        for (std::size_t i = 0; i < height; ++i) {
+            std::string line = prefix;
+            for (std::size_t c = 0; c < row.size(); ++c) {
+                const std::string text = i < cells[c].size() ? cells[c][i] : "";
+                line += c < first_number ? fmt::format("{:<{}}  ", text, widths[c])
+                                         : fmt::format("{:>{}}  ", text, widths[c]);
+            }
+            line.erase(line.find_last_not_of(' ') + 1);
+            out.line(line);
+        }
+    }
 }
 
 }  // namespace etlc::emit

@@ -3,12 +3,15 @@
 // statements under a condition are in braces.
 #pragma once
 
+#include <cstdint>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "emit/text/printer.hpp"
+#include "plan/plan.hpp"
 
 namespace etlc::emit {
 
@@ -43,5 +46,26 @@ void print_aligned(Printer& out,
 
 /// Returns the statement that increments a counter, which saturates.
 std::string counted(std::string_view counter);
+
+// Names of functions that generated code has anyway, which no local may have.
+
+/// Returns the functions with an underscore in their names: of the runtime, and of the class, named
+/// after predicates and monitors.
+std::set<std::string> function_names(const plan::Plan& plan);
+
+// Prints tables of text, in a comment of the header or in a report.
+
+using Row = std::vector<std::string>;
+
+/// Returns the text of a cell: a formula, cut if it is long; a number.
+std::string shortened(const std::string& formula);
+std::string number(std::uint64_t x);
+
+/// Returns whether lines with this prefix are a comment, which is no wider than code.
+bool is_comment(const std::string& prefix);
+
+/// Prints a table. Columns from `first_number` on are numbers, and right-aligned.
+void print_table(Printer& out, const std::string& prefix, const std::vector<Row>& rows,
+                 std::size_t first_number);
 
 }  // namespace etlc::emit

@@ -11,8 +11,10 @@
 
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
+#include "etlmon/temporal/machine.hpp"
 #include "plan/program/program.hpp"
-#include "plan/targets/point_checks.hpp"
+#include "plan/program/reading.hpp"
+#include "plan/targets/kernels.hpp"
 
 namespace etlc::plan {
 
@@ -54,5 +56,47 @@ enum class Vectors : bool { without, with };
 /// Returns the bytes of the target sets and weights of these distances, exactly as the runtime lays
 /// them out (etlmon/layout.hpp); sets in the file of targets count as stored there.
 std::uint64_t target_bytes(const Plan& plan, const std::set<Index>& distances, Vectors vectors);
+
+// The streams that a Boolean monitor evaluates only on demand of a verdict. Only streams without
+// memory can wait; robustness is always computed, since every part of it can matter.
+
+struct Plan;
+
+/// Returns whether a stream of a Boolean monitor is evaluated on demand: an atom, or made of such;
+/// `known` has the answer for the streams before it.
+bool found_on_demand(const Stream& stream, const std::vector<bool>& known);
+
+struct Demand {
+    bool lazy = false;       ///< evaluated on demand
+    std::uint64_t work = 0;  ///< target elements that it may measure
+    std::uint64_t asks = 1;  ///< queries of atoms and kept values, at most
+    /// Whether its result is kept because several streams use it: otherwise queries double with
+    /// each level.
+    bool keeps = false;
+};
+std::vector<Demand> demands(const Plan& plan);
+
+// What the parts of a plan are estimated to cost.
+
+inline constexpr std::uint64_t kWord = sizeof(std::uint32_t);
+inline constexpr std::uint64_t kKeysPerValue = 2;
+/// For a window whose highs and lows differ: finding the blocks with highs of their own
+/// (etlmon::Parting).
+inline constexpr std::uint64_t kPartingComparisons = 6;
+/// The lists of greatest values that a step of a count combines, and their results.
+inline constexpr std::uint64_t kListsOnStack = 6;
+
+// Estimated code, measured on x86-64 and Cortex-M4 at -O2 and -Os and rounded up.
+inline constexpr std::uint64_t kCodePerValueOperation = 24;
+inline constexpr std::uint64_t kCodePerEnd = 16;
+inline constexpr std::uint64_t kCodePerReading = 64;
+inline constexpr std::uint64_t kCodePerWindow = 240;
+inline constexpr std::uint64_t kCodePerRing = 64;
+inline constexpr std::uint64_t kCodePerMean = 1200;       // of which all means share the most
+inline constexpr std::uint64_t kCodePerAdaptation = 144;  // observe_P() on a Cortex-M4 at -Os
+inline constexpr std::uint64_t kCodePerTable = 200;
+inline constexpr std::uint64_t kCodePerSamples = 600;
+inline constexpr std::uint64_t kTransitionBytes = sizeof(etlmon::Transition);
+inline constexpr std::uint64_t kStateBytes = sizeof(std::uint32_t) + sizeof(etlmon::Obligations);
 
 }  // namespace etlc::plan

@@ -1,7 +1,6 @@
 // The costs of streams and readings, the temporal half of a step.
 #include "etlmon/hosted/footprint.hpp"
 #include "plan/budget/budget.hpp"
-#include "plan/budget/estimates.hpp"
 #include "plan/program/value_type.hpp"
 
 namespace etlc::plan {

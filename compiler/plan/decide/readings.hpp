@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "plan/budget/budget.hpp"
-#include "plan/decide/machine.hpp"
+#include "plan/decide/automaton.hpp"
 #include "plan/program/program.hpp"
 
 namespace etlc::plan {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "plan/program/predicate_values.hpp"
 #include "plan/program/value_type.hpp"
 
 namespace etlc::plan {

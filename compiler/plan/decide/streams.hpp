@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "plan/budget/demand.hpp"
-#include "plan/program/stream.hpp"
+#include "plan/budget/budget.hpp"
+#include "plan/program/reading.hpp"
 
 namespace etlc::plan {
 

@@ -9,7 +9,7 @@
 #include "etlmon/temporal/shift.hpp"
 #include "etlmon/temporal/window.hpp"
 #include "etlmon/views.hpp"
-#include "plan/program/predicate_values.hpp"
+#include "plan/program/value_type.hpp"
 
 namespace etlc::plan {
 

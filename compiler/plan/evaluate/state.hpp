@@ -17,8 +17,8 @@
 #include "plan/evaluate/inputs.hpp"
 #include "plan/evaluate/past_state.hpp"
 #include "plan/evaluate/pending.hpp"
-#include "plan/program/members.hpp"
 #include "plan/program/program.hpp"
+#include "plan/program/reading.hpp"
 
 namespace etlc::plan {
 

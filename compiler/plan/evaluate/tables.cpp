@@ -3,10 +3,8 @@
 #include <algorithm>
 
 #include "plan/program/reading.hpp"
-#include "plan/program/stream.hpp"
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
-#include "plan/targets/point_checks.hpp"
 
 namespace etlc::plan {
 

@@ -13,7 +13,6 @@
 #include "check/model/model.hpp"
 #include "ir/lower.hpp"
 #include "plan/program/reading.hpp"
-#include "plan/program/stream.hpp"
 
 namespace etlc::plan {
 

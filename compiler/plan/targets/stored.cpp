@@ -7,7 +7,6 @@
 #include "etlmon/distance/layout.hpp"
 #include "etlmon/distance/search.hpp"
 #include "plan/targets/kernels.hpp"
-#include "plan/targets/point_checks.hpp"
 
 namespace etlc::plan {
 

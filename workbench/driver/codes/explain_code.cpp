@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "data/text/quote.hpp"
-#include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
 
 namespace etlc::driver {

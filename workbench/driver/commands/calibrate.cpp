@@ -9,7 +9,6 @@
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "driver/commands/commands.hpp"
-#include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
 #include "library/version.hpp"
 #include "parse/parse.hpp"

@@ -3,6 +3,7 @@
 // none, each whole; a function that returns false or nothing has reported why.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,12 +11,15 @@
 
 #include "artifacts/fitted.hpp"
 #include "artifacts/thresholds.hpp"
+#include "check/model/model.hpp"
 #include "diag/diag.hpp"
 #include "driver/commands/request.hpp"
 #include "driver/process/process.hpp"
 #include "episodes/shared/sharing.hpp"
 #include "evaluate/evaluate.hpp"
+#include "fit/suggest/suggest.hpp"
 #include "pipeline/compile.hpp"
+#include "plan/plan.hpp"
 #include "source/source.hpp"
 
 namespace etlc::driver {
@@ -167,5 +171,25 @@ std::optional<episodes::Sharing> read_parts(const std::vector<std::string>& path
 
 /// Returns the call without shards, with its result in `output` unless that is empty.
 std::vector<std::string> merged_call(const episodes::Part& part, const std::string& output);
+
+// Judges formulas over time for `etlc fit --suggest`: all candidates in one text of the spec,
+// trained and judged as `etlc crossvalidate` would.
+
+/// Returns the ranked candidates, or why there are none: an error in training or judging them is no
+/// error of the call.
+fit::SuggestedInTime suggest_in_time(const source::File& file, const check::Model& model,
+                                     const fit::Suggested& suggested, const Request& request,
+                                     const fit::Request& asked);
+
+// Traces of measurements in place of inputs: `distance_P` for each predicate P, and the bools.
+
+/// Returns a row of a CSV file.
+std::string csv_line(std::vector<std::string> cells);
+
+/// Names the column of a predicate, which is the `number`-th of the plan, from 1.
+std::string measured_name(const check::Model& model, check::Index p, std::size_t number);
+
+/// Returns the spec that reads such a trace: `predicate p = distance_p <= 0.4`.
+std::string measured_spec(const plan::Plan& plan);
 
 }  // namespace etlc::driver

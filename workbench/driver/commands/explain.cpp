@@ -7,7 +7,7 @@
 #include "data/files/file.hpp"
 #include "data/text/quote.hpp"
 #include "driver/commands/commands.hpp"
-#include "driver/process/output_file.hpp"
+#include "driver/process/process.hpp"
 #include "episodes/data_warnings.hpp"
 #include "episodes/replay.hpp"
 #include "explain/report.hpp"

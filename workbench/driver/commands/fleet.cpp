@@ -13,7 +13,6 @@
 #include "data/files/descriptor.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
 #include "library/version.hpp"
 #include "recordings/episodes.hpp"

@@ -5,9 +5,8 @@
 
 #include "check/check.hpp"
 #include "driver/commands/commands.hpp"
-#include "driver/process/output_file.hpp"
+#include "driver/process/process.hpp"
 #include "fit/fit.hpp"
-#include "label/page.hpp"
 #include "label/propose.hpp"
 #include "label/serve.hpp"
 #include "library/version.hpp"

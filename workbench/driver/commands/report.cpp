@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "driver/commands/commands.hpp"
-#include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
 #include "episodes/data_warnings.hpp"
 #include "recordings/episodes.hpp"

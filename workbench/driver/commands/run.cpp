@@ -11,7 +11,6 @@
 #include "data/files/file.hpp"
 #include "diag/diag.hpp"
 #include "driver/commands/commands.hpp"
-#include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
 #include "episodes/data_warnings.hpp"
 #include "episodes/replay.hpp"
@@ -21,7 +20,6 @@
 #include "recordings/episodes.hpp"
 #include "recordings/open.hpp"
 #include "source/escape.hpp"
-#include "watch/changes.hpp"
 #include "watch/summary.hpp"
 
 namespace etlc::driver {

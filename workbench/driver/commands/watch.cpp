@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "driver/commands/commands.hpp"
-#include "driver/process/output_file.hpp"
+#include "driver/process/process.hpp"
 #include "library/version.hpp"
 
 namespace etlc::driver {

@@ -17,7 +17,7 @@
 #include "data/text/quote.hpp"
 #include "diag/diag.hpp"
 #include "driver/options/call.hpp"
-#include "driver/process/output_file.hpp"
+#include "driver/process/process.hpp"
 #include "episodes/shared/part.hpp"
 #include "library/settings.hpp"
 #include "recordings/open.hpp"

@@ -9,8 +9,7 @@
 
 #include "diag/diag.hpp"
 #include "driver/options/call.hpp"
-#include "driver/options/option.hpp"
-#include "driver/process/output_file.hpp"
+#include "driver/options/table.hpp"
 #include "driver/process/process.hpp"
 #include "library/version.hpp"
 #include "source/escape.hpp"

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <thread>
 
-#include "embed/worker/pace.hpp"
 #include "embed/worker/pictures.hpp"
 #include "embed/worker/worker.hpp"
 #include "recordings/frames/protocol.hpp"

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "embed/worker/onnx.hpp"
-#include "embed/worker/onnxruntime.hpp"
 #include "embed/worker/prepare.hpp"
 
 namespace etlc::embed::worker {

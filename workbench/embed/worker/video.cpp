@@ -1,5 +1,6 @@
 // Decodes video with FFmpeg's libraries. Frames have the bytes of
 // `ffmpeg -i FILE -fps_mode passthrough -f rawvideo -pix_fmt rgb24 -`.
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -11,7 +12,6 @@
 #include <string>
 #include <string_view>
 
-#include "embed/worker/pace.hpp"
 #include "embed/worker/pictures.hpp"
 #include "embed/worker/worker.hpp"
 #include "recordings/frames/protocol.hpp"
@@ -231,3 +231,29 @@ void send_video(const std::string& path, const Words& options) {
 }
 
 }  // namespace etlc::embed::worker
+
+// etlc-embed-video: the only part that loads FFmpeg, whose libraries are many.
+
+namespace etlc::embed::worker {
+
+namespace {
+
+/// The words are those of etlc-embed behind "video".
+void run(const std::vector<std::string>& words) {
+    if (words.empty())
+        refuse(data::frames::kWrongCall, "etlc-embed-video belongs to etlc-embed: FILE ...");
+    limit_resources(data::frames::kMaxMemoryBytes);
+    const Words options({words.begin() + 1, words.end()});
+    if (options.text("--pace", "") == "live")
+        send_live(words[0]);
+    else
+        send_video(words[0], options);
+}
+
+}  // namespace
+
+}  // namespace etlc::embed::worker
+
+int main(int argc, char** argv) {
+    return etlc::embed::worker::guarded(argc, argv, etlc::embed::worker::run);
+}

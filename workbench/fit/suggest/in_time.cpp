@@ -11,7 +11,7 @@
 
 #include "check/guarantees/provenance.hpp"
 #include "diag/diag.hpp"
-#include "fit/suggest/candidates.hpp"
+#include "fit/suggest/suggest.hpp"
 
 namespace etlc::fit {
 

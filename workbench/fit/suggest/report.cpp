@@ -1,8 +1,10 @@
 // Prints suggestions as text and as JSON.
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "fit/suggest/in_time.hpp"
 #include "fit/suggest/suggest.hpp"
 #include "source/escape.hpp"
 
@@ -96,6 +98,120 @@ std::string json(const Suggested& suggested) {
         "{}],\n  \"in_time\": {}\n}}\n",
         suggested.episodes, suggested.frames, suggested.folds, fmt::join(all, ",\n    "),
         json(suggested.in_time));
+}
+
+// Prints suggestions in time as text and as JSON.
+
+namespace {
+
+constexpr std::size_t kShown = 12;  ///< candidates in a table for people
+
+std::string shown(const episodes::Figure& figure) {
+    if (!figure.value) return "-";
+    if (!figure.interval) return fmt::format("{:.3f}", *figure.value);
+    return fmt::format("{:.3f} [{:.3f}, {:.3f}]", *figure.value, figure.interval->low,
+                       figure.interval->high);
+}
+
+std::string shown(const std::optional<double>& value) {
+    return value ? fmt::format("{:.3f}", *value) : "-";
+}
+
+std::string row(const InTime& one, bool of_monitor) {
+    const std::string columns =
+        of_monitor ? fmt::format("{:>9}  {:>9}  ", shown(one.on_episodes), shown(one.on_variants))
+                   : "";
+    return fmt::format("{} {:20}  {}{}{}\n", one.ties ? '*' : ' ', shown(one.score), columns,
+                       one.formula, one.lines.empty() ? " (as it is)" : "");
+}
+
+/// Returns the predicate or monitor as it is, among the candidates.
+const InTime& as_it_is(const RankedInTime& all) {
+    return *std::find_if(all.ranked.begin(), all.ranked.end(),
+                         [](const InTime& one) { return one.lines.empty(); });
+}
+
+/// `monitors_gain`: whether some monitor is surely better with a formula than as it is; nothing
+/// without monitors.
+std::string text_of_ranking(const RankedInTime& all, std::optional<bool> monitors_gain) {
+    std::string text = all.of_monitor
+                           ? fmt::format(
+                                 "\nmonitor {}\n  mean                   episodes   variants  "
+                                 "in place of a predicate\n",
+                                 all.name)
+                           : fmt::format("\n{}\n  F1 by frame           formula\n", all.name);
+    const InTime& own = as_it_is(all);
+    for (const InTime& one : all.ranked)
+        if (&one - all.ranked.data() < static_cast<std::ptrdiff_t>(kShown) || &one == &own)
+            text += row(one, all.of_monitor);
+    if (all.clock) {
+        text += fmt::format("  {:20}  the number of the step alone\n", shown(all.clock));
+        const episodes::Figure& best = all.ranked.front().score;
+        if (best.value && (best.interval ? best.interval->low : *best.value) <= *all.clock)
+            text += "None is surely better than the number of the step.\n";
+    }
+    if (own.ties)
+        return text + fmt::format(
+                          "'{}' as it is may be as good as the best: these episodes show "
+                          "nothing to gain.\n",
+                          all.name);
+    const bool only_by_frame = !all.of_monitor && monitors_gain == false;
+    text += only_by_frame ? "\nBest by frame, though no monitor is surely better with a formula:\n"
+                          : "\nBest:\n";
+    for (const std::string& line : all.ranked.front().lines) text += fmt::format("  {}\n", line);
+    return text;
+}
+
+std::string number(const std::optional<double>& value) {
+    return value ? fmt::format("{}", *value) : "null";
+}
+
+std::string json_of(const InTime& one) {
+    std::vector<std::string> lines;
+    for (const std::string& line : one.lines) lines.push_back(source::json_string(line));
+    const auto end = [&](double episodes::Interval::*which) {
+        return number(one.score.interval ? std::optional((*one.score.interval).*which)
+                                         : std::nullopt);
+    };
+    return fmt::format(
+        "{{\"score\": {}, \"low\": {}, \"high\": {}, \"ties\": {}, \"episodes\": {}, "
+        "\"variants\": {},\n       \"formula\": {},\n       \"lines\": [{}]}}",
+        number(one.score.value), end(&episodes::Interval::low), end(&episodes::Interval::high),
+        one.ties, number(one.on_episodes), number(one.on_variants),
+        source::json_string(one.formula), fmt::join(lines, ",\n                 "));
+}
+
+}  // namespace
+
+std::string report(const SuggestedInTime& suggested) {
+    if (!suggested.why_not.empty())
+        return fmt::format("\nNothing was tried in time: {}\n", suggested.why_not);
+    std::string text = fmt::format(
+        "\nIn time{}: formulas beside the truth of\n"
+        "a predicate, by F1 over frames; and in its place in monitors, by the mean of the\n"
+        "agreements on episodes and on broken variants of them. *: may be as good as the best.\n",
+        suggested.folds > 0 ? fmt::format(", trained on other episodes ({} folds)", suggested.folds)
+                            : "");
+    std::optional<bool> monitors_gain;
+    for (const RankedInTime& one : suggested.all)
+        if (one.of_monitor) monitors_gain = monitors_gain.value_or(false) || !as_it_is(one).ties;
+    for (const RankedInTime& one : suggested.all) text += text_of_ranking(one, monitors_gain);
+    return text;
+}
+
+std::string json(const SuggestedInTime& suggested) {
+    std::vector<std::string> all;
+    for (const RankedInTime& one : suggested.all) {
+        std::vector<std::string> ranked;
+        for (const InTime& candidate : one.ranked) ranked.push_back(json_of(candidate));
+        all.push_back(fmt::format("{{\"{}\": {}, \"clock\": {}, \"ranked\": [\n      {}]}}",
+                                  one.of_monitor ? "monitor" : "predicate",
+                                  source::json_string(one.name), number(one.clock),
+                                  fmt::join(ranked, ",\n      ")));
+    }
+    return fmt::format("{{\"folds\": {}, \"why_not\": {}, \"of\": [\n    {}]}}", suggested.folds,
+                       suggested.why_not.empty() ? "null" : source::json_string(suggested.why_not),
+                       fmt::join(all, ",\n    "));
 }
 
 }  // namespace etlc::fit

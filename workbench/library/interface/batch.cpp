@@ -3,8 +3,7 @@
 
 #include <vector>
 
-#include "library/interface/checks.hpp"
-#include "library/interface/grids.hpp"
+#include "library/interface/call.hpp"
 
 namespace etlc::library {
 

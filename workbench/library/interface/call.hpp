@@ -4,11 +4,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 
+#include "check/model/model.hpp"
+#include "library/batch.hpp"
 #include "library/etlc.h"
-#include "library/held.hpp"
+#include "library/program.hpp"
 #include "library/session.hpp"
 
 namespace etlc::library {
@@ -134,6 +139,50 @@ template <class Struct>
 etlc_status check_struct(const Struct* given, const char* what) {
     if (given == nullptr) return refuse_null(what);
     return check_size(given->struct_size, sizeof(Struct), what);
+}
+
+// What is checked of samples in the memory of the caller.
+
+/// Refuses samples that are not one per input. `what`: their name in the message.
+etlc_status check_count(const Session& session, const void* samples, std::size_t count,
+                        const char* what);
+
+/// Refuses room for verdicts that is null, or larger than any memory.
+etlc_status check_verdicts(const void* verdicts, std::size_t count);
+
+/// Return ETLC_OK, or refuse the samples of an input. The room for the verdicts has been checked,
+/// so that `rows` times `steps` is no number that the caller made up.
+etlc_status check_sample(const check::Input& input, const etlc_sample& sample);
+etlc_status check_column(const check::Input& input, const etlc_column& column, std::uint64_t steps);
+etlc_status check_grid(const check::Input& input, const etlc_grid& grid, std::uint64_t rows,
+                       std::uint64_t steps);
+
+// What the functions for rows of steps check.
+
+constexpr std::uint64_t kMostRows = std::uint64_t{1} << 32U;
+constexpr std::uint32_t kMostThreads = 1024;
+
+/// Checks the samples of all inputs, the number of threads and the room for all verdicts.
+etlc_status check_grids(const Session& session, const Grids& samples, std::size_t grid_count,
+                        std::uint32_t threads, const void* verdicts, std::size_t count);
+
+/// Refuses a batch where the episode of an environment has ended.
+etlc_status check_none_ended(const Batch& batch);
+
+/// Returns how many threads work at these rows.
+inline std::uint32_t threads_for(std::uint32_t threads, const Grids& samples) {
+    const std::uint64_t most = std::max<std::uint64_t>(samples.rows, 1);
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(threads, 1, most));
+}
+
+/// Opens the session that `make` makes.
+template <class Make>
+etlc_status give_session(etlc_session* to, const char* what, const Make& make) {
+    if (to == nullptr) return refuse_null(what);
+    *to = 0;
+    *to = hold(make());
+    return *to != 0 ? etlc_status{ETLC_OK}
+                    : refuse(ETLC_OUT_OF_MEMORY, "too many sessions are open");
 }
 
 }  // namespace etlc::library

@@ -5,7 +5,7 @@
 #include "check/model/fingerprint.hpp"
 #include "data/text/quote.hpp"
 #include "library/interface/call.hpp"
-#include "library/samples.hpp"
+#include "library/program.hpp"
 
 namespace etlc::library {
 

@@ -7,7 +7,6 @@
 
 #include "diag/render.hpp"
 #include "library/interface/call.hpp"
-#include "library/open.hpp"
 #include "library/settings.hpp"
 #include "library/version.hpp"
 #include "recordings/open.hpp"

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lsp/spec/analysis.hpp"
@@ -68,5 +69,28 @@ Json diagnostics_of(const Analysis& analysis, const Planned* planned, const std:
 /// `planned`: null where monitors have not been planned.
 std::vector<std::string> facts_of(const Analysis& analysis, const std::string& name,
                                   const Planned* planned);
+
+// The words of the language and their meanings, one line each.
+
+struct WordInfo {
+    enum class Kind : std::uint8_t {
+        declaration,
+        keyword,
+        type,
+        unit,
+        operation,
+        aggregation,
+        function,
+        distance,
+    };
+    std::string_view word;
+    Kind kind;
+    std::string_view form;  ///< syntax: "F[a, b] f"
+    std::string_view meaning;
+};
+
+const std::vector<WordInfo>& all_words();
+/// Finds a word of the language; null for any other word.
+const WordInfo* find_word(std::string_view word);
 
 }  // namespace etlc::lsp

@@ -1,5 +1,3 @@
-#include "lsp/answers/answers.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "check/numbers/duration.hpp"
-#include "lsp/answers/words.hpp"
+#include "check/numbers/decimal.hpp"
+#include "lsp/answers/answers.hpp"
 #include "lsp/spec/analysis.hpp"
 #include "parse/continuations.hpp"
 
@@ -251,6 +249,22 @@ Json completion(const Question& question) {
                       {std::string(info->meaning)});
     }
     return {{"isIncomplete", false}, {"items", items.take()}};
+}
+
+const std::vector<WordInfo>& all_words() {
+    static const std::vector<WordInfo> all{
+#define WORD(word, kind, form, meaning) WordInfo{word, WordInfo::Kind::kind, form, meaning},
+#include "lsp/answers/words.def"
+#undef WORD
+    };
+    return all;
+}
+
+const WordInfo* find_word(std::string_view word) {
+    const auto& all = all_words();
+    const auto found =
+        std::find_if(all.begin(), all.end(), [word](const WordInfo& w) { return w.word == word; });
+    return found == all.end() ? nullptr : &*found;
 }
 
 }  // namespace etlc::lsp

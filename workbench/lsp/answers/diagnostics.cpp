@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "lsp/text/uri.hpp"
+#include "lsp/text/json.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::lsp {

@@ -2,14 +2,57 @@
 // is missing or has another type.
 #pragma once
 
-#include <cstdint>
 #include <nlohmann/json.hpp>
+
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "lsp/text/position.hpp"
+#include "source/source.hpp"
 
 namespace etlc::lsp {
+
+// Converts byte offsets of UTF-8 text to the protocol's lines and characters, and back.
+// Keeps true: lines end at \n, \r\n or \r; a character is a UTF-16 unit, or a byte where the client
+// agreed to that; every position has an offset: a position beyond a line maps to its end, one
+// beyond the text to the end of the text, one inside a character to its beginning.
+
+enum class Encoding : std::uint8_t { utf16, utf8 };
+
+struct Position {
+    std::uint32_t line = 0;
+    std::uint32_t character = 0;
+
+    auto operator<=>(const Position&) const = default;
+};
+
+struct Range {
+    Position start;
+    Position end;
+
+    bool operator==(const Range&) const = default;
+};
+
+/// The lines of a text, which must outlive them.
+class Lines {
+public:
+    Lines(std::string_view text, Encoding encoding);
+
+    std::size_t count() const { return begins_.size(); }
+    std::uint32_t offset(Position position) const;
+    Position position(std::uint32_t offset) const;
+    Range range(source::Span span) const { return {position(span.begin), position(span.end)}; }
+    source::Span span(Range range) const { return {offset(range.start), offset(range.end)}; }
+
+private:
+    /// Returns the end of a line, before its line break.
+    std::uint32_t end_of(std::size_t line) const;
+
+    std::string_view text_;
+    Encoding encoding_;
+    std::vector<std::uint32_t> begins_{0};
+};
 
 using Json = nlohmann::json;
 
@@ -53,5 +96,14 @@ bool nests_too_deep(std::string_view text);
 
 /// Returns a message with its header. Bytes that are not UTF-8 become U+FFFD.
 std::string framed(const Json& message);
+
+// Converts between the URIs of documents and the paths of files.
+
+/// Returns the path of a file: URI. For any other, such as that of an unsaved text, returns the
+/// last part, so that files of the spec are looked for in the working directory.
+std::string path_of_uri(std::string_view uri);
+
+/// Returns the file: URI of a path, which is made absolute.
+std::string uri_of_path(const std::string& path);
 
 }  // namespace etlc::lsp
