@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "parse/continuations.hpp"
+#include "parse/expected.hpp"
 #include "parse/foreign/foreign.hpp"
 
 namespace etlc::parse {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "diag/diag.hpp"
+#include "parse/stream/stuck.hpp"
 #include "parse/stream/tokens.hpp"
 
 namespace etlc::parse {

@@ -1,5 +1,7 @@
 #include "parse/words.hpp"
 
+#include "parse/stream/tokens.hpp"
+
 #include "EtlLexer.h"
 
 namespace etlc::parse {

@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "parse/stream/tokens.hpp"
 #include "source/source.hpp"
 
 namespace etlc::parse {
@@ -30,9 +29,5 @@ std::vector<Word> words_of(const source::File& file);
 
 /// Whether the grammar accepts `text` as a name; contextual words count.
 bool is_name(std::string_view text);
-
-// The words of a file that has been lexed.
-
-std::vector<Word> words_of(const Tokens& tokens, const source::File& file);
 
 }  // namespace etlc::parse

@@ -24,7 +24,7 @@ if(D3)
   add_file(d3.js "${text}")
 endif()
 
-file(WRITE "${OUTPUT}" "#include \"report/page.hpp\"
+file(WRITE "${OUTPUT}" "#include \"report/document.hpp\"
 
 // C++ compilers need not support strings as long as these.
 #pragma GCC diagnostic ignored \"-Woverlength-strings\"

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "parse/stream/stuck.hpp"
 #include "parse/stream/tokens.hpp"
 
 namespace etlc::parse {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <exception>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -11,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "EtlParser.h"
 #include "antlr4-runtime.h"
 #include "ast/ast.hpp"
 #include "diag/diag.hpp"
+#include "parse/words.hpp"
 #include "source/source.hpp"
 
 namespace etlc::parse {
@@ -53,6 +52,9 @@ std::optional<ast::Formula::Kind> operator_kind(std::size_t type);
 
 /// Returns the spelling of a token type that has only one; otherwise empty.
 std::string keyword(std::size_t type);
+
+/// The words of a file that has been lexed.
+std::vector<Word> words_of(const Tokens& tokens, const source::File& file);
 
 // Splits tokens into slices, one for each declaration, which are parsed separately. A slice ends
 // with its ';', before a word that begins another declaration, or at EOF. Slices cover all tokens
@@ -100,66 +102,6 @@ private:
     Slice slice_;
     std::size_t at_ = 0;  ///< from the beginning of the slice
     antlr4::CommonToken end_;
-};
-
-// The state of ANTLR's parser where it cannot go on.
-
-struct Stuck {
-    const Token* found;            ///< EOF if the slice ended
-    const Token* previous;         ///< nullptr if nothing was read yet
-    const Token* before_previous;  ///< nullptr if there is none
-    const Token* following;        ///< after `found`; nullptr at the end of the slice
-    antlr4::misc::IntervalSet expected;
-    std::size_t rule;         ///< EtlParser::Rule...
-    std::size_t parent_rule;  ///< of the calling rule
-    std::size_t declaration;  ///< type of the first token in the slice
-    bool looked_ahead;        ///< `found` lies after the token at which the parser had to decide
-
-    bool expects(std::size_t type) const { return expected.contains(type); }
-
-    /// Returns the rule that the parser is in, or the one around a name.
-    std::size_t rule_around() const {
-        return rule == grammar::EtlParser::RuleName ? parent_rule : rule;
-    }
-
-    /// Whether the place is in the declaration of a let, a truth or a monitor.
-    bool in_formula() const {
-        switch (declaration) {
-            case grammar::EtlParser::LET:
-            case grammar::EtlParser::TRUTH:
-            case grammar::EtlParser::MONITOR:
-            case grammar::EtlParser::SLIDING:
-            case grammar::EtlParser::RESTARTABLE:
-            case grammar::EtlParser::REPEATING: return true;
-            default: return false;
-        }
-    }
-};
-
-/// Stops the parser at its first error; ANTLR's own recovery and messages are never used.
-class StopAtError : public antlr4::ANTLRErrorStrategy {
-public:
-    void reset(antlr4::Parser* /*parser*/) override {}
-    Token* recoverInline(antlr4::Parser* parser) override {
-        stop(parser, parser->getCurrentToken());
-        return nullptr;
-    }
-    void recover(antlr4::Parser* parser, std::exception_ptr error) override {
-        try {
-            std::rethrow_exception(error);
-        } catch (const antlr4::RecognitionException& e) {
-            stop(parser, e.getOffendingToken());
-        }
-    }
-    void sync(antlr4::Parser* /*parser*/) override {}
-    bool inErrorRecoveryMode(antlr4::Parser* /*parser*/) override { return false; }
-    void reportMatch(antlr4::Parser* /*parser*/) override {}
-    void reportError(antlr4::Parser* /*parser*/,
-                     const antlr4::RecognitionException& /*error*/) override {}
-
-private:
-    /// Throws.
-    virtual void stop(antlr4::Parser* parser, const Token* found) = 0;
 };
 
 }  // namespace etlc::parse
