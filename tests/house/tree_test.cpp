@@ -42,7 +42,7 @@ TEST(Tree, DistancesAreNamedInOneFile) {
         "compiler/reference/distance.cpp",      "workbench/episodes/exact_distance.cpp",
         "workbench/calibrate/bounds.cpp",       "compiler/plan/targets/narrow_targets.cpp",
         "workbench/lsp/answers/words.def",      "compiler/parse/foreign/words.def",
-        "workbench/fit/suggest/candidates.cpp", "runtime/include/etlmon/hosted/error_bounds.hpp"};
+        "workbench/fit/suggest/suggest.cpp", "runtime/include/etlmon/hosted/error_bounds.hpp"};
     static const std::regex kWord(R"(\b(l2sq|linf)\b)");
     static const std::regex kComment(R"(//[^\n]*)");
     for (const char* folder : {"base", "compiler", "workbench", "runtime", "grammar"}) {

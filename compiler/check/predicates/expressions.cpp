@@ -1,5 +1,4 @@
-// Checks EXPR: scalars, numbers, aggregated distances and arithmetic. Numbers that earlier steps
-// have a part in are checked in pasts.cpp.
+// Checks EXPR: scalars, numbers, aggregated distances and arithmetic.
 
 #include <fmt/format.h>
 

@@ -31,7 +31,7 @@ std::string text_of(const Token& token, const source::File& file);
 /// Returns the token in quotes, shortened if long; "the end of the file" for EOF.
 std::string quoted(const Token& token, const source::File& file);
 
-/// Whether the language has no such token; parse/foreign/mistakes.cpp explains it.
+/// Whether the language has no such token; parse/foreign/foreign.cpp explains it.
 bool is_mistake(const Token& token);
 
 /// Reserved words cannot be names; contextual words can.

@@ -31,7 +31,7 @@ public:
 
     /// Returns one end of a stream, or both, as a term.
     Term term(Slot slot, End end = End::both) const;
-    /// Returns whether the stream is evaluated on demand (plan/budget/demand.hpp).
+    /// Returns whether the stream is evaluated on demand (plan/budget/budget.hpp).
     bool on_demand(Slot slot) const { return on_demand_[slot]; }
 
     Slot constant(Value value);

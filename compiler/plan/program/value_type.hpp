@@ -1,6 +1,6 @@
 // The value types of formulas: the sizes of values and of what contains them, and whether they are
 // evaluated on demand. After planning nothing branches on the type; the emitter has a row of words
-// for each (emit/spelling.hpp).
+// for each (emit/names.hpp).
 #pragma once
 
 #include <cstdint>

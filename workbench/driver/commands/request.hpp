@@ -52,7 +52,7 @@ struct Request : pipeline::Options {
 
     // The compiler.
     bool explains = false;     ///< the class has why_NAME()
-    std::string emit = "hpp";  ///< ast, graph, plan, or a backend of emit/backends.cpp
+    std::string emit = "hpp";  ///< ast, graph, plan, or a backend of emit/header.cpp
     std::string name_space;
     std::string standalone;      ///< emit::Options::standalone
     std::string depfile;         ///< empty: none
