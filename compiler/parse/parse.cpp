@@ -9,8 +9,8 @@
 #include "parse/build.hpp"
 #include "parse/foreign/foreign.hpp"
 #include "parse/stream/tokens.hpp"
+#include "parse/stream/words.hpp"
 #include "parse/syntax_error.hpp"
-#include "parse/words.hpp"
 #include "source/utf8.hpp"
 
 namespace etlc::parse {

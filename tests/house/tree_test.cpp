@@ -39,9 +39,9 @@ TEST(Tree, DistancesAreNamedInOneFile) {
     static const std::set<std::string> kTheirs = {"runtime/include/etlmon/distance/distances.def",
                                                   "grammar/EtlLexer.g4"};
     static const std::set<std::string> kDefinitions = {
-        "compiler/reference/distance.cpp",      "workbench/episodes/exact_distance.cpp",
-        "workbench/calibrate/bounds.cpp",       "compiler/plan/targets/narrow_targets.cpp",
-        "workbench/lsp/answers/words.def",      "compiler/parse/foreign/words.def",
+        "compiler/reference/distance.cpp",   "workbench/episodes/exact_distance.cpp",
+        "workbench/calibrate/bounds.cpp",    "compiler/plan/targets/narrow_targets.cpp",
+        "workbench/lsp/answers/words.def",   "compiler/parse/foreign/words.def",
         "workbench/fit/suggest/suggest.cpp", "runtime/include/etlmon/hosted/error_bounds.hpp"};
     static const std::regex kWord(R"(\b(l2sq|linf)\b)");
     static const std::regex kComment(R"(//[^\n]*)");

@@ -10,7 +10,7 @@
 #include "diag/diag.hpp"
 #include "lsp/format/format.hpp"
 #include "parse/parse.hpp"
-#include "parse/words.hpp"
+#include "parse/stream/words.hpp"
 
 namespace etlc::lsp {
 

@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "parse/words.hpp"
+#include "parse/stream/words.hpp"
 #include "parsing.hpp"
 
 namespace {

@@ -13,7 +13,7 @@
 #include "antlr4-runtime.h"
 #include "ast/ast.hpp"
 #include "diag/diag.hpp"
-#include "parse/words.hpp"
+#include "parse/stream/words.hpp"
 #include "source/source.hpp"
 
 namespace etlc::parse {

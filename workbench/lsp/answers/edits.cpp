@@ -7,7 +7,7 @@
 #include "lsp/answers/answers.hpp"
 #include "lsp/format/format.hpp"
 #include "parse/parse.hpp"
-#include "parse/words.hpp"
+#include "parse/stream/words.hpp"
 
 namespace etlc::lsp {
 

@@ -3,7 +3,7 @@
 
 #include "lsp/answers/answers.hpp"
 #include "lsp/text/json.hpp"
-#include "parse/words.hpp"
+#include "parse/stream/words.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::lsp {

@@ -7,7 +7,7 @@
 #include "ast/ast.hpp"
 #include "diag/diag.hpp"
 #include "parse/parse.hpp"
-#include "parse/words.hpp"
+#include "parse/stream/words.hpp"
 #include "source/utf8.hpp"
 
 namespace etlc::lsp {

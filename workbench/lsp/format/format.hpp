@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "parse/words.hpp"
+#include "parse/stream/words.hpp"
 #include "source/source.hpp"
 
 namespace etlc::lsp {

@@ -7,7 +7,7 @@
 #include "check/context/context.hpp"
 #include "lsp/text/json.hpp"
 #include "parse/parse.hpp"
-#include "parse/words.hpp"
+#include "parse/stream/words.hpp"
 #include "recordings/open.hpp"
 
 namespace etlc::lsp {

@@ -15,7 +15,7 @@
 #include "check/context/scope.hpp"
 #include "diag/diag.hpp"
 #include "lsp/text/json.hpp"
-#include "parse/words.hpp"
+#include "parse/stream/words.hpp"
 #include "pipeline/compile.hpp"
 #include "source/source.hpp"
 

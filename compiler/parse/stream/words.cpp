@@ -1,4 +1,4 @@
-#include "parse/words.hpp"
+#include "parse/stream/words.hpp"
 
 #include "parse/stream/tokens.hpp"
 
