@@ -1,3 +1,5 @@
+// What a plan computes: streams, readings, the terms that readings compute, and their members.
+//
 // Readings: rho of prefix monitors at the position where they began, and its bounds over every
 // continuation. Every reading is straight-line code, a table, a formula over the last positions, or
 // a max or min of readings.
