@@ -10,7 +10,7 @@
 #include "parse/stream/tokens.hpp"
 #include "parse/syntax_error.hpp"
 #include "parse/token_words.hpp"
-#include "source/utf8.hpp"
+#include "source/text.hpp"
 
 namespace etlc::parse {
 

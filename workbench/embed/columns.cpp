@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "data/files/file.hpp"
-#include "data/text/number.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "data/traces/csv.hpp"
 #include "recordings/open.hpp"
 
@@ -96,13 +95,13 @@ diag::Result<std::vector<Array>> read_arrays(data::Trace& trace,
 diag::Result<std::vector<Array>> arrays_beside(const check::Model& model, const std::string& path) {
     const auto channels = channels_of(model, path);
     if (!channels) return channels.failure();
-    const auto trace = data::open_trace(path, *channels);
+    const auto trace = recordings::open_trace(path, *channels);
     if (!trace) return trace.failure();
     return read_arrays(**trace, *channels, 1);
 }
 
 diag::Result<std::vector<Array>> arrays_in(const check::Model& model, const Recording& recording,
-                                           const data::NamesInFile& names) {
+                                           const recordings::NamesInFile& names) {
     std::vector<Channel> channels;
     for (const check::Input& input : model.inputs) {
         if (input.encoder != check::kNone) continue;
@@ -118,7 +117,8 @@ diag::Result<std::vector<Array>> arrays_in(const check::Model& model, const Reco
         if (name.starts_with("truth."))
             channels.push_back({name, Channel::Kind::boolean, 1, false});
     if (channels.empty()) return std::vector<Array>{};
-    const auto trace = data::open_trace(recording.columns, data::renamed(channels, names));
+    const auto trace =
+        recordings::open_trace(recording.columns, recordings::renamed(channels, names));
     if (!trace) return trace.failure();
     return read_arrays(**trace, channels, recording.stride);
 }

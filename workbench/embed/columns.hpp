@@ -20,6 +20,6 @@ diag::Result<std::vector<Array>> arrays_beside(const check::Model& model, const 
 /// Reads the inputs that no encoder makes, and the labels that `names` has, from
 /// `recording.columns`.
 diag::Result<std::vector<Array>> arrays_in(const check::Model& model, const Recording& recording,
-                                           const data::NamesInFile& names);
+                                           const recordings::NamesInFile& names);
 
 }  // namespace etlc::embed

@@ -115,7 +115,7 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
     fix_order_of_sums();
     const auto labelled = episodes::labelled_in(model, paths.front(), request.reading);
     if (!labelled) {
-        sink.report(data::in_trace(labelled.failure(), paths.front()));
+        sink.report(recordings::in_trace(labelled.failure(), paths.front()));
         return std::nullopt;
     }
     Needs needs = needs_of(model);

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "fit/algebra/linear.hpp"
 #include "fit/fit.hpp"
 

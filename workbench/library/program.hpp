@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "compile.hpp"
 #include "diag/diag.hpp"
-#include "library/open.hpp"
-#include "plan/evaluate/tables.hpp"
+#include "execute/tables.hpp"
 #include "source/source.hpp"
 
 namespace etlc::library {
@@ -19,13 +19,13 @@ using check::Index;
 class Program {
 public:
     /// Takes the compiled `file` and its findings.
-    Program(source::File file, pipeline::Compiled compiled, const diag::Sink& sink);
+    Program(source::File file, Compiled compiled, const diag::Sink& sink);
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;
 
     const plan::Plan& plan() const { return compiled_.plan; }
     const check::Model& model() const { return *compiled_.model; }
-    const std::shared_ptr<const plan::Tables>& tables() const { return tables_; }
+    const std::shared_ptr<const execute::Tables>& tables() const { return tables_; }
     const std::string& warnings() const { return warnings_; }
     const std::string& formula(std::size_t monitor) const { return formulas_[monitor]; }
     const std::string& predicate_name(Index predicate) const { return names_[predicate]; }
@@ -35,8 +35,8 @@ public:
 
 private:
     source::File file_;
-    pipeline::Compiled compiled_;
-    std::shared_ptr<const plan::Tables> tables_;
+    Compiled compiled_;
+    std::shared_ptr<const execute::Tables> tables_;
     std::string warnings_;
     std::vector<std::string> formulas_;  ///< per monitor of the plan
     std::vector<std::string> names_;     ///< per predicate of the model

@@ -25,7 +25,7 @@ void widen(const check::Input& input, const void* data, float* to) {
     }
 }
 
-void take(const check::Input& input, const void* data, plan::Sample& sample) {
+void take(const check::Input& input, const void* data, execute::Sample& sample) {
     sample.present = data != nullptr;
     if (!sample.present) return;
     sample.values.resize(input.dimension);

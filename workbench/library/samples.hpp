@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "check/model/model.hpp"
+#include "execute/inputs.hpp"
 #include "library/etlc.h"
-#include "plan/evaluate/inputs.hpp"
 
 namespace etlc::library {
 
@@ -39,6 +39,6 @@ inline const void* at(const etlc_grid& grid, std::uint64_t steps, std::uint64_t 
 void widen(const check::Input& input, const void* data, float* to);
 
 /// Puts a sample, or that it is missing, where the evaluator reads it.
-void take(const check::Input& input, const void* data, plan::Sample& sample);
+void take(const check::Input& input, const void* data, execute::Sample& sample);
 
 }  // namespace etlc::library

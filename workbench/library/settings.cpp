@@ -9,8 +9,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "data/text/number.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::library {
 

@@ -10,7 +10,7 @@
 #include <new>
 #include <utility>
 
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::report {
 

@@ -42,7 +42,7 @@ private:
     }
 
     std::optional<std::vector<Picture>> images(const std::vector<std::string>& paths) {
-        const auto source = data::open_images(paths);
+        const auto source = recordings::open_images(paths);
         if (!source) return fail(source.failure(), paths[0]);
         return all_of(**source, paths);
     }
@@ -53,7 +53,7 @@ private:
         std::vector<std::uint64_t> wanted = frames;
         std::sort(wanted.begin(), wanted.end());
         wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-        const auto source = data::open_video(path, {.only = wanted});
+        const auto source = recordings::open_video(path, {.only = wanted});
         if (!source) return fail(source.failure(), path);
         const auto decoded = all_of(**source, {path});
         if (!decoded) return std::nullopt;
@@ -65,10 +65,10 @@ private:
         return rows;
     }
 
-    std::optional<std::vector<Picture>> all_of(data::FrameSource& source,
+    std::optional<std::vector<Picture>> all_of(recordings::FrameSource& source,
                                                const std::vector<std::string>& paths) {
         std::vector<Picture> decoded;
-        data::Frame frame;
+        recordings::Frame frame;
         for (;;) {
             const auto more = source.next(frame);
             if (!more)

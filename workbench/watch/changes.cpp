@@ -11,7 +11,7 @@ Changes::Changes(const plan::Plan& plan)
     : plan_(plan), said_(plan.monitors.size(), "undecided"), inputs_(plan.inputs.size()) {}
 
 std::string Changes::after(std::uint64_t step, const std::vector<etlmon::Verdict>& verdicts,
-                           const plan::Evaluator& evaluator) {
+                           const execute::Evaluator& evaluator) {
     std::string text;
     for (std::size_t i = 0; i < inputs_.size(); ++i)
         text += of_input(static_cast<check::Index>(i), step,
@@ -22,7 +22,7 @@ std::string Changes::after(std::uint64_t step, const std::vector<etlmon::Verdict
 }
 
 std::string Changes::after_finish(std::uint64_t step, const std::vector<etlmon::Verdict>& verdicts,
-                                  const plan::Evaluator& evaluator) {
+                                  const execute::Evaluator& evaluator) {
     std::string text;
     for (std::size_t m = 0; m < said_.size(); ++m)
         if (plan_.monitors[m].sliding) text += of_monitor(m, step, verdicts[m], evaluator);
@@ -30,7 +30,7 @@ std::string Changes::after_finish(std::uint64_t step, const std::vector<etlmon::
 }
 
 std::string Changes::of_monitor(std::size_t m, std::uint64_t step, const etlmon::Verdict& verdict,
-                                const plan::Evaluator& evaluator) {
+                                const execute::Evaluator& evaluator) {
     const plan::Monitor& monitor = plan_.monitors[m];
     std::string words = status(verdict);
     if (!monitor.sliding && verdict.decided()) words += verdict.final() ? " for good" : " so far";
@@ -48,7 +48,7 @@ std::string Changes::of_monitor(std::size_t m, std::uint64_t step, const etlmon:
 }
 
 std::string Changes::of_input(check::Index input, std::uint64_t step,
-                              const plan::SampleCounts& counts) {
+                              const execute::SampleCounts& counts) {
     OfInput& known = inputs_[input];
     const char* const why = counts.missing > known.counts.missing             ? "is missing"
                             : counts.out_of_range > known.counts.out_of_range ? "is out of range"

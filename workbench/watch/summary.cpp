@@ -69,7 +69,7 @@ std::string Summary::of_sliding(const OfMonitor& m, std::uint64_t horizon) const
                        when(*plan_.model, m.worst->step - horizon));
 }
 
-std::string Summary::of_input(check::Index input, const plan::SampleCounts& counts) const {
+std::string Summary::of_input(check::Index input, const execute::SampleCounts& counts) const {
     std::vector<std::string> parts;
     if (counts.missing > 0) parts.push_back(fmt::format("{} missing", counts.missing));
     if (counts.out_of_range > 0)
@@ -80,7 +80,7 @@ std::string Summary::of_input(check::Index input, const plan::SampleCounts& coun
     return fmt::format("input {}: {}\n", plan_.model->inputs[input].name, text);
 }
 
-std::string Summary::text(std::uint64_t steps, const plan::Evaluator& evaluator) const {
+std::string Summary::text(std::uint64_t steps, const execute::Evaluator& evaluator) const {
     std::string text;
     for (std::size_t i = 0; i < monitors_.size(); ++i) {
         const OfMonitor& m = monitors_[i];
@@ -96,7 +96,7 @@ std::string Summary::text(std::uint64_t steps, const plan::Evaluator& evaluator)
     }
     text += fmt::format("{}\n", diag::counted(steps, "step"));
     for (const check::Index input : plan_.inputs) {
-        const plan::SampleCounts& counts = evaluator.sample_counts()[input];
+        const execute::SampleCounts& counts = evaluator.sample_counts()[input];
         if (counts.missing + counts.out_of_range + counts.stale > 0)
             text += of_input(input, counts);
     }

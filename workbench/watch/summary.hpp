@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "etlmon/temporal/verdict.hpp"
-#include "plan/evaluate/evaluator.hpp"
+#include "execute/evaluator.hpp"
 #include "plan/program/program.hpp"
 
 namespace etlc::watch {
@@ -28,7 +28,7 @@ public:
     /// Adds a verdict about a new position of the monitor.
     void add(std::size_t monitor, std::uint64_t step, const etlmon::Verdict& verdict);
 
-    std::string text(std::uint64_t steps, const plan::Evaluator& evaluator) const;
+    std::string text(std::uint64_t steps, const execute::Evaluator& evaluator) const;
 
 private:
     /// A robustness and its step.
@@ -51,7 +51,7 @@ private:
     std::string of_prefix(const OfMonitor& monitor) const;
     std::string of_repeating(const OfMonitor& monitor) const;
     std::string of_sliding(const OfMonitor& monitor, std::uint64_t horizon) const;
-    std::string of_input(check::Index input, const plan::SampleCounts& counts) const;
+    std::string of_input(check::Index input, const execute::SampleCounts& counts) const;
 
     const plan::Plan& plan_;
     std::vector<OfMonitor> monitors_;

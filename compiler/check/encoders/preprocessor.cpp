@@ -11,7 +11,7 @@
 #include "artifacts/json.hpp"
 #include "check/encoders/encoders.hpp"
 #include "check/numbers/decimal.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::check {
 

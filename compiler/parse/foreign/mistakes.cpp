@@ -8,7 +8,7 @@
 
 #include "EtlLexer.h"
 #include "parse/foreign/foreign.hpp"
-#include "source/utf8.hpp"
+#include "source/text.hpp"
 
 namespace etlc::parse {
 

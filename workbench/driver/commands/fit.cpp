@@ -8,7 +8,7 @@
 #include "parse/parse.hpp"
 #include "recordings/episodes.hpp"
 #include "recordings/open.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::driver {
 
@@ -55,7 +55,7 @@ bool fit(const source::File& file, const Request& request, diag::Sink& sink) {
     asked.version = library::kVersion;
     const std::string output =
         request.output.empty() ? fitted::default_path(file.path()) : request.output;
-    asked.episodes = data::find_episodes(request.data, request.groups, sink);
+    asked.episodes = recordings::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return false;
     if (!read_labels({&*model}, request, asked.episodes, asked.reading, sink)) return false;
     if (request.fit.suggest) return suggest(file, *model, options, request, asked, sink);

@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::driver {
 

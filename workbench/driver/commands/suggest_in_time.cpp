@@ -4,10 +4,10 @@
 #include <map>
 
 #include "calibrate/scores.hpp"
+#include "compile.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/commands/crossvalidate.hpp"
 #include "episodes/folds.hpp"
-#include "library/open.hpp"
 #include "parse/parse.hpp"
 
 namespace etlc::driver {
@@ -49,7 +49,7 @@ public:
             return std::nullopt;
         }
         if (model->fitted.empty() && calibrate::calibrated_predicates(*model).empty()) {
-            const auto compiled = library::compile(file_, request_.check, request_, of_spec);
+            const auto compiled = compile(file_, request_.check, request_, of_spec);
             if (compiled) return judge_as_it_is(*compiled, file_.path(), request_, asked_, sink);
             sink.add(of_spec, "");
             return std::nullopt;

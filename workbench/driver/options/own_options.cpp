@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "data/text/number.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "driver/options/mistakes.hpp"
 #include "driver/options/table.hpp"
 #include "recordings/open.hpp"
@@ -73,7 +72,7 @@ Takes page() {
 /// A trace that is watched comes on standard input.
 Takes checked_trace() {
     return checked(text("-", in(&Call::trace)), [](const std::string& found) {
-        return found == data::kStandardInput
+        return found == recordings::kStandardInput
                    ? std::string()
                    : fmt::format("found {}, expected -, standard input; etlc run reads files",
                                  data::in_quotes(found));

@@ -13,7 +13,7 @@
 #include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
 #include "library/version.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::driver {
 

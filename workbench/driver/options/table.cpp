@@ -153,7 +153,7 @@ std::vector<Option> make_options() {
 
         // Recordings.
         {kFindEpisodes, "--data", texts("FILE...", in(&Call::data)),
-         "episodes: files (" + data::trace_endings() + "), folders, data sets, 'patterns'",
+         "episodes: files (" + recordings::trace_endings() + "), folders, data sets, 'patterns'",
          kRequired},
         {embed, "--data", texts("FILE...", in(&Call::data)),
          "recordings to make episodes of: videos, folders of images, data sets, .npz and .h5 files "

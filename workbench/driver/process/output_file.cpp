@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using diag::Code;
 
 std::string words(const std::string& path, bool is_input) {
-    if (is_input && path == data::kStandardInput) return "standard input";
+    if (is_input && path == recordings::kStandardInput) return "standard input";
     return path == kStandardOutput ? "standard output" : path;
 }
 

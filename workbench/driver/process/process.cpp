@@ -8,8 +8,8 @@
 #include <exception>
 #include <new>
 
-#include "data/files/descriptor.hpp"
-#include "data/spill/file.hpp"
+#include "data/files/file.hpp"
+#include "data/spill/spill.hpp"
 #include "diag/render.hpp"
 
 namespace etlc::driver {

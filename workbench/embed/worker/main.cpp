@@ -10,7 +10,7 @@ namespace etlc::embed::worker {
 
 namespace {
 
-using namespace data::frames;
+using namespace recordings::frames;
 using Strings = std::vector<std::string>;
 
 /// Replaces this process by the program beside it that decodes video.

@@ -24,7 +24,7 @@ namespace etlc::embed::worker {
 namespace {
 
 namespace fs = std::filesystem;
-using data::frames::kNoRuntime;
+using recordings::frames::kNoRuntime;
 using Paths = std::vector<fs::path>;
 
 constexpr std::string_view kLibrary = "libonnxruntime.so";

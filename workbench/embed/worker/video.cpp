@@ -20,7 +20,7 @@ namespace etlc::embed::worker {
 
 namespace {
 
-using namespace data::frames;
+using namespace recordings::frames;
 
 // https://www.rfc-editor.org/rfc/rfc8794 (EBML), section 11, and RFC 9559 (Matroska)
 constexpr std::uint64_t kHead = 0x1A45DFA3;

@@ -9,8 +9,8 @@ namespace {
 /// The words are those of etlc-embed behind "video".
 void run(const std::vector<std::string>& words) {
     if (words.empty())
-        refuse(data::frames::kWrongCall, "etlc-embed-video belongs to etlc-embed: FILE ...");
-    limit_resources(data::frames::kMaxMemoryBytes);
+        refuse(recordings::frames::kWrongCall, "etlc-embed-video belongs to etlc-embed: FILE ...");
+    limit_resources(recordings::frames::kMaxMemoryBytes);
     const Words options({words.begin() + 1, words.end()});
     if (options.text("--pace", "") == "live")
         send_live(words[0]);

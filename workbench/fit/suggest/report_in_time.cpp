@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "fit/suggest/in_time.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::fit {
 

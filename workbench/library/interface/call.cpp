@@ -4,7 +4,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "data/spill/file.hpp"
+#include "data/spill/spill.hpp"
 
 namespace etlc::library {
 

@@ -4,7 +4,7 @@
 
 #include "lsp/answers/words.hpp"
 #include "parse/words.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::lsp {
 

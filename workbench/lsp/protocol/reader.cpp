@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "data/text/number.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::lsp {
 

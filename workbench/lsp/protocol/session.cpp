@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "data/spill/file.hpp"
+#include "data/spill/spill.hpp"
 
 namespace etlc::lsp {
 

@@ -10,10 +10,10 @@
 
 #include "ast/ast.hpp"
 #include "check/check.hpp"
+#include "compile.hpp"
 #include "diag/diag.hpp"
 #include "lsp/spec/names.hpp"
 #include "lsp/text/position.hpp"
-#include "pipeline/compile.hpp"
 #include "source/source.hpp"
 
 namespace etlc::lsp {
@@ -41,7 +41,7 @@ private:
 
 struct Planned {
     diag::Sink sink;
-    std::optional<pipeline::Compiled> compiled;
+    std::optional<Compiled> compiled;
 };
 
 /// A text that is open in the client.

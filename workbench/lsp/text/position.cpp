@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "source/utf8.hpp"
+#include "source/text.hpp"
 
 namespace etlc::lsp {
 
