@@ -10,7 +10,7 @@
 #include "artifacts/file.hpp"
 #include "data/arrays/array.hpp"
 #include "data/files/hash.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::embedded {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::artifacts {
 

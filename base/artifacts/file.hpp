@@ -15,9 +15,9 @@
 #include "artifacts/reader.hpp"
 #include "artifacts/writer.hpp"
 #include "data/arrays/archive.hpp"
-#include "data/files/bytes.hpp"
+#include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::artifacts {
 

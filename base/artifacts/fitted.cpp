@@ -6,7 +6,7 @@
 
 #include "artifacts/file.hpp"
 #include "data/arrays/array.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::fitted {
 namespace {

@@ -5,8 +5,7 @@
 #include <charconv>
 
 #include "data/files/hash.hpp"
-#include "data/text/number.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::artifacts {
 

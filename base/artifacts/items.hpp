@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "artifacts/json.hpp"
-#include "data/traces/known.hpp"
+#include "data/traces/overlap.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::artifacts {

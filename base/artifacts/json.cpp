@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <unordered_set>
 
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::artifacts {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "data/files/bytes.hpp"
+#include "data/files/file.hpp"
 #include "diag/diag.hpp"
 #include "source/source.hpp"
 

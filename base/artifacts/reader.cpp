@@ -8,7 +8,7 @@
 
 #include "data/arrays/array.hpp"
 #include "data/files/hash.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::artifacts {
 

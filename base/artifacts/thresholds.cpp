@@ -7,7 +7,7 @@
 
 #include "artifacts/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/text/number.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::thresholds {
 namespace {

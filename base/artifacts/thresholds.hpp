@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "data/traces/known.hpp"
+#include "data/traces/overlap.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::thresholds {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "artifacts/reader.hpp"
-#include "data/arrays/npz_writer.hpp"
-#include "data/traces/known.hpp"
+#include "data/arrays/archive.hpp"
+#include "data/traces/overlap.hpp"
 
 namespace etlc::artifacts {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "source/utf8.hpp"
+#include "source/text.hpp"
 
 namespace etlc::source {
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "compile.hpp"
 #include "diag/render.hpp"
-#include "library/settings.hpp"
 #include "plan/targets/kernels.hpp"
 #include "timing.hpp"
 
@@ -63,7 +63,7 @@ public:
           verdicts_(std::size_t{2} * environments) {
         source::File file("reach.etl", text_);
         diag::Sink sink;
-        compiled_ = library::compile(file, {}, {}, sink);
+        compiled_ = compile(file, {}, {}, sink);
         if (!compiled_) throw std::runtime_error(diag::render_text(file, sink));
         prepared_ = plan::prepared_rows(*compiled_->model, compiled_->model->distances[0]);
         etlc_options options = ETLC_OPTIONS;
@@ -119,7 +119,7 @@ private:
     std::string text_;
     std::vector<float> z_, gripper_;
     std::vector<etlc_verdict> verdicts_;
-    std::optional<pipeline::Compiled> compiled_;
+    std::optional<Compiled> compiled_;
     std::vector<float> prepared_;
     std::vector<etlc_session> sessions_;
     etlc_session batch_ = 0;

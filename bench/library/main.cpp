@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "compile.hpp"
 #include "diag/render.hpp"
 #include "etlmon/distance/widen.hpp"
-#include "library/settings.hpp"
-#include "plan/evaluate/evaluator.hpp"
+#include "execute/evaluator.hpp"
 #include "timing.hpp"
 
 namespace {
@@ -21,13 +21,13 @@ namespace {
 using namespace etlc;
 
 constexpr std::size_t kSteps = 1024;
-using Steps = std::vector<std::vector<plan::Sample>>;
+using Steps = std::vector<std::vector<execute::Sample>>;
 
 /// A sample in the formats of a program and of the evaluator.
 struct Sample {
     std::vector<unsigned char> bytes;
     etlc_sample given;
-    plan::Sample taken;
+    execute::Sample taken;
 };
 
 template <class Element, class Random, class Widen>
@@ -97,12 +97,12 @@ struct Trace {
 void compare(const std::string& path) {
     source::File file;
     diag::Sink sink;
-    std::optional<pipeline::Compiled> compiled;
-    if (library::read_spec(path, file, sink)) compiled = library::compile(file, {}, {}, sink);
+    std::optional<Compiled> compiled;
+    if (read_spec(path, file, sink)) compiled = compile(file, {}, {}, sink);
     if (!compiled) throw std::runtime_error(diag::render_text(file, sink));
     const Trace trace(*compiled->model);
 
-    plan::Evaluator evaluator(compiled->plan);
+    execute::Evaluator evaluator(compiled->plan);
     etlc_options options = ETLC_OPTIONS;
     options.path = path.c_str();
     etlc_session session = 0;

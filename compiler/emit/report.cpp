@@ -8,7 +8,7 @@
 #include "emit/emit.hpp"
 #include "emit/text/layout.hpp"
 #include "emit/text/printer.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::emit {
 

@@ -9,9 +9,8 @@
 #include "parse/build.hpp"
 #include "parse/foreign/foreign.hpp"
 #include "parse/stream/tokens.hpp"
-#include "parse/stream/words.hpp"
 #include "parse/syntax_error.hpp"
-#include "source/utf8.hpp"
+#include "source/text.hpp"
 
 namespace etlc::parse {
 

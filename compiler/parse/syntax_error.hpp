@@ -6,7 +6,6 @@
 
 #include "diag/diag.hpp"
 #include "parse/stream/stuck.hpp"
-#include "parse/stream/tokens.hpp"
 
 namespace etlc::parse {
 

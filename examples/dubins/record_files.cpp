@@ -6,7 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "data/arrays/npz_writer.hpp"
+#include "data/arrays/archive.hpp"
 
 namespace demo {
 

@@ -12,9 +12,9 @@
 #include "chains.hpp"
 #include "check/guarantees/guarantees.hpp"
 #include "check/guarantees/provenance.hpp"
+#include "compile.hpp"
 #include "episodes.hpp"
 #include "episodes/replay.hpp"
-#include "pipeline/compile.hpp"
 #include "random.hpp"
 #include "roads.hpp"
 
@@ -118,9 +118,9 @@ Misses misses_of_monitor(const check::Model& model, const std::vector<std::strin
     for (const Index p : check::predicates_of(model, model.monitors[0].formula))
         if (!check::is_own_truth(model, p)) labelled.push_back(p);
     diag::Sink sink;
-    const auto monitors = pipeline::compile(model, {}, sink);
+    const auto monitors = compile(model, {}, sink);
     const auto truth = episodes::ground_truth(calibrate::unshifted(model), labelled);
-    const auto truths = pipeline::compile(truth.model, {{}, check::Values::boolean}, sink);
+    const auto truths = compile(truth.model, {{}, check::Values::boolean}, sink);
     const episodes::Leaks leaks(model, {});
     const episodes::Wanted wanted =
         episodes::wanted(model, {&monitors->plan, &truths->plan}, labelled, leaks);

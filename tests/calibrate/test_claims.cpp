@@ -9,7 +9,7 @@
 #include "check/guarantees/guarantees.hpp"
 #include "driver/commands/commands.hpp"
 #include "episodes/truth.hpp"
-#include "plan/evaluate/evaluator.hpp"
+#include "execute/evaluator.hpp"
 #include "random.hpp"
 #include "roads.hpp"
 
@@ -73,12 +73,12 @@ bool breaks(const check::Claim& claim, const etlmon::Verdict& said, const etlmon
 
 void count(const driver::Compiled& monitors, const driver::Compiled& truths, Random& random,
            std::map<std::string, KeptClaims>& kept) {
-    plan::Evaluator said(monitors.plan);
-    plan::Evaluator is(truths.plan);
+    execute::Evaluator said(monitors.plan);
+    execute::Evaluator is(truths.plan);
     const Drawn episode(random);
     std::set<std::string> broken;
     for (std::size_t t = 0; t < episode.x.size(); ++t) {
-        std::vector<plan::Sample> samples{{true, {episode.x[t]}}, {true, {episode.s[t]}}};
+        std::vector<execute::Sample> samples{{true, {episode.x[t]}}, {true, {episode.s[t]}}};
         const auto& verdicts = said.step(samples);
         samples.push_back({true, {episode.label[t] ? 1.0F : 0.0F}});
         const auto& truth = is.step(samples);
@@ -118,14 +118,13 @@ std::map<std::string, KeptClaims> draws(const std::string& spec, bool of_predica
         request.check.thresholds_path = file.path();
         request.values = values;
         diag::Sink sink;
-        const auto monitors = driver::compile(source::File("t.etl", spec), request, sink);
+        const auto monitors = compile(source::File("t.etl", spec), request.check, request, sink);
         if (!monitors) {
             ADD_FAILURE() << thresholds;
             return kept;
         }
         auto truth = episodes::ground_truth(*monitors->model, {0});
-        const auto truths =
-            pipeline::compile(std::move(truth.model), {{}, check::Values::boolean}, sink);
+        const auto truths = compile(std::move(truth.model), {{}, check::Values::boolean}, sink);
         for (int i = 0; i < kFresh; ++i) count(*monitors, *truths, random, kept);
     }
     return kept;

@@ -11,10 +11,10 @@
 #include "calibrate/bounds.hpp"
 #include "check/guarantees/conformal.hpp"
 #include "check/points/project.hpp"
+#include "execute/evaluator.hpp"
 #include "generated_program.hpp"
 #include "ir/lower.hpp"
 #include "loading.hpp"
-#include "plan/evaluate/evaluator.hpp"
 #include "plan/plan.hpp"
 #include "random.hpp"
 
@@ -137,12 +137,12 @@ struct Deployed : testing::Test {
         std::vector<Index> predicates(model.predicates.size());
         for (Index i = 0; i < predicates.size(); ++i) predicates[i] = i;
         const plan::Plan plan = plan::measuring(model, predicates);
-        plan::Evaluator evaluator(plan);
+        execute::Evaluator evaluator(plan);
         calibrate::PastIntervals pasts(model, plan);
         for (std::size_t i = 0; i < trace.size(); ++i) {
             if (i % kSteps == 0) evaluator.reset();
             if (i % kSteps == 0) pasts.reset();
-            std::vector<plan::Sample> samples;
+            std::vector<execute::Sample> samples;
             for (const auto& values : trace[i])
                 samples.push_back({true, {values.begin(), values.end()}});
             evaluator.step(samples);
@@ -266,7 +266,7 @@ TEST_F(Deployed, IntervalsWithinAStepAreThoseAfterIt) {
     diag::Sink sink;
     const auto plan = plan::plan(program, {}, sink, check::Values::robustness);
     ASSERT_TRUE(plan);
-    plan::Evaluator evaluator(*plan);
+    execute::Evaluator evaluator(*plan);
     calibrate::PastIntervals pasts(model, *plan);
     std::size_t frame = 0;
     std::size_t compared = 0;
@@ -281,7 +281,7 @@ TEST_F(Deployed, IntervalsWithinAStepAreThoseAfterIt) {
         }
     });
     for (frame = 0; frame < kSteps && !HasFailure(); ++frame) {
-        std::vector<plan::Sample> samples;
+        std::vector<execute::Sample> samples;
         for (const auto& values : trace[frame])
             samples.push_back({true, {values.begin(), values.end()}});
         evaluator.step(samples);

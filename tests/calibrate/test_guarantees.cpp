@@ -10,9 +10,9 @@
 #include "check/check.hpp"
 #include "check/guarantees/guarantees.hpp"
 #include "episodes/truth.hpp"
+#include "execute/evaluator.hpp"
 #include "ir/lower.hpp"
 #include "parse/parse.hpp"
-#include "plan/evaluate/evaluator.hpp"
 #include "plan/plan.hpp"
 #include "random.hpp"
 
@@ -126,7 +126,7 @@ constexpr int kDemonstrations = 12;
 constexpr int kGuaranteeDraws = 2000;
 
 struct ScoredEpisode {
-    std::vector<std::vector<plan::Sample>> samples;  ///< x, y, s
+    std::vector<std::vector<execute::Sample>> samples;  ///< x, y, s
     std::vector<bool> a, b;
 };
 
@@ -169,7 +169,7 @@ std::vector<calibrate::Scores> score(const ScoredEpisode& episode) {
 struct Steppable {
     ir::Program program;
     plan::Plan plan;
-    plan::Evaluator evaluator;
+    execute::Evaluator evaluator;
 
     explicit Steppable(const check::Model& model)
         : program(ir::lower(model)), plan(planned(program)), evaluator(plan) {}
@@ -219,7 +219,7 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
         std::vector<bool> success(model.monitors.size());
         std::vector<bool> alarm(model.monitors.size());
         for (std::size_t t = 0; t < kEpisodeSteps; ++t) {
-            std::vector<plan::Sample> samples = test.samples[t];
+            std::vector<execute::Sample> samples = test.samples[t];
             const auto& said = monitors.evaluator.step(samples);
             samples.push_back({true, {test.a[t] ? 1.0F : 0.0F}});
             samples.push_back({true, {test.b[t] ? 1.0F : 0.0F}});

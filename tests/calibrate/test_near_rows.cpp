@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "plan/evaluate/near_rows.hpp"
+#include "execute/tables.hpp"
 #include "plan/targets/kernels.hpp"
 #include "random.hpp"
 
@@ -68,7 +68,7 @@ TEST(NearRows, HoldTheNearestOfAll) {
         const double condition = i % 2 == 0 ? 1 : 1e7;
         const double scale = i % 5 == 0 ? 1e-22 : i % 7 == 0 ? 1e17 : i % 11 == 0 ? 1e30 : 1;
         Scene scene(random, condition, scale, i % 3 == 0 ? 1000 : 0);
-        plan::NearRows near(scene.distance, scene.target);
+        execute::NearRows near(scene.distance, scene.target);
         const std::vector<std::uint32_t> rows = near.of(scene.z.data(), 2);
         ASSERT_FALSE(rows.empty());
         ASSERT_TRUE(std::is_sorted(rows.begin(), rows.end()));

@@ -174,7 +174,7 @@ public:
         driver::Request request;
         request.check.thresholds_path = file.path();
         diag::Sink sink;
-        driver::compile(source::File("t.etl", spec(targets.path())), request, sink);
+        etlc::compile(source::File("t.etl", spec(targets.path())), request.check, request, sink);
         return error_codes(sink);
     }
 

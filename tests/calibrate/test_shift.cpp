@@ -9,10 +9,10 @@
 
 #include "calibrate/shift.hpp"
 #include "check/check.hpp"
+#include "execute/evaluator.hpp"
 #include "ir/lower.hpp"
 #include "npy_bytes.hpp"
 #include "parse/parse.hpp"
-#include "plan/evaluate/evaluator.hpp"
 #include "random.hpp"
 
 namespace etlc::tests {
@@ -77,13 +77,13 @@ struct Runs {
     std::vector<etlmon::Verdict> said, truth;
 };
 
-Runs run(plan::Evaluator& said, plan::Evaluator& truth, const ShiftedEpisode& episode) {
+Runs run(execute::Evaluator& said, execute::Evaluator& truth, const ShiftedEpisode& episode) {
     Runs runs;
     said.reset();
     truth.reset();
     for (std::size_t t = 0; t < kShiftSteps; ++t) {
-        const plan::Sample x{true, {episode.x[t]}};
-        const plan::Sample px{true, {episode.label[t] ? 1.0F : 0.0F}};
+        const execute::Sample x{true, {episode.x[t]}};
+        const execute::Sample px{true, {episode.label[t] ? 1.0F : 0.0F}};
         runs.said.push_back(said.step({x, px})[0]);
         runs.truth.push_back(truth.step({x, px, px})[0]);
     }
@@ -106,8 +106,8 @@ TEST(Shift, CoversDrawnEpisodes) {
         const bool alarms = against == "missed_alarm";
         const Planned unshifted(calibrate::unshifted(model_of(against, 0)));
         const Planned truths(episodes::ground_truth(unshifted.model, {0}).model);
-        plan::Evaluator said(unshifted.plan);
-        plan::Evaluator truth(truths.plan);
+        execute::Evaluator said(unshifted.plan);
+        execute::Evaluator truth(truths.plan);
         Random random(77);
         int covered = 0;
         for (int draw = 0; draw < kShiftDraws; ++draw) {
@@ -119,7 +119,7 @@ TEST(Shift, CoversDrawnEpisodes) {
             ASSERT_EQ(fit.k, 8U);
             const ShiftedEpisode test = random_episode(random);
             const Planned shifted(model_of(against, alarms ? fit.epsilon : -fit.epsilon));
-            plan::Evaluator calibrated(shifted.plan);
+            execute::Evaluator calibrated(shifted.plan);
             const Runs before = run(said, truth, test);
             const Runs after = run(calibrated, truth, test);
             bool missed = false;
@@ -148,8 +148,8 @@ thresholds::Entry shift_at_the_rank(const std::string& formula, const std::strin
     const check::Model model = model_of(against, 0, formula);
     const Planned unshifted(calibrate::unshifted(model));
     const Planned truths(episodes::ground_truth(unshifted.model, {0}).model);
-    plan::Evaluator said(unshifted.plan);
-    plan::Evaluator truth(truths.plan);
+    execute::Evaluator said(unshifted.plan);
+    execute::Evaluator truth(truths.plan);
     Random random(78);
     std::vector<double> scores;
     std::vector<std::unique_ptr<TemporaryPath>> files;

@@ -44,7 +44,7 @@ std::optional<evaluate::Judgement> run(const std::string& spec,
     const source::File file("t.etl", spec);
     driver::Request compiling;
     compiling.check.judged_lets = true;
-    const auto compiled = driver::compile(file, compiling, sink);
+    const auto compiled = compile(file, compiling.check, compiling, sink);
     if (!compiled) return std::nullopt;
     evaluate::Request request;
     request.episodes = folder.files;

@@ -148,7 +148,7 @@ Opened opened(episodes::KeptTraces& kept, const std::string& path, const Channel
 }
 
 std::string in_file(const std::string& path, const Channels& channels) {
-    const auto trace = data::open_trace(path, channels);
+    const auto trace = recordings::open_trace(path, channels);
     return trace ? samples(**trace, channels.size()) : trace.failure().message;
 }
 

@@ -31,7 +31,7 @@ void compile(const source::File& file, check::Values values) {
     driver::Request request;
     request.values = values;
     diag::Sink sink;
-    const auto compiled = driver::compile(file, request, sink);
+    const auto compiled = etlc::compile(file, request.check, request, sink);
     fuzz::require(compiled.has_value() != sink.has_errors(), "there is a plan or an error");
     require_proportion(file, sink);
     if (!compiled) return;

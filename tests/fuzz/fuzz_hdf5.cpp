@@ -34,13 +34,13 @@ private:
 };
 
 void list(const std::string& path) {
-    const auto names = data::list_hdf5(path, "*/*");
+    const auto names = recordings::list_hdf5(path, "*/*");
     if (!names) return fuzz::require_printable(names.failure().message);
     for (const std::string& name : *names) fuzz::require_printable(name);
 }
 
 void step_through(const std::string& path, const std::vector<data::Channel>& channels) {
-    auto trace = data::open_hdf5_trace(path, "", channels);
+    auto trace = recordings::open_hdf5_trace(path, "", channels);
     if (!trace) return fuzz::require_printable(trace.failure().message);
     data::Sample sample;
     for (std::uint64_t steps = 0;; ++steps) {
@@ -57,9 +57,9 @@ void step_through(const std::string& path, const std::vector<data::Channel>& cha
 }
 
 void look(const std::string& path) {
-    auto images = data::open_hdf5_images(path, "", "", true);
+    auto images = recordings::open_hdf5_images(path, "", "", true);
     if (!images) return fuzz::require_printable(images.failure().message);
-    data::Frame frame;
+    recordings::Frame frame;
     for (int image = 0; image < 3; ++image) {
         const auto more = (*images)->next(frame);
         if (!more) return fuzz::require_printable(more.failure().message);

@@ -14,13 +14,13 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* found, std::size_t size) {
         for (std::size_t i = 0; i < kSum; ++i)
             bytes[content + i] = static_cast<char>(sum >> (8 * i));
     }
-    const auto incident = data::parse_incident(bytes);
+    const auto incident = recordings::parse_incident(bytes);
     if (!incident) {
         fuzz::require_printable(incident.failure().message);
         return 0;
     }
     fuzz::require(incident->alarm < incident->rows.size(), "the alarm is one of the rows");
-    for (const data::Incident::Row& row : incident->rows) {
+    for (const recordings::Incident::Row& row : incident->rows) {
         fuzz::require(row.figures.size() == incident->rows.front().figures.size(),
                       "rows have one shape");
         fuzz::require(row.bytes.size() == incident->rows.front().bytes.size(),

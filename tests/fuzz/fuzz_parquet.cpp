@@ -9,7 +9,7 @@
 namespace {
 
 using namespace etlc;
-using namespace etlc::data::parquet;
+using namespace etlc::recordings::parquet;
 
 constexpr int kMostRows = 50;  // a header may declare any number of nulls
 

@@ -8,7 +8,7 @@
 #include "artifacts/fitted.hpp"
 #include "artifacts/thresholds.hpp"
 #include "check/guarantees/consistency.hpp"
-#include "data/arrays/npz_writer.hpp"
+#include "data/arrays/archive.hpp"
 #include "fuzz_target.hpp"
 
 namespace {

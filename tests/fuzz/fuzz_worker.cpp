@@ -11,7 +11,7 @@
 #include <string>
 
 #include "artifacts/embedded.hpp"
-#include "data/arrays/npz_writer.hpp"
+#include "data/arrays/archive.hpp"
 #include "embed/encoder.hpp"
 #include "embed/worker/onnx.hpp"
 #include "fuzz_target.hpp"
@@ -51,24 +51,25 @@ private:
 };
 
 void read_frames(const std::string& path) {
-    auto frames = data::open_images({path});
+    auto frames = recordings::open_images({path});
     fuzz::require(static_cast<bool>(frames), "the program is started");
-    data::Frame frame;
+    recordings::Frame frame;
     for (;;) {
         const auto more = (*frames)->next(frame);
         if (!more) return fuzz::require_printable(more.failure().message);
         if (!*more) return;
         const std::uint64_t pixels = std::uint64_t{frame.height} * frame.width;
-        fuzz::require(pixels > 0 && pixels <= data::frames::kMaxPixels, "a frame has its limits");
+        fuzz::require(pixels > 0 && pixels <= recordings::frames::kMaxPixels,
+                      "a frame has its limits");
         fuzz::require(frame.rgb.size() == 3 * pixels, "a frame has all its pixels");
     }
 }
 
 /// Makes this many frames of one pixel.
-class Pixels final : public data::FrameSource {
+class Pixels final : public recordings::FrameSource {
 public:
     explicit Pixels(std::uint64_t count) : left_(count) {}
-    diag::Result<bool> next(data::Frame& frame) override {
+    diag::Result<bool> next(recordings::Frame& frame) override {
         frame = {1, 1, "rgb"};
         return left_-- > 0;
     }

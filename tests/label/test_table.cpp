@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "data/files/descriptor.hpp"
+#include "data/files/file.hpp"
 #include "episodes/labels/labels.hpp"
 #include "label/table.hpp"
 #include "npy_bytes.hpp"

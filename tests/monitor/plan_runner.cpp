@@ -9,10 +9,10 @@
 
 namespace etlc::tests {
 
-std::vector<plan::Sample> samples_of(const reference::Step& step) {
-    std::vector<plan::Sample> samples;
+std::vector<execute::Sample> samples_of(const reference::Step& step) {
+    std::vector<execute::Sample> samples;
     for (const std::vector<double>& values : step) {
-        plan::Sample sample;
+        execute::Sample sample;
         sample.present = !values.empty();
         for (const double value : values) sample.values.push_back(static_cast<float>(value));
         samples.push_back(std::move(sample));

@@ -9,7 +9,7 @@
 #include "adaptive.hpp"
 #include "check/model/model.hpp"
 #include "compare.hpp"
-#include "plan/evaluate/evaluator.hpp"
+#include "execute/evaluator.hpp"
 #include "plan/plan.hpp"
 #include "reference/reference.hpp"
 
@@ -36,7 +36,7 @@ public:
 private:
     const check::Model& model_;
     std::optional<plan::Plan> plan_;
-    std::optional<plan::Evaluator> evaluator_;
+    std::optional<execute::Evaluator> evaluator_;
     std::string refusal_;
 
     std::vector<reference::Verdict> verdicts(const std::vector<etlmon::Verdict>& from) const;
@@ -48,7 +48,7 @@ private:
 };
 
 /// A step of a trace in the format of the evaluator.
-std::vector<plan::Sample> samples_of(const reference::Step& step);
+std::vector<execute::Sample> samples_of(const reference::Step& step);
 
 /// Converts a verdict of the runtime to the reference's type.
 reference::Verdict observed(const etlmon::Verdict& verdict);

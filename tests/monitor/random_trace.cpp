@@ -150,7 +150,7 @@ reference::Trace read_csv(const check::Model& model, const std::string& path) {
         channels.push_back({input.name, kind, input.dimension});
     }
     reference::Trace result;
-    auto trace = data::open_trace(path, channels);
+    auto trace = recordings::open_trace(path, channels);
     if (!trace) {
         ADD_FAILURE() << trace.failure().message;
         return result;

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "compile.hpp"
 #include "emit/emit.hpp"
+#include "execute/evaluator.hpp"
 #include "library/version.hpp"
 #include "loading.hpp"
-#include "pipeline/compile.hpp"
-#include "plan/evaluate/evaluator.hpp"
 #include "prove/prove.hpp"
 #include "reference/reference.hpp"
 
@@ -24,13 +24,12 @@ inline int effort() {
     return text == nullptr ? 1 : std::max(1, std::atoi(text));
 }
 
-inline std::optional<pipeline::Compiled> compiled(const std::string& text, check::Values values) {
+inline std::optional<Compiled> compiled(const std::string& text, check::Values values) {
     auto model = load(text);
     if (!model) return std::nullopt;
     diag::Sink sink;
-    return pipeline::compile(std::move(*model),
-                             {.limits = {16U << 20U, 16U << 20U, 64U << 20U}, .values = values},
-                             sink);
+    return compile(std::move(*model),
+                   {.limits = {16U << 20U, 16U << 20U, 64U << 20U}, .values = values}, sink);
 }
 
 inline std::string header_of(const plan::Plan& plan) {
@@ -41,10 +40,10 @@ inline diag::Result<prove::Proof> proof_of(const plan::Plan& plan, std::uint32_t
     return prove::prove(plan, {header_of(plan), "proved", steps});
 }
 
-inline std::vector<plan::Sample> samples(const reference::Step& step) {
-    std::vector<plan::Sample> result;
+inline std::vector<execute::Sample> samples(const reference::Step& step) {
+    std::vector<execute::Sample> result;
     for (const std::vector<double>& values : step) {
-        plan::Sample sample;
+        execute::Sample sample;
         sample.present = !values.empty();
         for (const double value : values) sample.values.push_back(static_cast<float>(value));
         result.push_back(std::move(sample));

@@ -59,7 +59,7 @@ constexpr const char* kRestarts =
     "restartable monitor one = F[2, 3] a;\nrepeating monitor other = G (a -> F[1, 2] b);\n"
     "monitor plain = F[1, 2] b;\n";
 
-prove::Proof proof_without(const pipeline::Compiled& spec, const std::string& line) {
+prove::Proof proof_without(const Compiled& spec, const std::string& line) {
     std::string header = header_of(spec.plan);
     const std::size_t at = header.find(line);
     EXPECT_NE(at, std::string::npos) << line;

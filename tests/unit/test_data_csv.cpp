@@ -6,13 +6,15 @@
 #include <cmath>
 #include <locale>
 
-#include "data/text/number.hpp"
+#include "data/text/text.hpp"
 #include "data/traces/csv.hpp"
 #include "data/traces/trace_formats.hpp"
 #include "npy_bytes.hpp"
 #include "recordings/open.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 namespace {
 
 using diag::Code;
@@ -390,4 +392,4 @@ TEST(Number, WholeTextOrNothing) {
 }
 
 }  // namespace
-}  // namespace etlc::data
+}  // namespace etlc::recordings

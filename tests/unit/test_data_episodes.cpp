@@ -11,7 +11,9 @@
 #include "recordings/episodes.hpp"
 #include "recordings/open.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 namespace {
 
 namespace fs = std::filesystem;
@@ -154,4 +156,4 @@ TEST(EpisodeHash, IsThatOfTheFloat32Values) {
 }
 
 }  // namespace
-}  // namespace etlc::data
+}  // namespace etlc::recordings

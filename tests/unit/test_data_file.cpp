@@ -7,10 +7,9 @@
 #include <filesystem>
 
 #include "data/arrays/array.hpp"
-#include "data/files/bytes.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "npy_bytes.hpp"
 
 namespace etlc::data {

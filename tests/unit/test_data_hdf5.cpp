@@ -13,7 +13,9 @@
 #include "recordings/hdf5/hdf5.hpp"
 #include "recordings/open.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 namespace {
 
 namespace fs = std::filesystem;
@@ -247,4 +249,4 @@ TEST_F(Hdf5Reader, MayBeMissing) {
 }
 
 }  // namespace
-}  // namespace etlc::data
+}  // namespace etlc::recordings

@@ -5,7 +5,9 @@
 #include "etlmon/temporal/recorder.hpp"
 #include "recordings/incident.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 namespace {
 
 using diag::Code;
@@ -95,4 +97,4 @@ TEST(Incident, AHeadThatContradictsItsRowsIsRefused) {
 }
 
 }  // namespace
-}  // namespace etlc::data
+}  // namespace etlc::recordings

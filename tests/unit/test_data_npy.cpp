@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "data/arrays/array.hpp"
-#include "data/arrays/elements.hpp"
 #include "npy_bytes.hpp"
 
 namespace etlc::data {

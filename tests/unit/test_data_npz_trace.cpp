@@ -7,7 +7,9 @@
 #include "npy_bytes.hpp"
 #include "recordings/open.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 namespace {
 
 using diag::Code;
@@ -247,4 +249,4 @@ TEST(NpzTrace, WithoutATemporaryFolderFortranOrderSaysSo) {
 }
 
 }  // namespace
-}  // namespace etlc::data
+}  // namespace etlc::recordings

@@ -12,7 +12,9 @@
 #include "recordings/datasets/dataset.hpp"
 #include "recordings/parquet/table.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,4 +110,4 @@ TEST(DatasetPaths, StayInTheFolder) {
 }
 
 }  // namespace
-}  // namespace etlc::data
+}  // namespace etlc::recordings

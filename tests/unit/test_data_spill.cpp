@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "data/spill/sorted.hpp"
-#include "data/spill/spool.hpp"
+#include "data/spill/spill.hpp"
 
 namespace etlc::data {
 namespace {

@@ -7,8 +7,7 @@
 #include <random>
 
 #include "data/files/hash.hpp"
-#include "data/traces/known.hpp"
-#include "data/traces/suspects.hpp"
+#include "data/traces/overlap.hpp"
 
 namespace etlc::data {
 namespace {

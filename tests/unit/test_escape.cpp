@@ -1,7 +1,7 @@
 // Tests text from outside in each kind of output.
 #include <gtest/gtest.h>
 
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace {
 

@@ -7,8 +7,8 @@
 
 #include <limits>
 
+#include "data/arrays/archive.hpp"
 #include "data/arrays/array.hpp"
-#include "data/arrays/npz_writer.hpp"
 
 namespace etlc::fitted {
 namespace {

@@ -91,7 +91,7 @@ Interval spread(const Distance& distance, std::uint32_t rows, std::uint32_t dime
 
 /// Returns the elements that a point had so many steps before.
 const float* elements_of(const check::Model& model, Index index, std::uint32_t ago,
-                         const plan::Evaluator& measured) {
+                         const execute::Evaluator& measured) {
     const check::Point& point = model.points[index];
     return point.is_delayed() ? elements_of(model, point.inner, ago + point.steps, measured)
                               : measured.point(index, ago);
@@ -100,11 +100,11 @@ const float* elements_of(const check::Model& model, Index index, std::uint32_t a
 /// Bounds |a - b| for each element of a point, of which two builds compute a and b; empty for
 /// points that are not computed.
 std::vector<double> moves_of(const check::Model& model, Index index, std::uint32_t ago,
-                             const plan::Evaluator& measured);
+                             const execute::Evaluator& measured);
 
 /// Bounds them for points put together.
 std::vector<double> joined_moves(const check::Model& model, const check::Point& point,
-                                 std::uint32_t ago, const plan::Evaluator& measured) {
+                                 std::uint32_t ago, const execute::Evaluator& measured) {
     std::vector<double> all;
     bool computed = false;
     for (const Index part : point.parts) {
@@ -118,7 +118,7 @@ std::vector<double> joined_moves(const check::Model& model, const check::Point& 
 
 /// `ago`: of the point as it was so many steps before.
 std::vector<double> moves_of(const check::Model& model, Index index, std::uint32_t ago,
-                             const plan::Evaluator& measured) {
+                             const execute::Evaluator& measured) {
     const check::Point& point = model.points[index];
     if (point.is_delayed()) return moves_of(model, point.inner, ago + point.steps, measured);
     if (point.is_joined()) return joined_moves(model, point, ago, measured);
@@ -238,7 +238,7 @@ Interval of_full_weights(const Distance& distance, const check::Target& target, 
 /// of a row's interval is off by at most six times a kernel's rounding, see spread().
 std::vector<std::uint32_t> rows_that_count(const Distance& distance, const check::Target& target,
                                            Index index, const std::vector<double>& moves,
-                                           const plan::Evaluator& measured) {
+                                           const execute::Evaluator& measured) {
     if (distance.aggregation == Aggregation::min && moves.empty())
         return measured.near_rows(index, measured.point(distance.point), 16);
     std::vector<std::uint32_t> all(target.rows);
@@ -247,7 +247,8 @@ std::vector<std::uint32_t> rows_that_count(const Distance& distance, const check
 }
 
 /// Bounds the distance between two points, both of which a build may compute.
-Interval between_points(const check::Model& model, Index index, const plan::Evaluator& measured) {
+Interval between_points(const check::Model& model, Index index,
+                        const execute::Evaluator& measured) {
     const Distance& distance = model.distances[index];
     const std::uint32_t dimension = model.dimension_of(index);
     const auto delta = static_cast<double>(measured.measured(index).delta);
@@ -264,7 +265,7 @@ Interval between_points(const check::Model& model, Index index, const plan::Eval
                   moved);
 }
 
-Interval of_distance(const check::Model& model, Index index, const plan::Evaluator& measured) {
+Interval of_distance(const check::Model& model, Index index, const execute::Evaluator& measured) {
     const Distance& distance = model.distances[index];
     if (distance.is_between_points()) return between_points(model, index, measured);
     const check::Target& target = model.targets[distance.target];
@@ -284,7 +285,7 @@ Interval of_distance(const check::Model& model, Index index, const plan::Evaluat
 /// flush it to zero.
 class Expression {
 public:
-    Expression(const check::Model& model, const plan::Evaluator& measured,
+    Expression(const check::Model& model, const execute::Evaluator& measured,
                const PastIntervals& pasts)
         : model_(model), measured_(measured), pasts_(pasts) {}
 
@@ -345,7 +346,7 @@ private:
     }
 
     const check::Model& model_;
-    const plan::Evaluator& measured_;
+    const execute::Evaluator& measured_;
     const PastIntervals& pasts_;
 };
 
@@ -366,11 +367,11 @@ PastIntervals::PastIntervals(const check::Model& model, const plan::Plan& plan)
 }
 
 void PastIntervals::reset() {
-    for (plan::PastState& low : lows_) low.reset();
-    for (plan::PastState& high : highs_) high.reset();
+    for (execute::PastState& low : lows_) low.reset();
+    for (execute::PastState& high : highs_) high.reset();
 }
 
-void PastIntervals::step(const plan::Evaluator& measured) {
+void PastIntervals::step(const execute::Evaluator& measured) {
     for (std::size_t i = 0; i < pasts_.size(); ++i) {
         const Index past = pasts_[i];
         Range operand{etlmon::kMissing, etlmon::kMissing};
@@ -389,7 +390,8 @@ Interval interval_of(const Distance& distance, std::uint32_t rows, std::uint32_t
 }
 
 std::optional<Interval> interval_of(const check::Model& model, Index predicate,
-                                    const plan::Evaluator& measured, const PastIntervals& pasts) {
+                                    const execute::Evaluator& measured,
+                                    const PastIntervals& pasts) {
     const check::Predicate& p = model.predicates[predicate];
     if (std::isnan(measured.distance(predicate))) return std::nullopt;
     if (p.plain_distance()) return of_distance(model, p.expression.index, measured);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "plan/evaluate/evaluator.hpp"
+#include "execute/evaluator.hpp"
 
 namespace etlc::calibrate {
 
@@ -28,16 +28,16 @@ public:
 
     void reset();
     /// Takes the step that the evaluator has measured.
-    void step(const plan::Evaluator& measured);
+    void step(const execute::Evaluator& measured);
     /// Returns the interval at the last step of a number that this build knows.
     const check::Range& operator[](Index past) const { return now_[past]; }
 
 private:
     const check::Model& model_;
     const std::vector<Index>& pasts_;
-    std::vector<plan::PastState> lows_;   ///< as pasts_
-    std::vector<plan::PastState> highs_;  ///< likewise
-    std::vector<check::Range> now_;       ///< per past number of the model
+    std::vector<execute::PastState> lows_;   ///< as pasts_
+    std::vector<execute::PastState> highs_;  ///< likewise
+    std::vector<check::Range> now_;          ///< per past number of the model
 };
 
 /// Returns the interval of a distance, aggregated over `rows` targets, that this build measured as
@@ -48,6 +48,6 @@ Interval interval_of(const check::Distance& distance, std::uint32_t rows, std::u
 /// Returns the interval of the delta just measured, or nothing if it is unknown. An end is infinite
 /// where delta is or may be.
 std::optional<Interval> interval_of(const check::Model& model, Index predicate,
-                                    const plan::Evaluator& measured, const PastIntervals& pasts);
+                                    const execute::Evaluator& measured, const PastIntervals& pasts);
 
 }  // namespace etlc::calibrate

@@ -22,7 +22,7 @@
 namespace etlc::calibrate {
 
 struct Request {
-    std::vector<std::string> episodes;  ///< as data::find_episodes gives them
+    std::vector<std::string> episodes;  ///< as recordings::find_episodes gives them
     episodes::ReadOptions reading;
     std::string allow_overlap;  ///< reason to allow overlaps; empty: refuse them
     fitted::File fitted;        ///< the model's fitted entries, whose episodes are refused

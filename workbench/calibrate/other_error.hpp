@@ -13,7 +13,7 @@
 
 #include "calibrate/left_out.hpp"
 #include "calibrate/replayer.hpp"
-#include "data/spill/spool.hpp"
+#include "data/spill/spill.hpp"
 #include "episodes/bootstrap.hpp"
 
 namespace etlc::calibrate {

@@ -18,7 +18,7 @@ using episodes::Label;
 /// A byte of a track for a boolean input.
 enum class Flag : char { missing, no, yes };
 
-void set(plan::Sample& sample, bool present, float value) {
+void set(execute::Sample& sample, bool present, float value) {
     sample.present = present;
     sample.values.assign(present ? 1 : 0, value);
 }
@@ -96,7 +96,7 @@ Watched watched_by(const check::Model& model, const std::vector<Guaranteed>& all
     return result;
 }
 
-void add_step(const Watched& watched, const plan::Evaluator& measured,
+void add_step(const Watched& watched, const execute::Evaluator& measured,
               const episodes::Frames& recording, bool is_divided, std::string& track) {
     for (const Index p : watched.predicates) {
         const float delta = measured.distance(p);
@@ -106,7 +106,7 @@ void add_step(const Watched& watched, const plan::Evaluator& measured,
     }
     for (const Index p : watched.labelled) track += static_cast<char>(recording.label(p));
     for (const Index f : watched.flags) {
-        const plan::Sample& sample = recording.samples()[f];
+        const execute::Sample& sample = recording.samples()[f];
         const bool is_there = sample.present && !sample.values.empty();
         const bool holds = is_there && sample.values[0] != 0;
         track += static_cast<char>(!is_there ? Flag::missing : holds ? Flag::yes : Flag::no);
@@ -166,7 +166,7 @@ public:
         ++frames_;
         return true;
     }
-    const std::vector<plan::Sample>& samples() const override { return samples_; }
+    const std::vector<execute::Sample>& samples() const override { return samples_; }
     Label label(Index predicate) const override { return labels_[predicate]; }
     std::uint64_t frames() const override { return frames_; }
 
@@ -176,7 +176,7 @@ private:
     const episodes::Order* order_;
     std::uint64_t length_;
     std::size_t size_ = of_.watched_.step_size();
-    std::vector<plan::Sample> samples_;
+    std::vector<execute::Sample> samples_;
     std::vector<Label> labels_;
     std::uint64_t frames_ = 0;
 };
@@ -186,8 +186,8 @@ std::unique_ptr<Replayer> Replayer::make(const check::Model& model, std::vector<
     diag::Sink sink;  // a spec that exceeds the limits is reported when it is compiled
     check::Model judged = replayed(model, all, watched);
     episodes::GroundTruth truth = episodes::ground_truth(judged, watched.labelled);
-    auto monitors = pipeline::compile(std::move(judged), {}, sink);
-    auto truths = pipeline::compile(truth.model, {{}, check::Values::boolean}, sink);
+    auto monitors = compile(std::move(judged), {}, sink);
+    auto truths = compile(truth.model, {{}, check::Values::boolean}, sink);
     if (!monitors || !truths) return nullptr;
     return std::unique_ptr<Replayer>(new Replayer(model, std::move(all), std::move(watched),
                                                   std::move(*monitors), std::move(truth),
@@ -195,8 +195,7 @@ std::unique_ptr<Replayer> Replayer::make(const check::Model& model, std::vector<
 }
 
 Replayer::Replayer(const check::Model& model, std::vector<Guaranteed> all, Watched watched,
-                   pipeline::Compiled monitors, episodes::GroundTruth truth,
-                   pipeline::Compiled truths)
+                   Compiled monitors, episodes::GroundTruth truth, Compiled truths)
     : model_(model),
       all_(std::move(all)),
       watched_(std::move(watched)),

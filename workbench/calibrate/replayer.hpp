@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "check/guarantees/guarantees.hpp"
+#include "compile.hpp"
 #include "episodes/replay.hpp"
 #include "episodes/truth.hpp"
 #include "episodes/variants/variants.hpp"
-#include "pipeline/compile.hpp"
 
 namespace etlc::calibrate {
 
@@ -46,7 +46,7 @@ Watched watched_by(const check::Model& model, const std::vector<Guaranteed>& all
                    const std::vector<Index>& labelled, const std::vector<Index>& in_all);
 
 /// Appends a step to the track. `is_divided`: the episode has the labels that only divide it.
-void add_step(const Watched& watched, const plan::Evaluator& measured,
+void add_step(const Watched& watched, const execute::Evaluator& measured,
               const episodes::Frames& recording, bool is_divided, std::string& track);
 
 /// The verdicts of a monitor and of its truth over the steps of an episode whose truth is known.
@@ -102,7 +102,7 @@ private:
     class Steps;
 
     Replayer(const check::Model& model, std::vector<Guaranteed> all, Watched watched,
-             pipeline::Compiled monitors, episodes::GroundTruth truth, pipeline::Compiled truths);
+             Compiled monitors, episodes::GroundTruth truth, Compiled truths);
 
     void run(episodes::Frames& steps, const Thresholds& thresholds,
              const episodes::AfterStep& after_step);
@@ -113,9 +113,9 @@ private:
     const check::Model& model_;
     std::vector<Guaranteed> all_;
     Watched watched_;
-    pipeline::Compiled monitor_plan_;
+    Compiled monitor_plan_;
     episodes::GroundTruth truth_;
-    pipeline::Compiled truth_plan_;
+    Compiled truth_plan_;
     episodes::Follower monitors_;
     episodes::Follower truths_;
     std::vector<float> measured_;  ///< of this step, by index of the model's predicates

@@ -8,7 +8,7 @@
 
 #include "calibrate/bounds.hpp"
 #include "calibrate/replayer.hpp"
-#include "data/spill/sorted.hpp"
+#include "data/spill/spill.hpp"
 #include "episodes/ranking/auroc.hpp"
 #include "episodes/replay.hpp"
 

@@ -13,13 +13,13 @@
 #include "check/guarantees/guarantees.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "check/numbers/decimal.hpp"
+#include "compile.hpp"
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
 #include "episodes/data_warnings.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
 #include "episodes/replay.hpp"
-#include "pipeline/compile.hpp"
 
 namespace etlc::calibrate {
 
@@ -41,7 +41,7 @@ std::string_view truth_word(const check::Monitor& monitor) {
 }
 
 /// Returns the least and the greatest robustness of the predicate in any build.
-plan::Value spread(const check::Model& model, Index predicate, const plan::Evaluator& measured,
+plan::Value spread(const check::Model& model, Index predicate, const execute::Evaluator& measured,
                    const PastIntervals& pasts) {
     const Interval delta = *interval_of(model, predicate, measured, pasts);
     const check::Predicate& p = model.predicates[predicate];
@@ -102,14 +102,14 @@ MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plan
     divided_.predicates.clear();
     std::set_union(wanted_.predicates.begin(), wanted_.predicates.end(), watched.dividing.begin(),
                    watched.dividing.end(), std::back_inserter(divided_.predicates));
-    plan::Evaluator& lowest = lowest_.evaluator();
+    execute::Evaluator& lowest = lowest_.evaluator();
     lowest.after_pasts([&] { pasts_of_lowest_.step(lowest); });
     lowest.replace_predicate_values(
         [&](Index p) { return spread(model_, p, lowest, pasts_of_lowest_); });
     // A verdict reads the low end: the first end for a literal, the second for a negated one. With
     // the ends exchanged it reads the highest in any build, and the range of a missing sample
     // stays.
-    plan::Evaluator& highest = highest_.evaluator();
+    execute::Evaluator& highest = highest_.evaluator();
     highest.after_pasts([&] { pasts_of_highest_.step(highest); });
     highest.replace_predicate_values([&](Index p) {
         const plan::Value value = spread(model_, p, highest, pasts_of_highest_);
@@ -308,9 +308,9 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     const std::vector<Index> labelled = find_labelled(model, monitors, *in_first);
     const check::Model plain = unshifted(model);
     const episodes::GroundTruth truth = episodes::ground_truth(plain, labelled);
-    const auto compiled = pipeline::compile(plain, {}, sink);
+    const auto compiled = compile(plain, {}, sink);
     // The truth does not depend on rho.
-    const auto truths = pipeline::compile(truth.model, {{}, check::Values::boolean}, sink);
+    const auto truths = compile(truth.model, {{}, check::Values::boolean}, sink);
     if (!compiled || !truths) return std::nullopt;
     const MonitorPlans plans{compiled->plan, truths->plan, truth};
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compile.hpp"
 #include "data/files/file.hpp"
 #include "diag/diag.hpp"
 #include "driver/codes/explain_code.hpp"
@@ -19,7 +20,6 @@
 #include "driver/options/mistakes.hpp"
 #include "driver/process/process.hpp"
 #include "label/service.hpp"
-#include "library/settings.hpp"
 #include "lsp/lsp.hpp"
 #include "report/document.hpp"
 #include "source/source.hpp"
@@ -41,7 +41,7 @@ int with_specs(const Call& call, const Work& work) {
     try {
         bool all_read = true;
         for (std::size_t i = 0; i < files.size(); ++i)
-            all_read = library::read_spec(call.specs[i], files[i], sinks[i]) && all_read;
+            all_read = read_spec(call.specs[i], files[i], sinks[i]) && all_read;
         if (all_read) work(files, sinks);
     } catch (const std::bad_alloc&) {
         report_lack();
@@ -73,7 +73,7 @@ int on_spec(Call& call) {
 template <auto work>
 int on_plan(Call& call) {
     return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
-        const auto compiled = compile(file, call, sink);
+        const auto compiled = compile(file, call.check, call, sink);
         if (compiled && !sink.refused()) work(file, *compiled, call, sink);
     });
 }
@@ -83,7 +83,7 @@ int compile_spec(Call& call) {
     call.check.allow_missing = call.check_only;
     return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
         if (call.check_only)
-            compile(file, call, sink);
+            compile(file, call.check, call, sink);
         else
             emit(file, call, sink);
     });

@@ -30,9 +30,9 @@ struct Progress {
 
 struct Request {
     Running running;
-    std::string version;      ///< of etlc
-    data::NamesInFile names;  ///< names of inputs and labels in data sets and arrays
-    std::string folder;       ///< of the episodes; it exists
+    std::string version;            ///< of etlc
+    recordings::NamesInFile names;  ///< names of inputs and labels in data sets and arrays
+    std::string folder;             ///< of the episodes; it exists
     std::function<void(const Progress&)> progress;  ///< empty where nobody would see it
 };
 

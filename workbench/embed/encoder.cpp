@@ -8,17 +8,17 @@
 #include <cmath>
 
 #include "artifacts/embedded.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "recordings/frames/protocol.hpp"
 
 namespace etlc::embed {
 
 namespace {
 
-using data::frames::append;
-using data::frames::number_at;
 using diag::Code;
 using diag::Failure;
+using recordings::frames::append;
+using recordings::frames::number_at;
 
 std::vector<std::string> network_arguments(const check::Encoder& encoder,
                                            const std::string& model_path,
@@ -52,8 +52,9 @@ struct Call {
 
 Call call_of(const check::Encoder& encoder, const std::string& model_path, const Running& running) {
     if (running.command.empty())
-        return {
-            data::embedder_path(), network_arguments(encoder, model_path, running.onnxruntime), {}};
+        return {recordings::embedder_path(),
+                network_arguments(encoder, model_path, running.onnxruntime),
+                {}};
     Call call{"/bin/sh", {"-c", running.command}, {}};
     call.options.whole_environment = true;
     call.options.variables = {"ETLC_ENCODER=" + encoder.name, "ETLC_MODEL=" + model_path};
@@ -61,7 +62,7 @@ Call call_of(const check::Encoder& encoder, const std::string& model_path, const
 }
 
 Failure not_run(const Running& running) {
-    if (running.command.empty()) return data::no_embedder();
+    if (running.command.empty()) return recordings::no_embedder();
     return {Code::encoder_failed, "there is no shell to run the command"};
 }
 
@@ -76,14 +77,14 @@ std::optional<Failure> settle(Running& running) {
     if (!running.onnxruntime.empty())
         words.insert(words.end(), {"--onnxruntime", running.onnxruntime});
     // The environment locates packages.
-    const auto child = data::Child::start(data::embedder_path(), words,
+    const auto child = data::Child::start(recordings::embedder_path(), words,
                                           {.max_silence_seconds = running.max_silence_seconds,
                                            .whole_environment = true,
                                            .heard = true});
-    if (!child) return data::no_embedder();
+    if (!child) return recordings::no_embedder();
     std::string lines;
     for (char c = 0; !child->at_end() && child->read(&c, 1);) lines += c;
-    if (child->exit_status() == data::frames::kNoRuntime)
+    if (child->exit_status() == recordings::frames::kNoRuntime)
         return Failure{Code::no_embedder, child->last_words()};
     const std::size_t end = lines.find('\n');
     if (child->exit_status() != 0 || end == std::string::npos || lines.back() != '\n')
@@ -113,9 +114,10 @@ diag::Result<std::unique_ptr<Encoder>> Encoder::start(const check::Encoder& enco
     return std::unique_ptr<Encoder>(new Encoder(encoder, running, std::move(child)));
 }
 
-std::optional<Trouble> Encoder::add(data::FrameSource& frames, const std::string& name, Done done) {
+std::optional<Trouble> Encoder::add(recordings::FrameSource& frames, const std::string& name,
+                                    Done done) {
     jobs_.push_back({name, 0, false, {}, std::move(done)});
-    data::Frame frame;
+    recordings::Frame frame;
     for (;;) {
         const auto more = frames.next(frame);
         if (!more) return Trouble{more.failure(), false, jobs_.back().frames};
@@ -128,13 +130,14 @@ std::optional<Trouble> Encoder::add(data::FrameSource& frames, const std::string
     return std::nullopt;
 }
 
-std::optional<Failure> Encoder::add(const data::Frame& frame, const std::string& name, Done done) {
+std::optional<Failure> Encoder::add(const recordings::Frame& frame, const std::string& name,
+                                    Done done) {
     if (dimension_ > 0 && taken_ == given_ && child_->arrived() > 0) return surplus();
     jobs_.push_back({name, 0, true, {}, std::move(done)});
     return pass(frame);
 }
 
-std::optional<Failure> Encoder::pass(const data::Frame& frame) {
+std::optional<Failure> Encoder::pass(const recordings::Frame& frame) {
     std::string head;
     append(head, frame.height);
     append(head, frame.width);
@@ -174,12 +177,12 @@ std::optional<Failure> Encoder::take_dimension() {
     std::array<char, 4> head{};
     if (!child_->read(head.data(), head.size())) return stopped();
     dimension_ = number_at(head.data());
-    if (dimension_ == 0 || dimension_ > data::frames::kMaxDimension)
+    if (dimension_ == 0 || dimension_ > recordings::frames::kMaxDimension)
         return Failure{
             Code::encoder_failed,
             fmt::format("'{}' began with the dimension {}, expected 32 bits of a number from 1 "
                         "to {}",
-                        name_, dimension_, data::frames::kMaxDimension)};
+                        name_, dimension_, recordings::frames::kMaxDimension)};
     if (expected_ != 0 && dimension_ != expected_)
         return Failure{
             Code::embedding_dimension,
@@ -222,9 +225,9 @@ Failure Encoder::surplus() const {
 Failure Encoder::stopped() {
     const std::string ending = child_->ending();
     const std::string words = child_->last_words();
-    if (!is_command_ && child_->exit_status() == data::frames::kRefused)
+    if (!is_command_ && child_->exit_status() == recordings::frames::kRefused)
         return {Code::encoder_refused, words};
-    if (!is_command_ && child_->exit_status() == data::frames::kNoRuntime)
+    if (!is_command_ && child_->exit_status() == recordings::frames::kNoRuntime)
         return {Code::no_embedder, words};
     return {Code::encoder_failed,
             fmt::format("'{}' {}, after {}{}", name_, ending, diag::counted(taken_, "embedding"),

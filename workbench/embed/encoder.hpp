@@ -54,10 +54,11 @@ public:
 
     /// Passes it all frames of a source. `done` is called when their embeddings are complete, at
     /// the latest by `finish`; messages call the source `name`.
-    std::optional<Trouble> add(data::FrameSource& frames, const std::string& name, Done done);
+    std::optional<Trouble> add(recordings::FrameSource& frames, const std::string& name, Done done);
     /// Passes it one frame. `done` is called by a later `take`. Fails where it has written more
     /// embeddings than it got frames: none may belong to its frame.
-    std::optional<diag::Failure> add(const data::Frame& frame, const std::string& name, Done done);
+    std::optional<diag::Failure> add(const recordings::Frame& frame, const std::string& name,
+                                     Done done);
     /// Takes the embeddings that have arrived.
     std::optional<diag::Failure> take() { return take(false); }
     /// Returns whether it has made the embeddings of all frames so far.
@@ -94,7 +95,7 @@ private:
 
     /// Reads the embeddings that have arrived; with `all`, waits for those of all frames.
     std::optional<diag::Failure> take(bool all);
-    std::optional<diag::Failure> pass(const data::Frame& frame);
+    std::optional<diag::Failure> pass(const recordings::Frame& frame);
     std::optional<diag::Failure> take_dimension();
     std::optional<diag::Failure> take_row(Job& job);
     void finish_jobs();

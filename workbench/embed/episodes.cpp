@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "data/arrays/npz_writer.hpp"
+#include "data/arrays/archive.hpp"
 #include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
 #include "diag/diag.hpp"
@@ -37,19 +37,19 @@ std::vector<Index> encoded_inputs(const check::Model& model) {
 }
 
 /// Frames of another source. `passed` is called for each.
-class CountedFrames final : public data::FrameSource {
+class CountedFrames final : public recordings::FrameSource {
 public:
-    CountedFrames(data::FrameSource& frames, std::function<void()> passed)
+    CountedFrames(recordings::FrameSource& frames, std::function<void()> passed)
         : frames_(frames), passed_(std::move(passed)) {}
 
-    diag::Result<bool> next(data::Frame& frame) override {
+    diag::Result<bool> next(recordings::Frame& frame) override {
         auto more = frames_.next(frame);
         if (more && *more) passed_();
         return more;
     }
 
 private:
-    data::FrameSource& frames_;
+    recordings::FrameSource& frames_;
     std::function<void()> passed_;
 };
 
@@ -254,7 +254,7 @@ private:
     /// cannot.
     bool add_columns(const Recording& from, std::vector<Array>& arrays) {
         const auto add = [&](diag::Result<std::vector<Array>> read, const std::string& path) {
-            if (!read) sink_.report(data::in_trace(read.failure(), path));
+            if (!read) sink_.report(recordings::in_trace(read.failure(), path));
             if (read) std::move(read->begin(), read->end(), std::back_inserter(arrays));
             return bool(read);
         };

@@ -15,8 +15,7 @@
 #include "data/arrays/array.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/text/number.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "data/traces/csv.hpp"
 #include "recordings/datasets/dataset.hpp"
 #include "recordings/datasets/trace.hpp"
@@ -40,11 +39,11 @@ std::string name_of_folder(const std::string& folder) {
 }
 
 /// Finds the camera of each input.
-diag::Result<std::map<std::string, std::string>> cameras_of(const data::Dataset& set,
+diag::Result<std::map<std::string, std::string>> cameras_of(const recordings::Dataset& set,
                                                             const Search& search) {
     std::map<std::string, std::string> cameras;
     for (const std::string& input : search.inputs) {
-        auto camera = data::camera_of(set, search.camera(input));
+        auto camera = recordings::camera_of(set, search.camera(input));
         if (!camera) return camera.failure();
         cameras[input] = *camera;
     }
@@ -52,9 +51,9 @@ diag::Result<std::map<std::string, std::string>> cameras_of(const data::Dataset&
 }
 
 /// The metadata place the frames in a video or in the rows.
-Origin origin_of_clip(const data::SoundEpisode& sound, const std::string& camera,
+Origin origin_of_clip(const recordings::SoundEpisode& sound, const std::string& camera,
                       std::uint64_t stride) {
-    const data::Dataset& set = *sound.set;
+    const recordings::Dataset& set = *sound.set;
     Origin origin;
     origin.choice = fmt::format("{} {} {}", sound.episode->index, stride, camera);
     const auto clip = sound.episode->clips.find(camera);
@@ -70,17 +69,17 @@ Origin origin_of_clip(const data::SoundEpisode& sound, const std::string& camera
     return origin;
 }
 
-Recording recording_of(const data::SoundEpisode& sound, std::uint64_t stride,
+Recording recording_of(const recordings::SoundEpisode& sound, std::uint64_t stride,
                        const std::map<std::string, std::string>& cameras) {
     const std::string& folder = sound.set->folder();
     Recording recording;
-    recording.path = data::episode_path(folder, sound.episode->index);
+    recording.path = recordings::episode_path(folder, sound.episode->index);
     recording.episode = fmt::format("{}-{:06}", name_of_folder(folder), sound.episode->index);
     std::set<std::string> different;
     for (const auto& [input, camera] : cameras) different.insert(camera);
     recording.has_one_camera = different.size() < 2;
     recording.open = [sound, stride, cameras](const std::string& input) {
-        return data::open_clip(*sound.set, *sound.episode, cameras.at(input), stride);
+        return recordings::open_clip(*sound.set, *sound.episode, cameras.at(input), stride);
     };
     recording.origin = [sound, stride, cameras](const std::string& input) {
         return origin_of_clip(sound, cameras.at(input), stride);
@@ -93,21 +92,21 @@ Recording recording_of(const data::SoundEpisode& sound, std::uint64_t stride,
 
 diag::Result<std::vector<Recording>> recordings_in_dataset(const data::DatasetPath& path,
                                                            const Search& search, diag::Sink& sink) {
-    const auto paths = data::find_dataset_episodes(path, sink);
+    const auto paths = recordings::find_dataset_episodes(path, sink);
     if (!paths) return paths.failure();
-    const auto set = data::Dataset::known(path.folder);
+    const auto set = recordings::Dataset::known(path.folder);
     if (!set) return set.failure();
-    const auto stride = data::rows_a_step(**set, search.rate);
+    const auto stride = recordings::rows_a_step(**set, search.rate);
     if (!stride) return stride.failure();
     const auto cameras = cameras_of(**set, search);
     if (!cameras) return cameras.failure();
     std::vector<Recording> recordings;
     for (const std::string& episode : *paths) {
-        const auto sound = data::find_episode(episode);
+        const auto sound = recordings::find_episode(episode);
         if (!sound) return sound.failure();
         std::string lack;
         for (const auto& [input, camera] : *cameras)
-            if (lack.empty()) lack = data::camera_lack(*sound->set, *sound->episode, camera);
+            if (lack.empty()) lack = recordings::camera_lack(*sound->set, *sound->episode, camera);
         if (lack.empty())
             recordings.push_back(recording_of(*sound, *stride, *cameras));
         else
@@ -132,7 +131,7 @@ diag::Result<std::vector<Recording>> recordings_in_arrays(const std::string& pat
     const std::string file = data::trace_file(path);
     std::vector<std::string> groups = {path.substr(std::min(file.size() + 1, path.size()))};
     if (groups[0].empty() && data::is_hdf5(file) && !search.groups.empty()) {
-        auto found = data::list_hdf5(file, search.groups);
+        auto found = recordings::list_hdf5(file, search.groups);
         if (!found) return found.failure();
         groups = std::move(*found);
     }
@@ -146,7 +145,7 @@ diag::Result<std::vector<Recording>> recordings_in_arrays(const std::string& pat
         for (const std::string& input : search.inputs) different.insert(search.camera(input));
         recording.has_one_camera = different.size() < 2;
         recording.open = [whole = recording.path, search](const std::string& input) {
-            return data::open_image_array(whole, search.camera(input));
+            return recordings::open_image_array(whole, search.camera(input));
         };
         recording.origin = [file, group, search](const std::string& input) {
             return Origin{{}, {file}, group + "\n" + search.camera(input)};
@@ -171,15 +170,16 @@ std::string beside(const fs::path& folder, const std::string& name) {
 Recording video(const std::string& path, double rate) {
     const fs::path file = path;
     const std::string name = file.stem().string();
-    return {path,
-            name,
-            true,
-            [path, rate](const std::string&) { return data::open_video(path, {.rate = rate}); },
-            [path, rate](const std::string&) {
-                return Origin{path, {}, fmt::format("{} steps a second", rate)};
-            },
-            beside(file.parent_path(), name),
-            {path}};
+    return {
+        path,
+        name,
+        true,
+        [path, rate](const std::string&) { return recordings::open_video(path, {.rate = rate}); },
+        [path, rate](const std::string&) {
+            return Origin{path, {}, fmt::format("{} steps a second", rate)};
+        },
+        beside(file.parent_path(), name),
+        {path}};
 }
 
 Recording images(const std::string& folder, std::vector<std::string> paths) {
@@ -189,7 +189,7 @@ Recording images(const std::string& folder, std::vector<std::string> paths) {
     return {folder,
             name,
             true,
-            [paths](const std::string&) { return data::open_images(paths); },
+            [paths](const std::string&) { return recordings::open_images(paths); },
             [paths](const std::string&) {
                 return Origin{{}, paths, "images"};
             },
@@ -239,7 +239,7 @@ private:
         std::vector<Recording> found;
         std::error_code error;
         for (const std::string& path : entries) {
-            if (data::is_video(path)) found.push_back(video(path, search_.rate));
+            if (recordings::is_video(path)) found.push_back(video(path, search_.rate));
             if (!below || !fs::is_directory(path, error)) continue;
             const auto set = data::dataset_path(path);
             auto inside =
@@ -263,9 +263,9 @@ private:
         for (const std::string& match : matches.value_or(std::vector<std::string>{}))
             if (auto found = at(match)) add(all, std::move(*found));
         if (!all.empty()) return all;
-        return Failure{
-            Code::unreadable_video,
-            data::with_dataset_meant(fmt::format("no such recording, {}", kExpected), pattern)};
+        return Failure{Code::unreadable_video,
+                       recordings::with_dataset_meant(
+                           fmt::format("no such recording, {}", kExpected), pattern)};
     }
 
     static void add(std::vector<Recording>& all, std::vector<Recording> more) {
@@ -376,13 +376,13 @@ diag::Result<std::vector<Array>> read_arrays(data::Trace& trace,
 diag::Result<std::vector<Array>> arrays_beside(const check::Model& model, const std::string& path) {
     const auto channels = channels_of(model, path);
     if (!channels) return channels.failure();
-    const auto trace = data::open_trace(path, *channels);
+    const auto trace = recordings::open_trace(path, *channels);
     if (!trace) return trace.failure();
     return read_arrays(**trace, *channels, 1);
 }
 
 diag::Result<std::vector<Array>> arrays_in(const check::Model& model, const Recording& recording,
-                                           const data::NamesInFile& names) {
+                                           const recordings::NamesInFile& names) {
     std::vector<Channel> channels;
     for (const check::Input& input : model.inputs) {
         if (input.encoder != check::kNone) continue;
@@ -398,7 +398,8 @@ diag::Result<std::vector<Array>> arrays_in(const check::Model& model, const Reco
         if (name.starts_with("truth."))
             channels.push_back({name, Channel::Kind::boolean, 1, false});
     if (channels.empty()) return std::vector<Array>{};
-    const auto trace = data::open_trace(recording.columns, data::renamed(channels, names));
+    const auto trace =
+        recordings::open_trace(recording.columns, recordings::renamed(channels, names));
     if (!trace) return trace.failure();
     return read_arrays(**trace, channels, recording.stride);
 }

@@ -55,13 +55,14 @@ struct Recording {
     /// One camera, whose frames all inputs are made of.
     bool has_one_camera = true;
     /// Opens the frames for an input, a frame a step. Failures do not repeat the path.
-    std::function<diag::Result<std::unique_ptr<data::FrameSource>>(const std::string& input)> open;
+    std::function<diag::Result<std::unique_ptr<recordings::FrameSource>>(const std::string& input)>
+        open;
     std::function<Origin(const std::string& input)> origin;
     /// A .csv file of the same name beside it, with other inputs and labels; empty: none.
     std::string beside{};
     /// The video, or the image of each frame; empty: the file also holds other recordings.
     std::vector<std::string> files{};
-    /// The path from which data::open_trace reads the other inputs; empty: none.
+    /// The path from which recordings::open_trace reads the other inputs; empty: none.
     std::string columns{};
     std::uint64_t stride = 1;          ///< rows per step
     std::vector<std::string> tasks{};  ///< descriptions of what is done in it
@@ -82,7 +83,7 @@ diag::Result<std::vector<Array>> arrays_beside(const check::Model& model, const 
 /// Reads the inputs that no encoder makes, and the labels that `names` has, from
 /// `recording.columns`.
 diag::Result<std::vector<Array>> arrays_in(const check::Model& model, const Recording& recording,
-                                           const data::NamesInFile& names);
+                                           const recordings::NamesInFile& names);
 
 // Embeddings of an earlier call, with which an interrupted call goes on.
 // Takes: a recording, and the episode that is on disk. Gives: the embeddings of an input that the

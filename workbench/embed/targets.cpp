@@ -41,9 +41,10 @@ public:
         std::vector<float> again;
         const auto keep = [&](std::vector<float> rows) { made.references = std::move(rows); };
         const auto compare = [&](std::vector<float> row) { again = std::move(row); };
-        auto trouble = running->add(*data::reference_frames(), "reference frames", keep);
+        auto trouble = running->add(*recordings::reference_frames(), "reference frames", keep);
         if (!trouble)
-            if (auto failure = running->add(data::reference_frame(0), "reference frames", compare))
+            if (auto failure =
+                    running->add(recordings::reference_frame(0), "reference frames", compare))
                 trouble = Trouble{std::move(*failure)};
         if (!trouble) trouble = running->finish();
         if (!trouble) trouble = in_two_ways(made.references, again);
@@ -90,9 +91,9 @@ private:
             entry.sources.push_back({path, *hash});
         }
         std::set<std::uint64_t> wanted(encoded.frames.begin(), encoded.frames.end());
-        auto frames = encoded.is_video
-                          ? data::open_video(paths[0], {.only = {wanted.begin(), wanted.end()}})
-                          : data::open_images(paths);
+        auto frames = encoded.is_video ? recordings::open_video(
+                                             paths[0], {.only = {wanted.begin(), wanted.end()}})
+                                       : recordings::open_images(paths);
         if (!frames) return fail(frames.failure(), paths[0], encoded);
         const auto done = [&entry, &encoded, wanted](const std::vector<float>& rows) {
             fill(entry, encoded, {wanted.begin(), wanted.end()}, rows);

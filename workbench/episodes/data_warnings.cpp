@@ -21,7 +21,7 @@ public:
 
     void report(diag::Sink& sink) const {
         if (count_ == 0) return;
-        diag::Diagnostic& warning = sink.report(data::in_trace(
+        diag::Diagnostic& warning = sink.report(recordings::in_trace(
             {diag::Code::unmarked_episode, "does not say which encoder made its embeddings"},
             first_));
         if (episodes_ > 1)
@@ -38,10 +38,10 @@ private:
 }  // namespace
 
 bool is_unmarked(const check::Model& model, const std::vector<Index>& inputs,
-                 const data::NamesInFile& names, const embedded::Marks& marks) {
+                 const recordings::NamesInFile& names, const embedded::Marks& marks) {
     return std::any_of(inputs.begin(), inputs.end(), [&](Index index) {
         const check::Input& input = model.inputs[index];
-        return check::is_unmarked(input, data::name_in_file(input.name, names), marks);
+        return check::is_unmarked(input, recordings::name_in_file(input.name, names), marks);
     });
 }
 
@@ -54,7 +54,7 @@ void warn_of_unmarked(const Identities& episodes, diag::Sink& sink) {
 }
 
 void warn_of_unmarked(const check::Model& model, const std::vector<Index>& inputs,
-                      const std::vector<std::string>& paths, const data::NamesInFile& names,
+                      const std::vector<std::string>& paths, const recordings::NamesInFile& names,
                       diag::Sink& sink) {
     if (model.encoders.empty()) return;
     Unmarked unmarked;

@@ -19,12 +19,12 @@ namespace etlc::episodes {
 
 /// Returns whether an input needs an encoder that the episode's marks do not name.
 bool is_unmarked(const check::Model& model, const std::vector<Index>& inputs,
-                 const data::NamesInFile& names, const embedded::Marks& marks);
+                 const recordings::NamesInFile& names, const embedded::Marks& marks);
 
 void warn_of_unmarked(const Identities& episodes, diag::Sink& sink);
 /// Reads the marks of the episodes. `inputs`: those that the command reads.
 void warn_of_unmarked(const check::Model& model, const std::vector<Index>& inputs,
-                      const std::vector<std::string>& paths, const data::NamesInFile& names,
+                      const std::vector<std::string>& paths, const recordings::NamesInFile& names,
                       diag::Sink& sink);
 
 /// The numbers of frames labelled true and false.

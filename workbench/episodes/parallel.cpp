@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "recordings/open.hpp"
 
 namespace etlc::episodes {
@@ -32,7 +32,7 @@ void report(const std::vector<Fault>& faults, std::size_t episodes, diag::Sink& 
     for (std::size_t i = 0; i < std::min(kinds.size(), kMostKinds); ++i) {
         const std::vector<std::string>& paths = kinds[i];
         reported += paths.size();
-        auto& error = sink.report(data::in_trace(failures[i], paths.front()));
+        auto& error = sink.report(recordings::in_trace(failures[i], paths.front()));
         if (paths.size() > 1)
             error.note(fmt::format("the same is wrong with {} of {} episodes, also with {}",
                                    paths.size(), episodes,

@@ -32,10 +32,10 @@ RecentFrames::RecentFrames(const check::Model& model, const std::vector<Index>& 
     inputs_.assign(inputs.begin(), inputs.end());
 }
 
-void RecentFrames::push(const std::vector<plan::Sample>& samples) {
+void RecentFrames::push(const std::vector<execute::Sample>& samples) {
     last_ = &samples;
     if (most_ == 0) return;
-    std::vector<plan::Sample> frame;
+    std::vector<execute::Sample> frame;
     if (frames_.size() > most_) {
         frame = std::move(frames_.back());  // its memory is used again
         frames_.pop_back();
@@ -51,7 +51,7 @@ bool RecentFrames::read(Index point, std::vector<float>& values) const {
 }
 
 /// Returns nothing before the first frame.
-const std::vector<plan::Sample>* RecentFrames::at(std::size_t ago) const {
+const std::vector<execute::Sample>* RecentFrames::at(std::size_t ago) const {
     if (ago == 0) return last_;
     return ago < frames_.size() ? &frames_[ago] : nullptr;
 }
@@ -62,10 +62,10 @@ bool RecentFrames::append(Index index, std::size_t ago, std::vector<float>& valu
     if (point.is_joined())
         return std::all_of(point.parts.begin(), point.parts.end(),
                            [&](Index part) { return append(part, ago, values); });
-    const std::vector<plan::Sample>* const frame = at(ago);
+    const std::vector<execute::Sample>* const frame = at(ago);
     if (frame == nullptr) return false;
     for (const Index input : point.inputs) {
-        const plan::Sample& sample = (*frame)[input];
+        const execute::Sample& sample = (*frame)[input];
         if (!sample.present) return false;
         if (!is_sound(model_.inputs[input], sample.values)) return false;
         values.insert(values.end(), sample.values.begin(), sample.values.end());

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "plan/evaluate/inputs.hpp"
+#include "execute/inputs.hpp"
 
 namespace etlc::episodes {
 
@@ -25,7 +25,7 @@ public:
     }
     /// Adds a frame; per input of the model its sample. The samples of the last frame outlive the
     /// calls of `read`: they are copied only where points of earlier steps need them.
-    void push(const std::vector<plan::Sample>& samples);
+    void push(const std::vector<execute::Sample>& samples);
     /// Reads a point at the last frame; returns false where a sample is missing, or not finite or
     /// in range.
     bool read(Index point, std::vector<float>& values) const;
@@ -33,13 +33,13 @@ public:
 private:
     bool append(Index point, std::size_t ago, std::vector<float>& values) const;
 
-    const std::vector<plan::Sample>* at(std::size_t ago) const;
+    const std::vector<execute::Sample>* at(std::size_t ago) const;
 
     const check::Model& model_;
     std::vector<Index> inputs_;
     std::size_t most_ = 0;  ///< frames before the last that some point needs
-    const std::vector<plan::Sample>* last_ = nullptr;
-    std::deque<std::vector<plan::Sample>> frames_;  ///< if most_ > 0; the last one first
+    const std::vector<execute::Sample>* last_ = nullptr;
+    std::deque<std::vector<execute::Sample>> frames_;  ///< if most_ > 0; the last one first
 };
 
 }  // namespace etlc::episodes

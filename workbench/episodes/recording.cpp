@@ -9,7 +9,7 @@
 
 #include "artifacts/embedded.hpp"
 #include "check/encoders/encoders.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "data/traces/trace_formats.hpp"
 #include "episodes/data_warnings.hpp"
 #include "recordings/datasets/trace.hpp"
@@ -49,8 +49,9 @@ std::string name_of(const Input& input) {
     return name;
 }
 
-std::vector<data::HashedInput> hashed(const check::Model& model, const std::vector<Index>& inputs) {
-    std::vector<data::HashedInput> result;
+std::vector<recordings::HashedInput> hashed(const check::Model& model,
+                                            const std::vector<Index>& inputs) {
+    std::vector<recordings::HashedInput> result;
     for (const Index index : inputs) {
         const Input& input = model.inputs[index];
         result.push_back({name_of(input), input.dimension, bits_of(input) >= kBitsThatTell});
@@ -58,9 +59,9 @@ std::vector<data::HashedInput> hashed(const check::Model& model, const std::vect
     return result;
 }
 
-bool is_there(const Input& input, const plan::Sample& sample) {
+bool is_there(const Input& input, const execute::Sample& sample) {
     return sample.present && !sample.values.empty() &&
-           plan::all_finite(sample.values.data(), sample.values.size()) &&
+           execute::all_finite(sample.values.data(), sample.values.size()) &&
            (input.type != InputType::scalar || input.range.contains(sample.values[0]));
 }
 
@@ -81,7 +82,7 @@ Seen::Seen(const check::Model& model, std::vector<Index> inputs)
       seen_(inputs_.size()),
       hash_(hashed(model, inputs_)) {}
 
-void Seen::add(const std::vector<plan::Sample>& samples) {
+void Seen::add(const std::vector<execute::Sample>& samples) {
     for (std::size_t i = 0; i < inputs_.size(); ++i)
         see(model_.inputs[inputs_[i]], samples[inputs_[i]], held_[i], seen_[i]);
     hash_.add(seen_);
@@ -97,8 +98,8 @@ std::string Seen::inputs() const {
     return names;
 }
 
-/// Applies range, `hold` and `missing` as plan::Evaluator does.
-void Seen::see(const Input& input, const plan::Sample& sample, Held& held,
+/// Applies range, `hold` and `missing` as execute::Evaluator does.
+void Seen::see(const Input& input, const execute::Sample& sample, Held& held,
                std::vector<float>& seen) const {
     seen.clear();
     if (is_there(input, sample)) {
@@ -119,7 +120,7 @@ using check::kNone;
 using data::Channel;
 using diag::Code;
 using diag::Failure;
-using plan::channel_of;
+using execute::channel_of;
 
 Index truth_of(const check::Model& model, Index predicate) {
     for (const check::Truth& truth : model.truths)
@@ -273,7 +274,7 @@ Failure no_label(const check::Model& model, Index predicate, const Failure& abse
 /// Returns whether the episode fails to name the encoder of its embeddings. Fails where that is
 /// another than the spec's.
 diag::Result<bool> read_encoders(const Wanted& wanted, const std::string& path,
-                                 const data::NamesInFile& names) {
+                                 const recordings::NamesInFile& names) {
     const check::Model& model = *wanted.model;
     if (model.encoders.empty()) return false;
     const auto marks = embedded::read_marks(path);
@@ -281,7 +282,7 @@ diag::Result<bool> read_encoders(const Wanted& wanted, const std::string& path,
     for (const Index index : wanted.inputs) {
         const check::Input& input = model.inputs[index];
         const auto failure =
-            check::other_encoder(model, input, data::name_in_file(input.name, names), *marks);
+            check::other_encoder(model, input, recordings::name_in_file(input.name, names), *marks);
         if (failure) return *failure;
     }
     return is_unmarked(model, wanted.inputs, names, *marks);
@@ -333,7 +334,7 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const std::string&
                                         const ReadOptions& options, const Wrap& wrap) {
     const auto is_unmarked = read_encoders(wanted, path, options.names);
     if (!is_unmarked) return is_unmarked.failure();
-    if (auto failure = data::check_rate(path, wanted.model->step_seconds)) return *failure;
+    if (auto failure = recordings::check_rate(path, wanted.model->step_seconds)) return *failure;
     std::shared_ptr<KnownIdentities> identities;
     const Opener file = [&](const std::vector<Channel>& channels) {
         return open_timed(path, channels, options, wanted.model->step_seconds, identities);
@@ -403,7 +404,7 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
 
 diag::Result<bool> Recording::next() {
     auto more = trace_->next(sample_);
-    if (more && !*more && frames_ == 0) return data::no_steps();
+    if (more && !*more && frames_ == 0) return recordings::no_steps();
     if (more && !*more && identities_ && !known_) {
         known_ = std::make_shared<const Identity>(seen_.identity());
         identities_->add(seen_.inputs(), known_);
@@ -429,8 +430,8 @@ diag::Result<bool> Recording::narrow() {
         if (!narrowed_[c]) continue;
         const Index input = channel_inputs_[c];
         std::string why;
-        auto sample = plan::narrow(model_->inputs[input], sample_.present[c], sample_.values[c],
-                                   why, std::move(samples_[input]));
+        auto sample = execute::narrow(model_->inputs[input], sample_.present[c], sample_.values[c],
+                                      why, std::move(samples_[input]));
         if (!sample) return Failure{Code::trace_value, fmt::format("step {}: {}", frames_, why)};
         const check::Input& of = model_->inputs[input];
         if (of.stale_after > 0 && is_there(of, *sample) &&

@@ -12,12 +12,12 @@
 
 #include "check/model/model.hpp"
 #include "data/files/hash.hpp"
-#include "data/spill/spool.hpp"
+#include "data/spill/spill.hpp"
 #include "diag/diag.hpp"
 #include "episodes/labels/labels.hpp"
 #include "episodes/leaks/leaks.hpp"
 #include "episodes/truth.hpp"
-#include "plan/evaluate/inputs.hpp"
+#include "execute/inputs.hpp"
 #include "recordings/episodes.hpp"
 #include "recordings/open.hpp"
 
@@ -32,7 +32,7 @@ public:
     Seen(const check::Model& model, std::vector<Index> inputs);
 
     /// Adds the next frame; `samples`: by index of the model's inputs.
-    void add(const std::vector<plan::Sample>& samples);
+    void add(const std::vector<execute::Sample>& samples);
     /// Returns the identity of the frames so far.
     Identity identity() const { return {hash_.text(), hash_.content()}; }
     /// Returns a text that names the inputs with all of their declarations.
@@ -43,14 +43,14 @@ private:
         std::vector<float> values;
         std::uint32_t age = 0;  ///< missing samples since then
     };
-    void see(const check::Input& input, const plan::Sample& sample, Held& held,
+    void see(const check::Input& input, const execute::Sample& sample, Held& held,
              std::vector<float>& seen) const;
 
     const check::Model& model_;
     std::vector<Index> inputs_;
     std::vector<Held> held_;                ///< per input, the last present sample
     std::vector<std::vector<float>> seen_;  ///< per input, of this frame; empty where missing
-    data::EpisodeHash hash_;
+    recordings::EpisodeHash hash_;
 };
 
 /// The frames of an episode, in order, from a file (Recording) or from memory.
@@ -62,7 +62,7 @@ public:
     virtual diag::Result<bool> next() = 0;
     /// Returns the samples of this frame by index of the model's inputs; unwanted ones are absent,
     /// and stale ones.
-    virtual const std::vector<plan::Sample>& samples() const = 0;
+    virtual const std::vector<execute::Sample>& samples() const = 0;
     /// Returns the label of a wanted predicate in this frame.
     virtual Label label(Index predicate) const = 0;
     /// Returns the number of frames so far.
@@ -145,7 +145,7 @@ public:
     static diag::Result<Recording> open(const Wanted& wanted, const Opener& open);
 
     diag::Result<bool> next() override;
-    const std::vector<plan::Sample>& samples() const override { return samples_; }
+    const std::vector<execute::Sample>& samples() const override { return samples_; }
     Label label(Index predicate) const override;
     /// Returns whether its labels come from an array of the episode, or from beside it.
     bool from_array(Index predicate) const { return sources_[predicate].from_array; }
@@ -186,13 +186,13 @@ private:
     std::shared_ptr<KnownIdentities> identities_;  ///< null: the episode is not kept
     std::shared_ptr<const Identity> known_;        ///< null: `seen_` computes it
     std::unique_ptr<data::Trace> trace_;
-    std::vector<Index> channel_inputs_;       ///< per channel of an input, the input
-    std::vector<bool> narrowed_;              ///< per such channel: whether its samples are wanted
-    std::vector<plan::Freshness> freshness_;  ///< per such channel
-    std::vector<Source> sources_;             ///< per predicate of the model
+    std::vector<Index> channel_inputs_;  ///< per channel of an input, the input
+    std::vector<bool> narrowed_;         ///< per such channel: whether its samples are wanted
+    std::vector<execute::Freshness> freshness_;  ///< per such channel
+    std::vector<Source> sources_;                ///< per predicate of the model
     std::unique_ptr<TruthEvaluator> truth_;
     data::Sample sample_;
-    std::vector<plan::Sample> samples_;
+    std::vector<execute::Sample> samples_;
     Frame frame_;
     std::uint64_t frames_ = 0;
     std::optional<Leak> leak_;

@@ -8,7 +8,7 @@
 
 #include "episodes/recording.hpp"
 #include "episodes/truth.hpp"
-#include "plan/evaluate/evaluator.hpp"
+#include "execute/evaluator.hpp"
 
 namespace etlc::episodes {
 
@@ -18,8 +18,8 @@ public:
     /// `truth`: set for a plan of the ground truth, whose inputs include the labels.
     explicit Follower(const plan::Plan& plan, const GroundTruth* truth = nullptr);
 
-    plan::Evaluator& evaluator() { return evaluator_; }
-    const plan::Evaluator& evaluator() const { return evaluator_; }
+    execute::Evaluator& evaluator() { return evaluator_; }
+    const execute::Evaluator& evaluator() const { return evaluator_; }
     const plan::Plan& plan() const { return plan_; }
 
     /// Returns the verdicts of the last step, by index of the plan's monitors.
@@ -42,8 +42,8 @@ private:
     const GroundTruth* truth_;
     std::vector<Index> labelled_;      ///< predicates with labels in the ground truth
     std::vector<std::size_t> places_;  ///< per monitor of the model, its index in the plan
-    plan::Evaluator evaluator_;
-    std::vector<plan::Sample> samples_;  ///< samples with the labels
+    execute::Evaluator evaluator_;
+    std::vector<execute::Sample> samples_;  ///< samples with the labels
     const std::vector<etlmon::Verdict>* verdicts_ = nullptr;
     bool finished_ = false;
 };

@@ -40,10 +40,11 @@ bool usable(const Input& input, const std::vector<double>& sample) {
 }
 
 /// Returns whether the sample is not stale: monitors compare what they get.
-bool is_fresh(const Input& input, const std::vector<double>& sample, plan::Freshness& freshness) {
+bool is_fresh(const Input& input, const std::vector<double>& sample,
+              execute::Freshness& freshness) {
     if (input.stale_after == 0) return true;
     std::string why;
-    const auto narrowed = plan::narrow(input, true, sample, why);
+    const auto narrowed = execute::narrow(input, true, sample, why);
     const bool comparable =
         narrowed && std::all_of(narrowed->values.begin(), narrowed->values.end(),
                                 [](float x) { return std::isfinite(x); });
@@ -327,7 +328,7 @@ std::vector<Index> labelled_predicates(const GroundTruth& truth) {
     return found;
 }
 
-plan::Sample sample_of(Label label) {
+execute::Sample sample_of(Label label) {
     if (label == Label::unknown) return {};
     return {true, {label == Label::yes ? 1.0F : 0.0F}};
 }

@@ -12,7 +12,7 @@
 #include "check/model/model.hpp"
 #include "episodes/labels/label.hpp"
 #include "episodes/past_values.hpp"
-#include "plan/evaluate/inputs.hpp"
+#include "execute/inputs.hpp"
 
 namespace etlc::episodes {
 
@@ -70,11 +70,11 @@ private:
     std::deque<Frame> earlier_;  ///< values of the frames before, the last one first
     Frame held_;
     std::vector<std::uint32_t> ages_;
-    std::vector<plan::Freshness> freshness_;  ///< per input
-    std::vector<Index> read_pasts_;           ///< past numbers of the model that formulas read
-    std::vector<PastValues> past_values_;     ///< of these
-    std::vector<double> pasts_;               ///< per past number: at this frame
-    std::uint64_t frame_ = 0;                 ///< from 1; 0 before the first
+    std::vector<execute::Freshness> freshness_;  ///< per input
+    std::vector<Index> read_pasts_;              ///< past numbers of the model that formulas read
+    std::vector<PastValues> past_values_;        ///< of these
+    std::vector<double> pasts_;                  ///< per past number: at this frame
+    std::uint64_t frame_ = 0;                    ///< from 1; 0 before the first
 };
 
 /// The ground-truth monitor: the same formulas, in which bool inputs with the labels replace the
@@ -93,6 +93,6 @@ GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& la
 std::vector<Index> labelled_predicates(const GroundTruth& truth);
 
 /// Returns the label as a sample of such an input; unknown becomes missing.
-plan::Sample sample_of(Label label);
+execute::Sample sample_of(Label label);
 
 }  // namespace etlc::episodes

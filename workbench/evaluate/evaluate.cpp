@@ -114,8 +114,7 @@ void add(EpisodeResult result, std::size_t episode, std::size_t fold, Judgement&
 /// Scores the episodes of a trial and adds their identities to `own`. Returns false after an error.
 bool score(const Trial& trial, std::size_t fold, const Subject& subject, const Request& request,
            Judgement& judgement, episodes::Identities& own, diag::Sink& sink) {
-    const auto truth =
-        pipeline::compile(subject.truth.model, {request.limits, check::Values::boolean}, sink);
+    const auto truth = compile(subject.truth.model, {request.limits, check::Values::boolean}, sink);
     if (!truth) return false;
     std::vector<std::string> paths;
     for (const std::size_t e : trial.episodes) paths.push_back(request.episodes[e]);

@@ -15,20 +15,20 @@
 
 #include "artifacts/fitted.hpp"
 #include "artifacts/thresholds.hpp"
-#include "data/spill/spool.hpp"
+#include "compile.hpp"
+#include "data/spill/spill.hpp"
 #include "diag/diag.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/ranking/auroc.hpp"
 #include "episodes/shared/sharing.hpp"
 #include "evaluate/episode_scores.hpp"
 #include "evaluate/subject.hpp"
-#include "pipeline/compile.hpp"
 
 namespace etlc::evaluate {
 
 /// A compiled spec and the episodes that it is judged on; one trial per fold.
 struct Trial {
-    const pipeline::Compiled& spec;
+    const Compiled& spec;
     std::optional<thresholds::File>
         seen;                           ///< its calibrated thresholds, whose episodes are refused
     std::vector<std::size_t> episodes;  ///< indices into the request's episodes
@@ -36,7 +36,7 @@ struct Trial {
 };
 
 struct Request {
-    std::vector<std::string> episodes;  ///< as data::find_episodes gives them
+    std::vector<std::string> episodes;  ///< as recordings::find_episodes gives them
     episodes::ReadOptions reading;
     std::string allow_overlap;  ///< reason to allow overlaps with calibration; empty: refuse them
     unsigned jobs = 0;          ///< threads; 0: as many as the machine has

@@ -7,7 +7,7 @@
 #include <concepts>
 
 #include "evaluate/evaluate.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::evaluate {
 

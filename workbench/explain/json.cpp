@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "explain/report.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::explain {
 

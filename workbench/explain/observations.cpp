@@ -63,7 +63,7 @@ const check::Predicate& Observations::predicate(Index atom) const {
     return model_.predicates[atoms_[atom].index];
 }
 
-void Observations::add(const plan::Evaluator& evaluator) {
+void Observations::add(const execute::Evaluator& evaluator) {
     for (Index a = 0; a < atoms_.size(); ++a) {
         const Atom& atom = atoms_[a];
         Column& column = columns_[a];

@@ -8,7 +8,7 @@
 
 #include "check/model/model.hpp"
 #include "etlmon/temporal/value.hpp"
-#include "plan/evaluate/evaluator.hpp"
+#include "execute/evaluator.hpp"
 #include "plan/plan.hpp"
 
 namespace etlc::explain {
@@ -45,7 +45,7 @@ public:
 
     /// The plan that measures the predicates and reads the bools.
     const plan::Plan& plan() const { return plan_; }
-    void add(const plan::Evaluator& evaluator);
+    void add(const execute::Evaluator& evaluator);
     /// Reserves memory for `steps` steps; until then add() allocates none.
     void reserve(std::uint64_t steps);
     /// Discards all steps.
@@ -53,7 +53,7 @@ public:
     std::uint64_t steps() const { return steps_; }
     /// Takes the steps of other observations of the same predicates and inputs.
     void take(const Observations& other);
-    /// Passes the steps to an archive (plan/evaluate/archive.hpp).
+    /// Passes the steps to an archive (execute/archive.hpp).
     template <class Self, class Archive>
     static void visit(Self& self, Archive& archive) {
         archive.number(self.steps_);

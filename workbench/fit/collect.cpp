@@ -259,11 +259,11 @@ private:
             std::vector<double>& values = frame_[input];
             values.clear();
             if (input >= model_.inputs.size()) continue;
-            const plan::Sample& sample = frames.samples()[input];
+            const execute::Sample& sample = frames.samples()[input];
             if (sample.present) values.assign(sample.values.begin(), sample.values.end());
         }
         for (const Index predicate : readings_.wanted().predicates) {
-            const plan::Sample sample = episodes::sample_of(frames.label(predicate));
+            const execute::Sample sample = episodes::sample_of(frames.label(predicate));
             frame_[truth_.inputs[predicate]].assign(sample.values.begin(), sample.values.end());
         }
         where_.step(frame_);
@@ -327,7 +327,7 @@ std::optional<Collection> collect(const check::Model& model, const std::vector<N
     const auto have_labels =
         episodes::labelled_in(model, request.episodes.front(), request.reading);
     if (!have_labels) {
-        sink.report(data::in_trace(have_labels.failure(), request.episodes.front()));
+        sink.report(recordings::in_trace(have_labels.failure(), request.episodes.front()));
         return std::nullopt;
     }
     auto readings = Readings::read(wanted_for(model, needs, measured, *have_labels), request, sink);

@@ -61,7 +61,7 @@ private:
 
 /// The arguments of `etlc fit`.
 struct Request {
-    std::vector<std::string> episodes;  ///< as data::find_episodes gives them
+    std::vector<std::string> episodes;  ///< as recordings::find_episodes gives them
     episodes::ReadOptions reading;
     /// The reason of --allow-overlap; empty without the option.
     std::string allow_overlap;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "check/guarantees/provenance.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "episodes/admission/admission.hpp"
 #include "episodes/data_warnings.hpp"
 #include "fit/algebra/moments.hpp"
@@ -117,7 +117,7 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
     fix_order_of_sums();
     const auto labelled = episodes::labelled_in(model, paths.front(), request.reading);
     if (!labelled) {
-        sink.report(data::in_trace(labelled.failure(), paths.front()));
+        sink.report(recordings::in_trace(labelled.failure(), paths.front()));
         return std::nullopt;
     }
     Needs needs = needs_of(model);

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "data/files/file.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "episodes/labels/episode_names.hpp"
-#include "plan/evaluate/inputs.hpp"
+#include "execute/inputs.hpp"
 #include "recordings/episodes.hpp"
 #include "recordings/open.hpp"
 
@@ -33,7 +33,7 @@ bool is_own_truth(const check::Predicate& predicate) {
 /// Returns the number of steps of an episode, and which of the channels it has.
 diag::Result<std::pair<std::uint64_t, std::vector<bool>>> measured(
     const std::string& path, const std::vector<data::Channel>& channels) {
-    const auto trace = data::open_trace(path, channels);
+    const auto trace = recordings::open_trace(path, channels);
     if (!trace) return trace.failure();
     std::vector<bool> has;
     for (std::size_t c = 0; c < channels.size(); ++c) has.push_back((*trace)->has(c));
@@ -44,7 +44,7 @@ diag::Result<std::pair<std::uint64_t, std::vector<bool>>> measured(
         if (!more) return more.failure();
         if (!*more) break;
     }
-    if (steps == 0) return data::no_steps();
+    if (steps == 0) return recordings::no_steps();
     return std::pair{steps, has};
 }
 
@@ -114,12 +114,12 @@ bool Desk::measure(diag::Sink& sink) {
         const auto& read = model_->predicates[predicates_[p]].inputs;
         inputs.insert(read.begin(), read.end());
     }
-    for (const Index input : inputs) channels.push_back(plan::channel_of(model_->inputs[input]));
-    channels = data::renamed(std::move(channels), request_.names);
+    for (const Index input : inputs) channels.push_back(execute::channel_of(model_->inputs[input]));
+    channels = recordings::renamed(std::move(channels), request_.names);
     for (const std::string& path : request_.episodes) {
         auto found = measured(path, channels);
         if (!found) {
-            sink.report(data::in_trace(found.failure(), path));
+            sink.report(recordings::in_trace(found.failure(), path));
             continue;
         }
         auto& [steps, has] = *found;
@@ -145,8 +145,9 @@ void Desk::place() {
             episodes_[inside[i]].table = paths_.size();
             episodes_[inside[i]].name = names[i];
         }
-        paths_.push_back(request_.table.empty() ? (fs::path(folder) / data::kLabelsFile).string()
-                                                : request_.table);
+        paths_.push_back(request_.table.empty()
+                             ? (fs::path(folder) / recordings::kLabelsFile).string()
+                             : request_.table);
     }
 }
 
@@ -217,15 +218,15 @@ bool Desk::take(const episodes::LabelSet* labels, diag::Sink& sink) {
             const bool is_open = last.end == LabelledSteps::kToTheEnd;
             const std::uint64_t step = is_open ? last.start : last.end - 1;
             if (episode.is_recorded[p])
-                sink.report(data::in_trace(
+                sink.report(recordings::in_trace(
                     {Code::contradictory_labels,
                      fmt::format("has an array {}, and {} labels {} too: remove one of them",
-                                 data::in_quotes(
-                                     data::name_in_file("truth." + predicate(p), request_.names)),
+                                 data::in_quotes(recordings::name_in_file("truth." + predicate(p),
+                                                                          request_.names)),
                                  first.place, data::in_quotes(predicate(p)))},
                     episode.path));
             if (step >= episode.steps)
-                sink.report(data::in_trace(
+                sink.report(recordings::in_trace(
                     {Code::nothing_to_label,
                      fmt::format("{} labels {} at step {}, and the last step is {}", last.place,
                                  data::in_quotes(predicate(p)), step, episode.steps - 1)},

@@ -34,8 +34,8 @@ struct Episode {
 std::vector<Index> predicates_to_label(const check::Model& model);
 
 struct DeskRequest {
-    std::vector<std::string> episodes;  ///< as data::find_episodes gives them
-    data::NamesInFile names;
+    std::vector<std::string> episodes;  ///< as recordings::find_episodes gives them
+    recordings::NamesInFile names;
     std::string table;  ///< empty: labels.csv beside the episodes
 };
 

@@ -72,7 +72,7 @@ diag::Result<report::Film> Frames::open(const Episode& episode, std::uint64_t fr
 std::optional<Failure> Frames::check_end(const Episode& episode) const {
     const auto end = open(episode, episode.steps - 1);
     if (!end) return end.failure();
-    data::Frame frame;
+    recordings::Frame frame;
     for (const bool is_there : {true, false}) {
         const auto more = end->frames->next(frame);
         const bool is_short = !more && more.failure().code == Code::no_such_frame;
@@ -100,7 +100,7 @@ void Frames::make_room(std::uint64_t step) {
 }
 
 std::optional<Failure> Frames::read_up_to(std::uint64_t step) {
-    data::Frame frame;
+    recordings::Frame frame;
     while (film_.next <= step) {
         const auto more = film_.frames->next(frame);
         if (!more) return of_path(more.failure(), film_.path);

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "calibrate/fit.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "episodes/leaks/leaks.hpp"
 #include "episodes/ranking/auroc.hpp"
 #include "episodes/replay.hpp"
@@ -40,7 +40,8 @@ Labels labels_of(const std::vector<Interval>& intervals, std::uint64_t steps) {
 
 /// Measures all predicates of an episode. Failures do not name the path.
 diag::Result<std::vector<Measured>> measure(const check::Model& model, const Desk& desk,
-                                            std::size_t episode, const data::NamesInFile& names) {
+                                            std::size_t episode,
+                                            const recordings::NamesInFile& names) {
     const Episode& of = desk.episodes()[episode];
     const std::vector<Index>& predicates = desk.predicates();
     std::vector<Index> recorded;
@@ -208,12 +209,12 @@ std::vector<std::string> labelled_episodes(const Desk& desk) {
 }
 
 std::optional<Proposals> propose(const check::Model& model, const Desk& desk,
-                                 const data::NamesInFile& names, diag::Sink& sink) {
+                                 const recordings::NamesInFile& names, diag::Sink& sink) {
     std::vector<std::vector<Measured>> measured;
     for (std::size_t e = 0; e < desk.episodes().size(); ++e) {
         auto one = measure(model, desk, e, names);
         if (!one) {
-            sink.report(data::in_trace(one.failure(), desk.episodes()[e].path));
+            sink.report(recordings::in_trace(one.failure(), desk.episodes()[e].path));
             return std::nullopt;
         }
         measured.push_back(std::move(*one));

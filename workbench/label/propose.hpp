@@ -34,7 +34,7 @@ struct Proposals {
 /// Returns the proposals for all episodes that somebody has to label. Returns nothing after an
 /// error.
 std::optional<Proposals> propose(const check::Model& model, const Desk& desk,
-                                 const data::NamesInFile& names, diag::Sink& sink);
+                                 const recordings::NamesInFile& names, diag::Sink& sink);
 
 /// Returns the episodes that all predicates are labelled in.
 std::vector<std::string> labelled_episodes(const Desk& desk);

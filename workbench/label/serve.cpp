@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "data/text/number.hpp"
+#include "data/text/text.hpp"
 #include "label/service.hpp"
 #include "report/document.hpp"
 

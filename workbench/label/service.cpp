@@ -18,9 +18,9 @@ namespace etlc::label {
 
 namespace {
 
-using data::frames::number_at;
 using diag::Code;
 using diag::Failure;
+using recordings::frames::number_at;
 
 constexpr std::string_view kServer = "etlc-serve";
 /// Longer than anybody labels: etlc-serve is silent while nobody does.
@@ -55,7 +55,7 @@ diag::Result<std::unique_ptr<Service>> Service::start(std::uint32_t port) {
     if (!child) return Failure{Code::unwritable_output, fmt::format("{} cannot be run", kServer)};
     std::unique_ptr<Service> service(new Service(std::move(child)));
     std::string head;
-    data::frames::append(head, port);
+    recordings::frames::append(head, port);
     protocol::append(head, token);
     char bound[4];
     if (!service->child_->give(head) || !service->child_->read(bound, sizeof bound))
@@ -87,7 +87,7 @@ std::optional<Asked> Service::next(int or_this) {
 
 bool Service::answer(const Answer& answer) {
     std::string bytes;
-    data::frames::append(bytes, answer.status);
+    recordings::frames::append(bytes, answer.status);
     protocol::append(bytes, answer.type);
     protocol::append(bytes, answer.content);
     has_ended_ = has_ended_ || !child_->give(bytes);
@@ -96,7 +96,7 @@ bool Service::answer(const Answer& answer) {
 
 bool Service::publish(std::string_view event) {
     std::string bytes;
-    data::frames::append(bytes, protocol::kEvent);
+    recordings::frames::append(bytes, protocol::kEvent);
     protocol::append(bytes, event);
     has_ended_ = has_ended_ || !child_->give(bytes);
     return !has_ended_;

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "data/files/atomic_file.hpp"
-#include "data/files/bytes.hpp"
 #include "data/files/file.hpp"
 #include "episodes/labels/episode_names.hpp"
 

@@ -36,7 +36,7 @@ Worker::Worker(const Program& program)
         if (!is_f32_[i]) widened_[i].resize(program.model().inputs[i].dimension);
 }
 
-void Worker::run(plan::State& state, const Grids& samples, std::uint64_t row,
+void Worker::run(execute::State& state, const Grids& samples, std::uint64_t row,
                  etlc_verdict* verdicts) {
     const std::size_t monitors = program_.plan().monitors.size();
     etlc_verdict* to = verdicts + row * samples.steps * monitors;
@@ -53,10 +53,10 @@ void Worker::run(plan::State& state, const Grids& samples, std::uint64_t row,
 }
 
 void Worker::make_imagined() {
-    if (!imagined_) imagined_ = std::make_unique<plan::State>(evaluator_.new_state());
+    if (!imagined_) imagined_ = std::make_unique<execute::State>(evaluator_.new_state());
 }
 
-void Worker::imagine(const plan::State& state, const Grids& samples, std::uint64_t row,
+void Worker::imagine(const execute::State& state, const Grids& samples, std::uint64_t row,
                      etlc_verdict* verdicts) {
     *imagined_ = state;
     run(*imagined_, samples, row, verdicts);
@@ -124,14 +124,14 @@ Batch::Batch(const Batch& other) : Batch(other.program_, other.size()) {
 }
 
 std::uint64_t Batch::steps(std::uint64_t environment) const {
-    const plan::State& state = states_[environment];
+    const execute::State& state = states_[environment];
     return state.started ? state.steps + 1 - state.finished : 0;
 }
 
 void Batch::run(const Grids& samples, std::uint32_t threads, etlc_verdict* verdicts) {
     workers_.prepare(threads);
     workers_.each(samples.rows, [&](Worker& worker, std::uint64_t row) {
-        if (row + 1 < states_.size()) fetch_ahead(&states_[row + 1], sizeof(plan::State));
+        if (row + 1 < states_.size()) fetch_ahead(&states_[row + 1], sizeof(execute::State));
         worker.run(states_[row], samples, row, verdicts);
     });
 }
@@ -153,7 +153,7 @@ void Batch::restart(std::uint64_t environment, std::size_t monitor) {
 }
 
 void look_ahead(const std::shared_ptr<const Program>& program,
-                const std::vector<const plan::State*>& states, std::uint64_t plans,
+                const std::vector<const execute::State*>& states, std::uint64_t plans,
                 const Grids& samples, std::uint32_t threads, etlc_verdict* verdicts) {
     Workers workers(program);
     workers.prepare(threads);

@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
+#include "execute/evaluator.hpp"
 #include "library/etlc.h"
 #include "library/program.hpp"
-#include "plan/evaluate/evaluator.hpp"
 
 namespace etlc::library {
 
@@ -26,21 +26,22 @@ public:
     explicit Worker(const Program& program);
 
     /// Steps a state with the samples of a row. `verdicts`: room for those of the row.
-    void run(plan::State& state, const Grids& samples, std::uint64_t row, etlc_verdict* verdicts);
+    void run(execute::State& state, const Grids& samples, std::uint64_t row,
+             etlc_verdict* verdicts);
     /// The same with a copy of the state, once there is memory for one.
     void make_imagined();
-    void imagine(const plan::State& state, const Grids& samples, std::uint64_t row,
+    void imagine(const execute::State& state, const Grids& samples, std::uint64_t row,
                  etlc_verdict* verdicts);
 
 private:
     const float* elements_of(Index input, const void* data);
 
     const Program& program_;
-    plan::Evaluator evaluator_;
-    std::vector<plan::SampleView> views_;      ///< per input
+    execute::Evaluator evaluator_;
+    std::vector<execute::SampleView> views_;   ///< per input
     std::vector<bool> is_f32_;                 ///< per input
     std::vector<std::vector<float>> widened_;  ///< per input that is not
-    std::unique_ptr<plan::State> imagined_;
+    std::unique_ptr<execute::State> imagined_;
 };
 
 /// Workers of a program, as many as some call has asked for.
@@ -69,8 +70,8 @@ public:
     Batch& operator=(const Batch&) = delete;
 
     std::uint64_t size() const { return states_.size(); }
-    plan::State& state(std::uint64_t environment) { return states_[environment]; }
-    const plan::State& state(std::uint64_t environment) const { return states_[environment]; }
+    execute::State& state(std::uint64_t environment) { return states_[environment]; }
+    const execute::State& state(std::uint64_t environment) const { return states_[environment]; }
     /// Returns the number of steps of an environment's episode.
     std::uint64_t steps(std::uint64_t environment) const;
     bool is_ended(std::uint64_t environment) const { return states_[environment].finished > 0; }
@@ -83,14 +84,14 @@ public:
 
 private:
     std::shared_ptr<const Program> program_;
-    std::vector<plan::State> states_;
+    std::vector<execute::State> states_;
     Workers workers_;
-    plan::Evaluator evaluator_;  ///< for what is done to one environment
+    execute::Evaluator evaluator_;  ///< for what is done to one environment
 };
 
 /// Steps copies of the states, each with `plans` rows. `states`: one or more.
 void look_ahead(const std::shared_ptr<const Program>& program,
-                const std::vector<const plan::State*>& states, std::uint64_t plans,
+                const std::vector<const execute::State*>& states, std::uint64_t plans,
                 const Grids& samples, std::uint32_t threads, etlc_verdict* verdicts);
 
 }  // namespace etlc::library

@@ -8,10 +8,10 @@
 
 namespace etlc::library {
 
-Program::Program(source::File file, pipeline::Compiled compiled, const diag::Sink& sink)
+Program::Program(source::File file, Compiled compiled, const diag::Sink& sink)
     : file_(std::move(file)),
       compiled_(std::move(compiled)),
-      tables_(std::make_shared<const plan::Tables>(compiled_.plan)),
+      tables_(std::make_shared<const execute::Tables>(compiled_.plan)),
       warnings_(diag::render_text(file_, sink)),
       is_used_(model().inputs.size()),
       is_measured_(model().predicates.size()) {
@@ -44,7 +44,7 @@ void widen(const check::Input& input, const void* data, float* to) {
     }
 }
 
-void take(const check::Input& input, const void* data, plan::Sample& sample) {
+void take(const check::Input& input, const void* data, execute::Sample& sample) {
     sample.present = data != nullptr;
     if (!sample.present) return;
     sample.values.resize(input.dimension);

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "check/model/model.hpp"
+#include "compile.hpp"
 #include "diag/diag.hpp"
+#include "execute/inputs.hpp"
+#include "execute/tables.hpp"
 #include "library/etlc.h"
-#include "library/settings.hpp"
-#include "plan/evaluate/inputs.hpp"
-#include "plan/evaluate/tables.hpp"
 #include "source/source.hpp"
 
 namespace etlc::library {
@@ -22,13 +22,13 @@ using check::Index;
 class Program {
 public:
     /// Takes the compiled `file` and its findings.
-    Program(source::File file, pipeline::Compiled compiled, const diag::Sink& sink);
+    Program(source::File file, Compiled compiled, const diag::Sink& sink);
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;
 
     const plan::Plan& plan() const { return compiled_.plan; }
     const check::Model& model() const { return *compiled_.model; }
-    const std::shared_ptr<const plan::Tables>& tables() const { return tables_; }
+    const std::shared_ptr<const execute::Tables>& tables() const { return tables_; }
     const std::string& warnings() const { return warnings_; }
     const std::string& formula(std::size_t monitor) const { return formulas_[monitor]; }
     const std::string& predicate_name(Index predicate) const { return names_[predicate]; }
@@ -38,8 +38,8 @@ public:
 
 private:
     source::File file_;
-    pipeline::Compiled compiled_;
-    std::shared_ptr<const plan::Tables> tables_;
+    Compiled compiled_;
+    std::shared_ptr<const execute::Tables> tables_;
     std::string warnings_;
     std::vector<std::string> formulas_;  ///< per monitor of the plan
     std::vector<std::string> names_;     ///< per predicate of the model
@@ -80,6 +80,6 @@ inline const void* at(const etlc_grid& grid, std::uint64_t steps, std::uint64_t 
 void widen(const check::Input& input, const void* data, float* to);
 
 /// Puts a sample, or that it is missing, where the evaluator reads it.
-void take(const check::Input& input, const void* data, plan::Sample& sample);
+void take(const check::Input& input, const void* data, execute::Sample& sample);
 
 }  // namespace etlc::library

@@ -10,7 +10,7 @@
 
 #include "explain/report.hpp"
 #include "ir/lower.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::library {
 

@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "etlmon/temporal/verdict.hpp"
+#include "execute/evaluator.hpp"
+#include "execute/flight_recorder.hpp"
 #include "explain/observations.hpp"
 #include "library/batch.hpp"
 #include "library/program.hpp"
-#include "plan/evaluate/evaluator.hpp"
-#include "plan/evaluate/flight_recorder.hpp"
 
 namespace etlc::library {
 
@@ -35,7 +35,7 @@ public:
     const std::shared_ptr<const Program>& program() const { return program_; }
     const plan::Plan& plan() const { return program_->plan(); }
     const check::Model& model() const { return program_->model(); }
-    plan::Evaluator& evaluator() { return evaluator_; }
+    execute::Evaluator& evaluator() { return evaluator_; }
     std::uint64_t steps() const { return steps_; }
     bool is_ended() const { return is_ended_; }
     const etlmon::Verdict& verdict(std::size_t monitor) const { return verdicts_[monitor]; }
@@ -45,7 +45,7 @@ public:
     const Batch* batch() const { return batch_ ? &*batch_ : nullptr; }
 
     /// Returns the place for the next sample of an input, with room for its `values`.
-    plan::Sample& sample(Index input) { return samples_[input]; }
+    execute::Sample& sample(Index input) { return samples_[input]; }
     /// Steps the monitors with these samples.
     const std::vector<etlmon::Verdict>& step();
     const std::vector<etlmon::Verdict>& finish();
@@ -54,7 +54,7 @@ public:
     void observe(Index predicate, float distance, bool truth);
 
     /// Returns the recorder; null where the spec was opened without one.
-    plan::FlightRecorder* recorder() { return recorder_ ? &*recorder_ : nullptr; }
+    execute::FlightRecorder* recorder() { return recorder_ ? &*recorder_ : nullptr; }
 
     /// Says why the last verdict cannot be explained; empty where it can.
     std::string why_unexplained() const;
@@ -71,19 +71,19 @@ private:
     bool read_state(std::span<const std::uint8_t>& bytes);
 
     std::shared_ptr<const Program> program_;
-    std::vector<plan::Sample> samples_;
-    plan::Evaluator evaluator_;
+    std::vector<execute::Sample> samples_;
+    execute::Evaluator evaluator_;
     std::uint64_t steps_ = 0;
     bool is_ended_ = false;
     std::vector<etlmon::Verdict> verdicts_;  ///< the last ones
-    std::optional<plan::FlightRecorder> recorder_;
+    std::optional<execute::FlightRecorder> recorder_;
     std::optional<Batch> batch_;
 
     /// Observations of the steps so far, and the evaluator that measures them: monitors measure
     /// only what they need.
     std::uint64_t history_ = 0;
     std::optional<explain::Observations> observations_;
-    std::optional<plan::Evaluator> atoms_;
+    std::optional<execute::Evaluator> atoms_;
     bool thresholds_moved_ = false;
     std::string explanation_;
     std::vector<std::uint8_t> saved_;

@@ -9,10 +9,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "data/files/file.hpp"
-#include "data/text/number.hpp"
-#include "data/text/quote.hpp"
-#include "parse/parse.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::library {
 
@@ -127,23 +124,6 @@ std::optional<plan::RecorderRequest> parse_recorder(std::string_view text, std::
             "steps, and how many incidents, as 2s,1s,4 or 40,20,4",
             data::in_quotes(std::string(text)));
     return found;
-}
-
-bool read_spec(const std::string& path, source::File& file, diag::Sink& sink) {
-    // Far more than parse/ accepts, which refuses a large spec with its size and advice.
-    constexpr std::size_t kMostRead = 64 * parse::kMaxSpecBytes;
-    auto text = data::read_file(path, kMostRead, diag::Code::unreadable_spec, data::Streams::taken);
-    file = source::File(path, text ? std::move(*text) : "");
-    if (!text) sink.report(data::in_file(text.failure(), path));
-    return static_cast<bool>(text);
-}
-
-std::optional<pipeline::Compiled> compile(const source::File& file, const check::Options& check,
-                                          const pipeline::Options& options, diag::Sink& sink) {
-    ast::Spec spec = parse::parse(file, sink);
-    auto model = check::check(std::move(spec), file, check, sink);
-    if (!model || sink.has_errors()) return std::nullopt;
-    return pipeline::compile(std::move(*model), options, sink);
 }
 
 }  // namespace etlc::library

@@ -8,10 +8,7 @@
 #include <vector>
 
 #include "check/check.hpp"
-#include "diag/diag.hpp"
-#include "pipeline/compile.hpp"
 #include "plan/recorder_plan.hpp"
-#include "source/source.hpp"
 
 namespace etlc::library {
 
@@ -23,14 +20,5 @@ std::optional<std::vector<check::Setting>> parse_settings(const std::vector<std:
 /// Parses --recorder BEFORE,AFTER,INCIDENTS: two durations or numbers of steps, and a number
 /// from 1.
 std::optional<plan::RecorderRequest> parse_recorder(std::string_view text, std::string& why);
-
-// Reads and compiles a spec, for libetlc and the commands.
-
-/// Reads the file of a spec; reports an error where that fails.
-bool read_spec(const std::string& path, source::File& file, diag::Sink& sink);
-
-/// Compiles a spec through all stages; nothing where there was an error.
-std::optional<pipeline::Compiled> compile(const source::File& file, const check::Options& check,
-                                          const pipeline::Options& options, diag::Sink& sink);
 
 }  // namespace etlc::library

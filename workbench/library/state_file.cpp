@@ -7,9 +7,9 @@
 
 #include "check/model/fingerprint.hpp"
 #include "data/files/hash.hpp"
+#include "execute/archive.hpp"
 #include "library/session.hpp"
 #include "library/version.hpp"
-#include "plan/evaluate/archive.hpp"
 
 namespace etlc::library {
 
@@ -137,7 +137,7 @@ void Session::write_state(std::vector<std::uint8_t>& bytes) const {
         return;
     }
     evaluator_.state().write(bytes);
-    plan::Writer writer(bytes);
+    execute::Writer writer(bytes);
     writer.number(steps_);
     writer.flag(is_ended_);
     writer.flag(thresholds_moved_);
@@ -171,14 +171,14 @@ std::string Session::load(std::span<const std::uint8_t> bytes) {
 
 /// Reads into this session; it must not be used where that fails.
 bool Session::read_state(std::span<const std::uint8_t>& bytes) {
-    const plan::Tables& tables = *program_->tables();
+    const execute::Tables& tables = *program_->tables();
     if (batch_) {
         for (std::uint64_t e = 0; e < batch_->size(); ++e)
             if (!batch_->state(e).read(bytes, plan(), tables.shape)) return false;
         return true;
     }
     if (!evaluator_.state().read(bytes, plan(), tables.shape)) return false;
-    plan::Reader reader(bytes);
+    execute::Reader reader(bytes);
     reader.number(steps_);
     reader.flag(is_ended_);
     reader.flag(thresholds_moved_);
@@ -186,7 +186,7 @@ bool Session::read_state(std::span<const std::uint8_t>& bytes) {
     bytes = reader.rest();
     if (!reader.good() || !observations_) return reader.good();
     if (!atoms_->state().read(bytes, observations_->plan(), atoms_->tables()->shape)) return false;
-    plan::Reader rest(bytes);
+    execute::Reader rest(bytes);
     explain::Observations::visit(*observations_, rest);
     bytes = rest.rest();
     return rest.good() && observations_->fits(std::min(steps_, history_));

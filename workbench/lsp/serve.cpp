@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "data/files/descriptor.hpp"
+#include "data/files/file.hpp"
 #include "lsp/lsp.hpp"
 #include "lsp/protocol/session.hpp"
 

@@ -14,7 +14,9 @@
 #include "recordings/hdf5/hdf5.hpp"
 #include "recordings/open.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 namespace {
 
 namespace fs = std::filesystem;
@@ -181,4 +183,4 @@ EpisodeContent EpisodeHash::content() const {
     return result;
 }
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

@@ -15,7 +15,7 @@
 #include "data/traces/trace.hpp"
 #include "diag/diag.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
 
 /// A file of this name is a table of labels of the episodes beside it, never an episode.
 inline constexpr std::string_view kLabelsFile = "labels.csv";
@@ -48,14 +48,14 @@ public:
     /// Returns the hash of all steps so far.
     std::string text() const;
     /// Returns the content of each input so far.
-    EpisodeContent content() const;
+    data::EpisodeContent content() const;
 
 private:
     std::vector<HashedInput> inputs_;
-    std::vector<ContentReader> readers_;  ///< per input
-    std::vector<std::uint32_t> bits_;     ///< one step
+    std::vector<data::ContentReader> readers_;  ///< per input
+    std::vector<std::uint32_t> bits_;           ///< one step
     std::uint64_t steps_ = 0;
     std::uint64_t hash_ = 0;
 };
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

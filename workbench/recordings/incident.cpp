@@ -7,7 +7,9 @@
 #include "data/files/hash.hpp"
 #include "etlmon/temporal/recorder.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 
 namespace {
 
@@ -109,4 +111,4 @@ diag::Result<Incident> parse_incident(std::string_view bytes) {
     return result;
 }
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

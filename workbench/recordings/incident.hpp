@@ -10,7 +10,7 @@
 
 #include "diag/diag.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
 
 struct Incident {
     struct Row {
@@ -37,4 +37,4 @@ inline constexpr std::uint64_t kMaxIncidentBytes = std::uint64_t{1} << 30U;
 
 diag::Result<Incident> parse_incident(std::string_view bytes);
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

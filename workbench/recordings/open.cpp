@@ -9,16 +9,17 @@
 
 #include "data/arrays/archive.hpp"
 #include "data/arrays/array.hpp"
-#include "data/arrays/npy_header.hpp"
 #include "data/files/file.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "data/traces/trace_formats.hpp"
 #include "recordings/datasets/trace.hpp"
 #include "recordings/frames/protocol.hpp"
 #include "recordings/hdf5/hdf5.hpp"
 #include "recordings/open.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 
 namespace {
 
@@ -251,4 +252,4 @@ diag::Result<std::unique_ptr<FrameSource>> open_image_array(const std::string& p
     return open_hdf5_images(file, group_in(path, file), name, grey == Grey::taken);
 }
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

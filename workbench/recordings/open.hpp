@@ -13,7 +13,7 @@
 #include "data/traces/trace.hpp"
 #include "recordings/frames/frames.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
 
 /// Returns whether the ending of a path is that of a trace.
 bool is_trace(const std::string& path);
@@ -33,12 +33,12 @@ diag::Diagnostic in_trace(const diag::Failure& failure, const std::string& path)
 /// ignored, but not elements of a vector beyond its width. Shapes in .npz and .h5: T or T x 1 for
 /// scalars and bools, T x D for vectors (T too where D is 1). Failures, here and in `next`, are
 /// E08; their messages do not repeat the path: `in_trace` adds it.
-diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path,
-                                                const std::vector<Channel>& channels);
+diag::Result<std::unique_ptr<data::Trace>> open_trace(const std::string& path,
+                                                      const std::vector<data::Channel>& channels);
 
 /// Names in the file by the names of the channels, where the two differ: `--map z=obs/z`.
 using NamesInFile = std::map<std::string, std::string>;
-std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& names);
+std::vector<data::Channel> renamed(std::vector<data::Channel> channels, const NamesInFile& names);
 const std::string& name_in_file(const std::string& name, const NamesInFile& names);
 
 // Frames in arrays, T x H x W x 3 of uint8, or T x H x W of grey, in .npz and .h5 files.
@@ -54,4 +54,4 @@ diag::Result<std::unique_ptr<FrameSource>> open_image_array(const std::string& p
                                                             const std::string& name,
                                                             Grey grey = Grey::refused);
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "report/pictures.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::report {
 

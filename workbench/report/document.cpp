@@ -276,7 +276,7 @@ Json row_json(const Row& row, const evaluate::EpisodeRow* judged) {
 Json inputs_json(const plan::Plan& plan, const Totals& totals) {
     Json inputs = Json::array();
     for (std::size_t i = 0; i < plan.inputs.size(); ++i) {
-        const plan::SampleCounts& counts = totals.sample_counts[i];
+        const execute::SampleCounts& counts = totals.sample_counts[i];
         inputs.push_back({{"name", plan.model->inputs[plan.inputs[i]].name},
                           {"missing", counts.missing},
                           {"out_of_range", counts.out_of_range},

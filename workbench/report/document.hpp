@@ -18,7 +18,7 @@ namespace etlc::report {
 struct Totals {
     std::uint64_t episodes = 0;
     std::uint64_t steps = 0;
-    std::vector<plan::SampleCounts> sample_counts;  ///< per input of the plan
+    std::vector<execute::SampleCounts> sample_counts;  ///< per input of the plan
 };
 
 /// Returns the declared target of a plain distance, or kNone.

@@ -11,7 +11,7 @@
 #include "data/files/file.hpp"
 #include "report/report.hpp"
 #include "report/tracks.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::report {
 
@@ -282,12 +282,12 @@ private:
 
 }  // namespace
 
-std::optional<std::string> picture(const pipeline::Compiled& spec, const std::string& trace,
+std::optional<std::string> picture(const Compiled& spec, const std::string& trace,
                                    const episodes::ReadOptions& reading, diag::Sink& sink) {
     const Scene scene{spec.plan, spec.plan.predicates, nullptr, nullptr, reading, {}, {}};
     const auto tracks = TrackReader(scene).score(trace);
     if (tracks) return Drawing(scene, *tracks).text();
-    sink.report(data::in_trace(tracks.failure(), trace));
+    sink.report(recordings::in_trace(tracks.failure(), trace));
     return std::nullopt;
 }
 

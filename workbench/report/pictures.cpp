@@ -12,8 +12,7 @@
 
 #include "check/encoders/encoded.hpp"
 #include "data/files/file.hpp"
-#include "data/text/number.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "recordings/datasets/dataset.hpp"
 #include "recordings/datasets/trace.hpp"
 #include "recordings/frames/frames.hpp"
@@ -184,7 +183,7 @@ diag::Result<Pictures> from_frames(Film& film, const Length& length,
                                    std::uint64_t most_bytes) {
     const std::set<std::uint64_t> wanted(order.begin(), order.end());
     std::map<std::uint64_t, Picture> pictures;
-    data::Frame frame;
+    recordings::Frame frame;
     std::uint64_t count = 0;
     for (;; ++count) {
         const auto more = film.frames->next(frame);
@@ -228,18 +227,18 @@ diag::Result<std::string> dataset_episode(const std::string& set, const std::str
                        fmt::format("the episode {} is named after another data set than {}: "
                                    "expected {}{}",
                                    data::in_quotes(name), set, expected, name.substr(end))};
-    return data::episode_path(set, *number);
+    return recordings::episode_path(set, *number);
 }
 
 diag::Result<Film> open_dataset_film(const FramesOption& option, const std::string& episode,
                                      const Length& length) {
     const auto of_set = dataset_episode(option.text, episode);
     if (!of_set) return of_set.failure();
-    const auto found = data::find_episode(*of_set);
+    const auto found = recordings::find_episode(*of_set);
     if (!found) return of_file({Code::no_frames, found.failure().message}, *of_set);
-    const auto camera = data::camera_of(*found->set, option.camera);
+    const auto camera = recordings::camera_of(*found->set, option.camera);
     if (!camera) return of_file(camera.failure(), *of_set);
-    const auto stride = data::rows_a_step(*found->set, length.rate);
+    const auto stride = recordings::rows_a_step(*found->set, length.rate);
     if (!stride) return of_file(stride.failure(), *of_set);
     const std::uint64_t steps = (found->episode->length + *stride - 1) / *stride;
     if (steps != length.steps)
@@ -247,7 +246,7 @@ diag::Result<Film> open_dataset_film(const FramesOption& option, const std::stri
                        fmt::format("{}: {}", *of_set, not_one_a_step(steps, length.steps))};
     Film film;
     film.path = *of_set;
-    auto frames = data::open_clip(*found->set, *found->episode, *camera, *stride);
+    auto frames = recordings::open_clip(*found->set, *found->episode, *camera, *stride);
     if (!frames) return of_file(frames.failure(), *of_set);
     film.frames = std::move(*frames);
     return film;
@@ -259,7 +258,7 @@ diag::Result<Film> open_array_film(const std::string& array, const std::string& 
     if (!file.ends_with(".npz") && !data::is_hdf5(file))
         return Failure{Code::not_pictures,
                        "arrays of pictures are read only from .npz and .h5 files"};
-    auto frames = data::open_image_array(episode, array, data::Grey::taken);
+    auto frames = recordings::open_image_array(episode, array, recordings::Grey::taken);
     if (!frames)
         return Failure{
             frames.failure().code == Code::no_such_camera ? Code::no_frames : Code::not_pictures,
@@ -276,7 +275,7 @@ diag::Result<Film> open_array_film(const std::string& array, const std::string& 
 bool FramesOption::is_pattern() const {
     const auto ends = [&](std::string_view end) { return text.ends_with(end); };
     return text.find_first_of("*?[{") != std::string::npos || ends(".png") || ends(".jpg") ||
-           ends(".jpeg") || data::is_video(text);
+           ends(".jpeg") || recordings::is_video(text);
 }
 
 bool check_pattern(const FramesOption& option, std::size_t episodes, diag::Sink& sink) {
@@ -299,7 +298,7 @@ std::uint64_t Pictures::bytes() const {
 bool names_frames(const FramesOption& option, const std::string& episode) {
     if (!option.text.empty()) return true;
     if (!data::dataset_path(episode)) return false;
-    const auto found = data::find_episode(episode);
+    const auto found = recordings::find_episode(episode);
     return found && !found->set->cameras().empty();
 }
 
@@ -310,9 +309,9 @@ diag::Result<Film> open_film(const FramesOption& option, const std::string& epis
     if (!option.is_pattern()) return open_array_film(option.text, episode, length.steps);
     Film film;
     std::vector<std::string> paths = files_of(option.text, episode);
-    if (paths.size() == 1 && data::is_video(paths[0])) {
+    if (paths.size() == 1 && recordings::is_video(paths[0])) {
         film.path = paths[0];
-        auto frames = data::open_video(paths[0], {.rate = length.rate, .skipped = from});
+        auto frames = recordings::open_video(paths[0], {.rate = length.rate, .skipped = from});
         if (!frames) return of_file(frames.failure(), film.path);
         film.frames = std::move(*frames);
         film.next = from;
@@ -372,7 +371,7 @@ private:
     }
 
     std::optional<std::vector<Picture>> images(const std::vector<std::string>& paths) {
-        const auto source = data::open_images(paths);
+        const auto source = recordings::open_images(paths);
         if (!source) return fail(source.failure(), paths[0]);
         return all_of(**source, paths);
     }
@@ -383,7 +382,7 @@ private:
         std::vector<std::uint64_t> wanted = frames;
         std::sort(wanted.begin(), wanted.end());
         wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-        const auto source = data::open_video(path, {.only = wanted});
+        const auto source = recordings::open_video(path, {.only = wanted});
         if (!source) return fail(source.failure(), path);
         const auto decoded = all_of(**source, {path});
         if (!decoded) return std::nullopt;
@@ -395,10 +394,10 @@ private:
         return rows;
     }
 
-    std::optional<std::vector<Picture>> all_of(data::FrameSource& source,
+    std::optional<std::vector<Picture>> all_of(recordings::FrameSource& source,
                                                const std::vector<std::string>& paths) {
         std::vector<Picture> decoded;
-        data::Frame frame;
+        recordings::Frame frame;
         for (;;) {
             const auto more = source.next(frame);
             if (!more)

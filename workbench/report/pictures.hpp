@@ -46,7 +46,7 @@ struct Length {
 /// The frames of an episode: image files, one per step, or frames one after the other.
 struct Film {
     std::vector<std::string> images;
-    std::unique_ptr<data::FrameSource> frames;
+    std::unique_ptr<recordings::FrameSource> frames;
     std::string path;        ///< of the frames, for messages; empty: of the episode
     std::uint64_t next = 0;  ///< step of the next frame
     bool can_skip = false;   ///< it may be opened at any step

@@ -39,7 +39,7 @@ Row row_of(const Tracks& tracks) {
     row.path = tracks.path;
     row.frames = tracks.frames;
     row.outcomes = tracks.outcomes;
-    for (const plan::SampleCounts& counts : tracks.sample_counts)
+    for (const execute::SampleCounts& counts : tracks.sample_counts)
         row.missing += counts.missing + counts.out_of_range + counts.stale;
     return row;
 }
@@ -116,7 +116,7 @@ public:
 
     struct Packed {
         Row row;
-        std::vector<plan::SampleCounts> sample_counts;
+        std::vector<execute::SampleCounts> sample_counts;
     };
     diag::Result<Packed> score(const std::string& path) {
         const auto tracks = reader_.score(path);
@@ -203,10 +203,10 @@ bool Page::write(const std::function<bool(std::string_view)>& take) const {
 std::optional<Page> page(const Material& material, const Request& request, diag::Sink& sink) {
     if (!check_pattern(request.frames, request.episodes.size(), sink)) return std::nullopt;
     const plan::Plan& plan = material.spec.plan;
-    std::optional<pipeline::Compiled> truth;
+    std::optional<Compiled> truth;
     if (material.truth != nullptr) {
-        truth = pipeline::compile(material.truth->truth.model,
-                                  {request.limits, check::Values::boolean}, sink);
+        truth =
+            compile(material.truth->truth.model, {request.limits, check::Values::boolean}, sink);
         if (!truth) return std::nullopt;
     }
     Scene scene{plan,
@@ -218,7 +218,7 @@ std::optional<Page> page(const Material& material, const Request& request, diag:
                 {}};
     auto drawn = planes(*plan.model, scene.predicates, request.episodes, request.reading);
     if (!drawn) {
-        sink.report(data::in_trace(drawn.failure(), request.episodes[0]));
+        sink.report(recordings::in_trace(drawn.failure(), request.episodes[0]));
         return std::nullopt;
     }
     scene.planes = std::move(*drawn);
@@ -234,7 +234,7 @@ std::optional<Page> page(const Material& material, const Request& request, diag:
             {material.file.path(), evaluate::summarise(*material.judgement, request.jobs), {}});
         figures = in_script(evaluate::json(one));
     }
-    const Totals none{0, 0, std::vector<plan::SampleCounts>(plan.inputs.size())};
+    const Totals none{0, 0, std::vector<execute::SampleCounts>(plan.inputs.size())};
     const std::uint64_t bytes = request.megabytes * 1'000'000;
     const std::string shown = predicates(material, scene);
     Frame frame = frame_of(figures);

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "artifacts/thresholds.hpp"
+#include "compile.hpp"
 #include "diag/diag.hpp"
 #include "evaluate/evaluate.hpp"
-#include "pipeline/compile.hpp"
 #include "recordings/open.hpp"
 #include "report/blob.hpp"
 #include "report/pictures.hpp"
@@ -25,7 +25,7 @@ namespace etlc::report {
 inline constexpr std::uint64_t kUsualMegabytes = 5;
 
 struct Request {
-    std::vector<std::string> episodes;  ///< as data::find_episodes gives them
+    std::vector<std::string> episodes;  ///< as recordings::find_episodes gives them
     episodes::ReadOptions reading;
     unsigned jobs = 0;                          ///< threads; 0: as many as the machine has
     std::uint64_t megabytes = kUsualMegabytes;  ///< requested size of the page
@@ -38,7 +38,7 @@ struct Request {
 /// The inputs of a report.
 struct Material {
     const source::File& file;
-    const pipeline::Compiled& spec;
+    const Compiled& spec;
     /// The ground truth, and the comparison with it; null without truths.
     const evaluate::Subject* truth = nullptr;
     const evaluate::Judgement* judgement = nullptr;
@@ -84,7 +84,7 @@ private:
 std::optional<Page> page(const Material& material, const Request& request, diag::Sink& sink);
 
 /// Returns the timelines of one trace, without truths, as an SVG picture.
-std::optional<std::string> picture(const pipeline::Compiled& spec, const std::string& trace,
+std::optional<std::string> picture(const Compiled& spec, const std::string& trace,
                                    const episodes::ReadOptions& reading, diag::Sink& sink);
 
 }  // namespace etlc::report

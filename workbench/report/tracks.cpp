@@ -132,7 +132,7 @@ diag::Result<Tracks> TrackReader::score(const std::string& path) {
     const auto done = episodes::replay(*recording, followers, frame, rest);
     if (!done) return done.failure();
     tracks.frames = recording->frames();
-    if (tracks.frames == 0) return data::no_steps();
+    if (tracks.frames == 0) return recordings::no_steps();
     for (const Index input : scene_.plan.inputs)
         tracks.sample_counts.push_back(monitors_.evaluator().sample_counts()[input]);
     add_measurements(tracks);

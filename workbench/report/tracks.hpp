@@ -107,8 +107,8 @@ struct Why {
 struct Tracks {
     std::string path;
     std::uint64_t frames = 0;
-    std::vector<Outcome> outcomes;                  ///< per monitor of the plan
-    std::vector<plan::SampleCounts> sample_counts;  ///< per input of the plan
+    std::vector<Outcome> outcomes;                     ///< per monitor of the plan
+    std::vector<execute::SampleCounts> sample_counts;  ///< per input of the plan
     std::vector<Numbers> numbers;
     std::vector<Codes> codes;
     std::vector<Why> reasons;

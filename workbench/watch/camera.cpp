@@ -72,7 +72,7 @@ int Camera::patience() const {
     return static_cast<int>(std::clamp<std::int64_t>(left, 0, kLongest));
 }
 
-void Camera::add(data::LiveFrame& frame) {
+void Camera::add(recordings::LiveFrame& frame) {
     ++counts_.frames;
     const std::uint64_t steps = clock_.take(frame.time);
     if (steps == 0) {

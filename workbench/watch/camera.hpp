@@ -65,7 +65,7 @@ struct CameraCounts {
 
 class Camera {
 public:
-    Camera(std::unique_ptr<data::LiveFrames> frames, std::unique_ptr<Encoders> encoders,
+    Camera(std::unique_ptr<recordings::LiveFrames> frames, std::unique_ptr<Encoders> encoders,
            bool is_live, double step_seconds, const Stop& stop)
         : frames_(std::move(frames)),
           encoders_(std::move(encoders)),
@@ -77,7 +77,7 @@ public:
     diag::Result<bool> next();
 
     /// Returns the frame of this step; null where it has none.
-    const data::Frame* frame() const { return has_frame_ ? &frame_ : nullptr; }
+    const recordings::Frame* frame() const { return has_frame_ ? &frame_ : nullptr; }
     const std::vector<float>& embedding(check::Index input) const {
         return encoders_->embedding(input);
     }
@@ -90,7 +90,7 @@ private:
     struct Due {
         bool has_frame = false;
         bool is_given = false;  ///< to the encoders
-        data::Frame frame;
+        recordings::Frame frame;
     };
 
     bool fail() { return !(has_failed_ = true); }
@@ -99,20 +99,20 @@ private:
     void give_out();
     diag::Result<bool> wait();
     diag::Result<bool> take_frames();
-    void add(data::LiveFrame& frame);
+    void add(recordings::LiveFrame& frame);
     void add_absent(std::uint64_t steps);
     int patience() const;
     bool wants_frames() const { return is_live_ || due_.size() < 2; }
 
-    std::unique_ptr<data::LiveFrames> frames_;
+    std::unique_ptr<recordings::LiveFrames> frames_;
     std::unique_ptr<Encoders> encoders_;
     const Stop& stop_;
     bool is_live_;
     StepClock clock_;
     std::deque<Due> due_;
-    data::LiveFrame arrived_;
-    data::Frame frame_;  ///< of the last step that has one
-    data::Frame spare_;  ///< whose memory the next frame takes
+    recordings::LiveFrame arrived_;
+    recordings::Frame frame_;  ///< of the last step that has one
+    recordings::Frame spare_;  ///< whose memory the next frame takes
     bool has_frame_ = false;
     bool has_failed_ = false;
     CameraCounts counts_;

@@ -95,7 +95,8 @@ bool Encoders::compare(Index input, const Stop& stop) {
             row = std::move(found);
             is_there = true;
         };
-        if (auto failure = encoder.add(data::reference_frame(frame), "a reference frame", done))
+        if (auto failure =
+                encoder.add(recordings::reference_frame(frame), "a reference frame", done))
             return fail(input, *failure);
         given_ = std::chrono::steady_clock::now();
         while (!is_there) {
@@ -119,7 +120,7 @@ bool Encoders::compare(Index input, const Stop& stop) {
     return true;
 }
 
-bool Encoders::give(const data::Frame& frame) {
+bool Encoders::give(const recordings::Frame& frame) {
     waiting_ = encoders_.size();
     given_ = std::chrono::steady_clock::now();
     for (const auto& [input, encoder] : encoders_) {

@@ -29,7 +29,7 @@ public:
                                            diag::Sink& sink);
 
     /// Passes a frame to all encoders, which have finished the one before.
-    bool give(const data::Frame& frame);
+    bool give(const recordings::Frame& frame);
     /// Takes the embeddings that have arrived; false after an error.
     bool take();
     /// Returns whether all embeddings of the last frame are there.

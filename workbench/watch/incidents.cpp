@@ -34,12 +34,12 @@ bool Incidents::begins(const std::vector<Verdict>& verdicts) {
     return begins;
 }
 
-std::optional<diag::Diagnostic> Incidents::step(const plan::Evaluator& evaluator,
+std::optional<diag::Diagnostic> Incidents::step(const execute::Evaluator& evaluator,
                                                 const std::vector<Verdict>& verdicts) {
     recorder_.step(evaluator, verdicts);
     is_noted_ = !begins(verdicts) && is_noted_;
     if (!is_noted_) {
-        plan::FlightRecorder now = recorder_;
+        execute::FlightRecorder now = recorder_;
         now.close();
         begun_ = now.complete();
         for (std::uint32_t n = written_; n < begun_; ++n)
@@ -70,7 +70,7 @@ std::optional<diag::Diagnostic> Incidents::write_complete() {
 
 /// Writes an incident: at first under a number that is free, though another call may watch into the
 /// same folder, then again in the same file.
-std::optional<diag::Diagnostic> Incidents::write(plan::FlightRecorder& recorder,
+std::optional<diag::Diagnostic> Incidents::write(execute::FlightRecorder& recorder,
                                                  std::uint32_t incident) {
     const std::vector<std::uint8_t>& bytes = recorder.write(incident);
     const bool is_new = incident == numbers_.size();

@@ -11,7 +11,7 @@
 
 #include "diag/diag.hpp"
 #include "etlmon/temporal/verdict.hpp"
-#include "plan/evaluate/flight_recorder.hpp"
+#include "execute/flight_recorder.hpp"
 
 namespace etlc::watch {
 
@@ -22,7 +22,7 @@ public:
 
     /// Records a step, and writes the incidents that it begins or completes. Returns why they
     /// cannot be written; the next step tries again.
-    std::optional<diag::Diagnostic> step(const plan::Evaluator& evaluator,
+    std::optional<diag::Diagnostic> step(const execute::Evaluator& evaluator,
                                          const std::vector<etlmon::Verdict>& verdicts);
     /// Writes those that wait for more steps as they are.
     std::optional<diag::Diagnostic> close();
@@ -32,13 +32,14 @@ public:
 
 private:
     std::string path(std::uint64_t number) const;
-    std::optional<diag::Diagnostic> write(plan::FlightRecorder& recorder, std::uint32_t incident);
+    std::optional<diag::Diagnostic> write(execute::FlightRecorder& recorder,
+                                          std::uint32_t incident);
     bool begins(const std::vector<etlmon::Verdict>& verdicts);
     std::optional<diag::Diagnostic> write_complete();
 
     const plan::Plan& plan_;
     std::string folder_;
-    plan::FlightRecorder recorder_;
+    execute::FlightRecorder recorder_;
     std::vector<bool> alarms_;   ///< per monitor: at the last step
     bool is_noted_ = true;       ///< all incidents so far have a file
     std::uint32_t begun_ = 0;    ///< in the recorder

@@ -67,7 +67,7 @@ std::string page_of(const plan::Plan& plan, const PageText& text) {
 
 std::string step_json(const plan::Plan& plan, std::uint64_t step,
                       const std::vector<etlmon::Verdict>& verdicts,
-                      const plan::Evaluator& evaluator) {
+                      const execute::Evaluator& evaluator) {
     std::vector<std::string> distance, robustness, lower, upper;
     std::vector<std::uint32_t> holds, said;
     for (const check::Index p : plan.predicates) {
@@ -106,7 +106,7 @@ Page::~Page() {
     thread_.join();
 }
 
-void Page::add(std::string step, const data::Frame* frame) {
+void Page::add(std::string step, const recordings::Frame* frame) {
     std::string event;
     if (listeners_ > 0) {
         event = step;

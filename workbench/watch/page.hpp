@@ -14,10 +14,10 @@
 #include <thread>
 #include <vector>
 
-#include "data/files/descriptor.hpp"
+#include "data/files/file.hpp"
 #include "diag/diag.hpp"
+#include "execute/evaluator.hpp"
 #include "label/service.hpp"
-#include "plan/evaluate/evaluator.hpp"
 #include "recordings/frames/frames.hpp"
 #include "report/document.hpp"
 
@@ -34,7 +34,7 @@ std::string page_of(const plan::Plan& plan, const PageText& text);
 /// Returns a step as JSON without its end: "{"step":5,...".
 std::string step_json(const plan::Plan& plan, std::uint64_t step,
                       const std::vector<etlmon::Verdict>& verdicts,
-                      const plan::Evaluator& evaluator);
+                      const execute::Evaluator& evaluator);
 
 class Page {
 public:
@@ -46,7 +46,7 @@ public:
 
     const std::string& address() const { return service_->address(); }
     /// Adds a step. `step`: of step_json; `frame`: null where it has none.
-    void add(std::string step, const data::Frame* frame);
+    void add(std::string step, const recordings::Frame* frame);
     /// Returns once why the page is served no more; else nothing.
     std::optional<std::string> take_ending();
 

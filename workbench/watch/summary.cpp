@@ -69,7 +69,7 @@ std::string Summary::of_sliding(const OfMonitor& m, std::uint64_t horizon) const
                        when(*plan_.model, m.worst->step - horizon));
 }
 
-std::string Summary::of_input(check::Index input, const plan::SampleCounts& counts) const {
+std::string Summary::of_input(check::Index input, const execute::SampleCounts& counts) const {
     std::vector<std::string> parts;
     if (counts.missing > 0) parts.push_back(fmt::format("{} missing", counts.missing));
     if (counts.out_of_range > 0)
@@ -80,7 +80,7 @@ std::string Summary::of_input(check::Index input, const plan::SampleCounts& coun
     return fmt::format("input {}: {}\n", plan_.model->inputs[input].name, text);
 }
 
-std::string Summary::text(std::uint64_t steps, const plan::Evaluator& evaluator) const {
+std::string Summary::text(std::uint64_t steps, const execute::Evaluator& evaluator) const {
     std::string text;
     for (std::size_t i = 0; i < monitors_.size(); ++i) {
         const OfMonitor& m = monitors_[i];
@@ -96,7 +96,7 @@ std::string Summary::text(std::uint64_t steps, const plan::Evaluator& evaluator)
     }
     text += fmt::format("{}\n", diag::counted(steps, "step"));
     for (const check::Index input : plan_.inputs) {
-        const plan::SampleCounts& counts = evaluator.sample_counts()[input];
+        const execute::SampleCounts& counts = evaluator.sample_counts()[input];
         if (counts.missing + counts.out_of_range + counts.stale > 0)
             text += of_input(input, counts);
     }
@@ -107,7 +107,7 @@ Changes::Changes(const plan::Plan& plan)
     : plan_(plan), said_(plan.monitors.size(), "undecided"), inputs_(plan.inputs.size()) {}
 
 std::string Changes::after(std::uint64_t step, const std::vector<etlmon::Verdict>& verdicts,
-                           const plan::Evaluator& evaluator) {
+                           const execute::Evaluator& evaluator) {
     std::string text;
     for (std::size_t i = 0; i < inputs_.size(); ++i)
         text += of_input(static_cast<check::Index>(i), step,
@@ -118,7 +118,7 @@ std::string Changes::after(std::uint64_t step, const std::vector<etlmon::Verdict
 }
 
 std::string Changes::after_finish(std::uint64_t step, const std::vector<etlmon::Verdict>& verdicts,
-                                  const plan::Evaluator& evaluator) {
+                                  const execute::Evaluator& evaluator) {
     std::string text;
     for (std::size_t m = 0; m < said_.size(); ++m)
         if (plan_.monitors[m].sliding) text += of_monitor(m, step, verdicts[m], evaluator);
@@ -126,7 +126,7 @@ std::string Changes::after_finish(std::uint64_t step, const std::vector<etlmon::
 }
 
 std::string Changes::of_monitor(std::size_t m, std::uint64_t step, const etlmon::Verdict& verdict,
-                                const plan::Evaluator& evaluator) {
+                                const execute::Evaluator& evaluator) {
     const plan::Monitor& monitor = plan_.monitors[m];
     std::string words = status(verdict);
     if (!monitor.sliding && verdict.decided()) words += verdict.final() ? " for good" : " so far";
@@ -144,7 +144,7 @@ std::string Changes::of_monitor(std::size_t m, std::uint64_t step, const etlmon:
 }
 
 std::string Changes::of_input(check::Index input, std::uint64_t step,
-                              const plan::SampleCounts& counts) {
+                              const execute::SampleCounts& counts) {
     OfInput& known = inputs_[input];
     const char* const why = counts.missing > known.counts.missing             ? "is missing"
                             : counts.out_of_range > known.counts.out_of_range ? "is out of range"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "etlmon/temporal/verdict.hpp"
-#include "plan/evaluate/evaluator.hpp"
+#include "execute/evaluator.hpp"
 #include "plan/program/program.hpp"
 
 namespace etlc::watch {
@@ -28,7 +28,7 @@ public:
     /// Adds a verdict about a new position of the monitor.
     void add(std::size_t monitor, std::uint64_t step, const etlmon::Verdict& verdict);
 
-    std::string text(std::uint64_t steps, const plan::Evaluator& evaluator) const;
+    std::string text(std::uint64_t steps, const execute::Evaluator& evaluator) const;
 
 private:
     /// A robustness and its step.
@@ -51,7 +51,7 @@ private:
     std::string of_prefix(const OfMonitor& monitor) const;
     std::string of_repeating(const OfMonitor& monitor) const;
     std::string of_sliding(const OfMonitor& monitor, std::uint64_t horizon) const;
-    std::string of_input(check::Index input, const plan::SampleCounts& counts) const;
+    std::string of_input(check::Index input, const execute::SampleCounts& counts) const;
 
     const plan::Plan& plan_;
     std::vector<OfMonitor> monitors_;
@@ -67,19 +67,20 @@ public:
 
     /// Returns the lines of a step; call it after Evaluator::step().
     std::string after(std::uint64_t step, const std::vector<etlmon::Verdict>& verdicts,
-                      const plan::Evaluator& evaluator);
+                      const execute::Evaluator& evaluator);
     /// Returns the lines of a position after the trace; call it after Evaluator::finish().
     std::string after_finish(std::uint64_t step, const std::vector<etlmon::Verdict>& verdicts,
-                             const plan::Evaluator& evaluator);
+                             const execute::Evaluator& evaluator);
 
 private:
     struct OfInput {
-        plan::SampleCounts counts;
+        execute::SampleCounts counts;
         std::uint64_t absent = 0;  ///< steps in a row
     };
     std::string of_monitor(std::size_t monitor, std::uint64_t step, const etlmon::Verdict& verdict,
-                           const plan::Evaluator& evaluator);
-    std::string of_input(check::Index input, std::uint64_t step, const plan::SampleCounts& counts);
+                           const execute::Evaluator& evaluator);
+    std::string of_input(check::Index input, std::uint64_t step,
+                         const execute::SampleCounts& counts);
 
     const plan::Plan& plan_;
     std::vector<std::string> said_;  ///< per monitor: the words of its last line

@@ -14,7 +14,7 @@
 #include "episodes/data_warnings.hpp"
 #include "episodes/replay.hpp"
 #include "recordings/frames/frames.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 #include "watch/camera.hpp"
 #include "watch/incidents.hpp"
 #include "watch/page.hpp"
@@ -46,7 +46,8 @@ public:
         if (!request_.video.empty() && !open_camera()) return is_stopped();
         if (request_.video.empty())
             episodes::warn_of_unmarked(*plan_.model, plan_.inputs,
-                                       {std::string(data::kStandardInput)}, request_.names, sink_);
+                                       {std::string(recordings::kStandardInput)}, request_.names,
+                                       sink_);
         if (sink_.refused() || (request_.has_page && !open_page())) return false;
         step_through();
         const auto trouble = incidents_ ? incidents_->close() : std::nullopt;
@@ -65,7 +66,7 @@ private:
     bool is_stopped() const { return stop_.is_asked() && !sink_.has_errors(); }
 
     bool fail(const Failure& failure) {
-        sink_.report(request_.video.empty() ? data::in_trace(failure, "-")
+        sink_.report(request_.video.empty() ? recordings::in_trace(failure, "-")
                                             : data::in_file(failure, source()));
         return false;
     }
@@ -90,15 +91,16 @@ private:
     /// Opens the source last: while encoders start, its frames would be lost.
     bool open_camera() {
         if (!has_only_encoded_inputs()) return false;
-        if (const auto failure = data::why_no_source(request_.video)) return fail(*failure);
+        if (const auto failure = recordings::why_no_source(request_.video)) return fail(*failure);
         embed::Request asked{request_.running, request_.version, {}, {}, {}};
         auto encoders = Encoders::start(*plan_.model, plan_.inputs, std::move(asked), stop_, sink_);
         if (!encoders) return false;
         const double length = plan_.model->step_seconds;
-        auto frames = data::LiveFrames::open(request_.video, length > 0 ? 1 / length : 0);
+        auto frames = recordings::LiveFrames::open(request_.video, length > 0 ? 1 / length : 0);
         if (!frames) return fail(frames.failure());
-        camera_ = std::make_unique<Camera>(std::move(*frames), std::move(encoders),
-                                           data::is_live_source(request_.video), length, stop_);
+        camera_ =
+            std::make_unique<Camera>(std::move(*frames), std::move(encoders),
+                                     recordings::is_live_source(request_.video), length, stop_);
         return true;
     }
 
@@ -116,7 +118,7 @@ private:
     diag::Result<episodes::Recording> open() {
         const episodes::Wanted wanted{plan_.model, plan_.inputs, {}, {}, nullptr, {}};
         if (!camera_) {
-            const std::string trace(data::kStandardInput);
+            const std::string trace(recordings::kStandardInput);
             return episodes::Recording::open(wanted, trace, {request_.names, nullptr});
         }
         return episodes::Recording::open(
@@ -152,7 +154,7 @@ private:
         // A row that arrives with the end may be cut.
         if (!camera_ && stop_.is_asked()) return false;
         const auto& verdicts = monitors_.verdicts();
-        const plan::Evaluator& evaluator = monitors_.evaluator();
+        const execute::Evaluator& evaluator = monitors_.evaluator();
         for (std::size_t m = 0; m < verdicts.size(); ++m)
             if (monitors_.reports(plan_.monitors[m].index)) summary_.add(m, steps_, verdicts[m]);
         const auto trouble = incidents_ ? incidents_->step(evaluator, verdicts) : std::nullopt;

@@ -18,7 +18,7 @@ namespace etlc::watch {
 
 struct Request {
     std::string video;  ///< path or address; empty: the trace on standard input
-    data::NamesInFile names;
+    recordings::NamesInFile names;
     embed::Running running;
     std::string version;  ///< of etlc
     bool has_page = false;

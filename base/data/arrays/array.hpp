@@ -6,11 +6,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "data/files/bytes.hpp"
+#include "data/files/file.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::data {
@@ -57,5 +58,52 @@ diag::Result<Array> read_npy_from(ByteSource& source);
 
 /// Adds the name of the array to a failure.
 diag::Failure in_array(const diag::Failure& failure, const std::string& key);
+
+// The header of an .npy array: a magic word, a version, and a Python dictionary literal.
+// Takes: the bytes before the data. Gives: element type, order, shape. Source: numpy.lib.format,
+// versions 1.0, 2.0 and 3.0. Keeps true: the number of elements and of bytes fits 63 bits; what the
+// header promises is only read; the caller compares it with the bytes.
+
+struct NpyHeader {
+    Element element = Element::f32;
+    bool fortran_order = false;
+    std::vector<std::uint64_t> shape;
+    std::uint64_t count = 1;         ///< product of the shape
+    std::uint64_t header_bytes = 0;  ///< where the data begin
+
+    std::uint64_t data_bytes() const;
+};
+
+/// Reads up to the first byte of data. Failures have E04 codes and messages that name neither file
+/// nor array.
+diag::Result<NpyHeader> read_npy_header(ByteSource& source);
+
+/// Returns a failure unless `total` bytes, header included, are exactly what the array takes.
+std::optional<diag::Failure> check_size(const NpyHeader& header, std::uint64_t total);
+
+/// Returns a shape as numpy writes it: "(8, 32)".
+std::string shape_text(const std::vector<std::uint64_t>& shape);
+
+// The element types of arrays: their names, and the conversion of their bytes to numbers.
+// Takes: little-endian bytes as in .npy files. Gives: doubles.
+// Keeps true: every float16, float32 and integer up to 2^53 converts exactly.
+
+struct ElementInfo {
+    Element element;
+    std::string_view code;  ///< the descr of .npy files without its byte order: "f4"
+    std::string_view name;  ///< the name in numpy: "float32"
+    std::uint32_t bytes;
+};
+
+const ElementInfo& info(Element element);
+/// Returns the element type with this code, "f4".
+std::optional<Element> element_of_code(std::string_view code);
+
+/// Converts IEEE 754 binary16 to double, exactly, NaN and infinities included.
+double half_to_double(std::uint16_t bits);
+
+/// Converts `n` elements. Returns how many are valid: fewer than `n` where a boolean byte is
+/// neither 0 nor 1.
+std::size_t decode(Element element, const char* bytes, std::size_t n, double* to);
 
 }  // namespace etlc::data

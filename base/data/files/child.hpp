@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "data/files/descriptor.hpp"
+#include "data/files/file.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::data {

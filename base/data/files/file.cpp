@@ -1,9 +1,10 @@
 #include "data/files/file.hpp"
 
-#include <fmt/format.h>
 #include <glob.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +16,7 @@
 #include <fstream>
 #include <memory>
 #include <string_view>
+#include <utility>
 
 namespace etlc::data {
 
@@ -167,6 +169,117 @@ diag::Result<std::vector<std::string>> find_images(const std::string& folder,
                         "files that end in {}",
                         image_endings())};
     return images;
+}
+
+Descriptor::Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+
+Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+}
+
+Descriptor::~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+}
+
+bool write_all(int descriptor, std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t n =
+            uninterrupted([&] { return ::write(descriptor, bytes.data(), bytes.size()); });
+        if (n == 0) errno = EIO;
+        if (n <= 0) return false;
+        bytes.remove_prefix(static_cast<std::size_t>(n));
+    }
+    return true;
+}
+
+bool read_all_at(int descriptor, std::uint64_t at, char* to, std::size_t n) {
+    while (n > 0) {
+        const ssize_t got =
+            uninterrupted([&] { return ::pread(descriptor, to, n, static_cast<off_t>(at)); });
+        if (got == 0) errno = EIO;
+        if (got <= 0) return false;
+        at += static_cast<std::uint64_t>(got);
+        to += got;
+        n -= static_cast<std::size_t>(got);
+    }
+    return true;
+}
+
+namespace {
+
+class FileBytes final : public ByteSource {
+public:
+    explicit FileBytes(std::FILE* file) : file_(file) {
+        struct stat status {};
+        if (::fstat(::fileno(file), &status) == 0 && S_ISREG(status.st_mode))
+            size_ = static_cast<std::uint64_t>(status.st_size);
+    }
+    FileBytes(const FileBytes&) = delete;
+    FileBytes& operator=(const FileBytes&) = delete;
+    ~FileBytes() override { std::fclose(file_); }
+
+    diag::Result<std::size_t> read(char* to, std::size_t n) override {
+        const std::size_t got = std::fread(to, 1, n, file_);
+        if (got < n && std::ferror(file_) != 0)
+            return diag::Failure{diag::Code::unreadable_data_file,
+                                 fmt::format("cannot be read: {}", std::strerror(errno))};
+        return got;
+    }
+    std::uint64_t size() const override { return size_; }
+
+private:
+    std::FILE* file_;
+    std::uint64_t size_ = 0;
+};
+
+class StandardInput final : public ByteSource {
+public:
+    diag::Result<std::size_t> read(char* to, std::size_t n) override {
+        const auto got = uninterrupted([&] { return ::read(STDIN_FILENO, to, n); });
+        if (got < 0)
+            return diag::Failure{diag::Code::unreadable_data_file,
+                                 fmt::format("cannot be read: {}", std::strerror(errno))};
+        return static_cast<std::size_t>(got);
+    }
+    std::uint64_t size() const override { return 0; }
+};
+
+class MemoryBytes final : public ByteSource {
+public:
+    explicit MemoryBytes(std::string_view bytes) : rest_(bytes), size_(bytes.size()) {}
+
+    diag::Result<std::size_t> read(char* to, std::size_t n) override {
+        n = std::min(n, rest_.size());
+        if (n > 0) std::memcpy(to, rest_.data(), n);
+        rest_.remove_prefix(n);
+        return n;
+    }
+    std::uint64_t size() const override { return size_; }
+
+private:
+    std::string_view rest_;
+    std::uint64_t size_;
+};
+
+}  // namespace
+
+std::unique_ptr<ByteSource> standard_input() {
+    return std::make_unique<StandardInput>();
+}
+
+diag::Result<std::unique_ptr<ByteSource>> open_file(const std::string& path, Streams streams) {
+    if (auto why = why_unreadable(path, streams))
+        return diag::Failure{diag::Code::unreadable_data_file, *why};
+    std::FILE* file = std::fopen(path.c_str(), "rbe");
+    if (file == nullptr)
+        return diag::Failure{diag::Code::unreadable_data_file,
+                             fmt::format("cannot be read: {}", std::strerror(errno))};
+    return std::unique_ptr<ByteSource>(std::make_unique<FileBytes>(file));
+}
+
+std::unique_ptr<ByteSource> from_memory(std::string_view bytes) {
+    return std::make_unique<MemoryBytes>(bytes);
 }
 
 }  // namespace etlc::data

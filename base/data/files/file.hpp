@@ -3,11 +3,15 @@
 // `in_file` adds it.
 #pragma once
 
+#include <cerrno>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "diag/diag.hpp"
@@ -72,5 +76,59 @@ std::string image_endings();
 /// are sorted bytewise, whatever the file system or the locale. Failures are E1009.
 diag::Result<std::vector<std::string>> find_images(const std::string& folder,
                                                    const std::string& path);
+
+// File descriptors.
+// Keeps true: a descriptor is closed with its object; interrupted calls are repeated; `errno` holds
+// the reason of a failure.
+
+class Descriptor {
+public:
+    explicit Descriptor(int number = -1) : number_(number) {}
+    Descriptor(Descriptor&& other) noexcept;
+    Descriptor& operator=(Descriptor&& other) noexcept;
+    ~Descriptor();
+
+    int operator*() const { return number_; }
+    explicit operator bool() const { return number_ >= 0; }
+
+private:
+    int number_;
+};
+
+/// Repeats a system call until no signal interrupts it.
+template <class Call>
+auto uninterrupted(Call call) {
+    auto result = call();
+    while (result < 0 && errno == EINTR) result = call();
+    return result;
+}
+
+/// Writes all of `bytes`; false where they cannot be written.
+bool write_all(int descriptor, std::string_view bytes);
+
+/// Reads `n` bytes at `at`; false where that fails, with EIO where the file is too short.
+bool read_all_at(int descriptor, std::uint64_t at, char* to, std::size_t n);
+
+// Sources of bytes: a file, memory, or a member of an archive.
+// Keeps true: `read` returns less than requested only at the end; `size` is what the container
+// declares, known before reading.
+
+class ByteSource {
+public:
+    virtual ~ByteSource() = default;
+    /// Reads up to `n` bytes; fewer only at the end. Fails where a checksum does not match.
+    virtual diag::Result<std::size_t> read(char* to, std::size_t n) = 0;
+    virtual std::uint64_t size() const = 0;
+};
+
+/// Opens a regular file, or a stream that can be read to its end, whose size is 0.
+diag::Result<std::unique_ptr<ByteSource>> open_file(const std::string& path,
+                                                    Streams streams = Streams::refused);
+
+/// Opens standard input. `read` returns what a pipe holds, so only 0 bytes are the end.
+std::unique_ptr<ByteSource> standard_input();
+
+/// Reads from bytes that outlive the source.
+std::unique_ptr<ByteSource> from_memory(std::string_view bytes);
 
 }  // namespace etlc::data

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "data/files/descriptor.hpp"
 #include "data/files/file.hpp"
 #include "etlmon/checksum.hpp"
 

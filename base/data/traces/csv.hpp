@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "data/files/bytes.hpp"
+#include "data/files/file.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::data {

@@ -9,12 +9,15 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "data/spill/spill.hpp"
 #include "data/traces/trace.hpp"
 
 namespace etlc::data {
@@ -170,5 +173,86 @@ private:
 
 /// Returns the share of the smaller sketch; nothing where it has fewer than `least` units.
 std::optional<double> share(const Sketch& a, const Sketch& b, std::size_t least = kLeastUnits);
+
+// The contents of many episodes by their hashes.
+// Takes: hashes and contents, in any order. Gives: them in ascending order of the hashes, each
+// once, the last that was added. Keeps true: contents are in temporary files, and memory does not
+// grow with their number; a copy costs nothing until one of the two changes. Not thread-safe.
+
+class KnownEpisodes {
+public:
+    void add(std::uint64_t hash, const EpisodeContent& content);
+    bool empty() const { return all_ == nullptr || all_->places.size() == 0; }
+
+    using Visit = std::function<void(std::uint64_t hash, const EpisodeContent& content)>;
+    void for_each(const Visit& visit) const;
+    /// Visits only those among `hashes`, which are sorted.
+    void for_each_of(const std::vector<std::uint64_t>& hashes, const Visit& visit) const;
+
+    /// Forgets all that are not among `hashes`, which are sorted.
+    void keep(const std::vector<std::uint64_t>& hashes);
+
+private:
+    struct Place {
+        std::uint64_t hash;
+        std::uint64_t at;  ///< place of its length, which precedes the content
+        bool operator<(const Place& other) const {
+            return hash != other.hash ? hash < other.hash : at < other.at;
+        }
+    };
+    struct All {
+        SpillFile contents;
+        Sorted<Place> places;
+    };
+
+    static EpisodeContent read(const SpillFile& contents, std::uint64_t at);
+
+    std::shared_ptr<All> all_;  ///< shared by copies until one of them changes
+};
+
+// Preselects the episodes that may be equal to another, or share most of their content with one.
+// Takes: the content of each. Gives: the suspects. Keeps true: if `Recordings` finds one of two
+// episodes by the other, both are suspects; an episode takes a few bytes here and a few kilobytes
+// in Recordings, so only suspects are compared there.
+
+class Suspects {
+public:
+    /// `each_other`: episodes that are asked about are also compared with each other.
+    explicit Suspects(bool each_other) : each_other_(each_other) {}
+
+    /// Adds an episode that is asked about.
+    void ask(const EpisodeContent& content) { add(content, false); }
+    /// Adds an episode that they are compared with.
+    void know(const EpisodeContent& content) { add(content, true); }
+
+    /// Returns for each episode, in the order of the calls, whether it is a suspect.
+    std::vector<bool> find();
+
+private:
+    /// A hash or a unit of an input, which two episodes may have in common.
+    struct Key {
+        std::uint64_t key;
+        std::uint32_t input;
+        std::uint32_t episode;
+        bool operator<(const Key& other) const {
+            if (input != other.input) return input < other.input;
+            return key != other.key ? key < other.key : episode < other.episode;
+        }
+    };
+    void add(const EpisodeContent& content, bool is_known);
+    bool are_compared(std::uint32_t a, std::uint32_t b) const {
+        return is_known_[a] != is_known_[b] || (each_other_ && !is_known_[a]);
+    }
+    /// Visits the episodes of `same` that have a key in common with one they are compared with.
+    template <class Visit>
+    void for_each_shared(const std::vector<std::uint32_t>& same, const Visit& visit) const;
+
+    bool each_other_;
+    std::vector<bool> is_known_;
+    std::vector<bool> is_short_;                   ///< has few units in some input
+    std::map<std::string, std::uint32_t> inputs_;  ///< numbers by name
+    Sorted<Key> hashes_;
+    Sorted<Key> units_;
+};
 
 }  // namespace etlc::data

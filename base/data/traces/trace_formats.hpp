@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "data/arrays/archive.hpp"
-#include "data/arrays/npy_header.hpp"
-#include "data/files/bytes.hpp"
+#include "data/arrays/array.hpp"
+#include "data/files/file.hpp"
 #include "data/traces/trace.hpp"
 
 namespace etlc::data {

@@ -15,7 +15,7 @@
 #include "check/numbers/decimal.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::check {
 

@@ -9,7 +9,7 @@
 #include "check/guarantees/conformal.hpp"
 #include "check/numbers/decimal.hpp"
 #include "data/files/hash.hpp"
-#include "data/traces/suspects.hpp"
+#include "data/traces/overlap.hpp"
 
 namespace etlc::check {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "source/utf8.hpp"
+#include "source/text.hpp"
 
 namespace etlc::check {
 

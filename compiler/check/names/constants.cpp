@@ -7,7 +7,7 @@
 #include "check/context/context.hpp"
 #include "check/numbers/decimal.hpp"
 #include "data/files/file.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::check {
 

@@ -1,7 +1,7 @@
 // Prints explanations: values that carry their sample, and why_NAME().
 
 #include "emit/context.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::emit {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::emit {
 

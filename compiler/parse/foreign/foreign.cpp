@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "EtlLexer.h"
-#include "source/utf8.hpp"
+#include "source/text.hpp"
 
 namespace etlc::parse {
 

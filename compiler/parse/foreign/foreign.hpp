@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "parse/stream/stuck.hpp"
-#include "parse/stream/tokens.hpp"
 
 namespace etlc::parse {
 

@@ -6,7 +6,7 @@
 #include <cctype>
 
 #include "EtlLexer.h"
-#include "source/utf8.hpp"
+#include "source/text.hpp"
 
 namespace etlc::parse {
 

@@ -2,7 +2,6 @@
 // offsets in the file; any bytes can be lexed.
 #pragma once
 
-#include <cstddef>
 #include <initializer_list>
 #include <memory>
 #include <optional>

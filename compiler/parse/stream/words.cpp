@@ -1,8 +1,7 @@
 #include "parse/stream/words.hpp"
 
-#include "parse/stream/tokens.hpp"
-
 #include "EtlLexer.h"
+#include "parse/stream/tokens.hpp"
 
 namespace etlc::parse {
 

@@ -299,7 +299,7 @@ std::optional<std::string> mismatch_of(check::Model model, const reference::Trac
     std::vector<check::Index> inputs(model.inputs.size());
     std::iota(inputs.begin(), inputs.end(), 0);
     explain::Observations observations(model, values, predicates, inputs);
-    plan::Evaluator evaluator(observations.plan());
+    execute::Evaluator evaluator(observations.plan());
     for (const reference::Step& step : trace) {
         evaluator.step(samples_of(step));
         observations.add(evaluator);

@@ -26,7 +26,7 @@ std::vector<check::Index> all(std::size_t count) {
 Observations observations_of(const check::Model& model, const reference::Trace& trace) {
     Observations result(model, check::Values::robustness, all(model.predicates.size()),
                         all(model.inputs.size()));
-    plan::Evaluator evaluator(result.plan());
+    execute::Evaluator evaluator(result.plan());
     for (const reference::Step& step : trace) {
         evaluator.step(samples_of(step));
         result.add(evaluator);

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "driver/process/process.hpp"
 
 namespace etlc::driver {

@@ -13,7 +13,7 @@
 #include "library/version.hpp"
 #include "parse/parse.hpp"
 #include "recordings/open.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::driver {
 

@@ -12,24 +12,19 @@
 #include "artifacts/fitted.hpp"
 #include "artifacts/thresholds.hpp"
 #include "check/model/model.hpp"
+#include "compile.hpp"
 #include "diag/diag.hpp"
 #include "driver/commands/request.hpp"
 #include "driver/process/process.hpp"
 #include "episodes/shared/sharing.hpp"
 #include "evaluate/evaluate.hpp"
 #include "fit/suggest/suggest.hpp"
-#include "pipeline/compile.hpp"
 #include "plan/plan.hpp"
 #include "source/source.hpp"
 
 namespace etlc::driver {
 
-using pipeline::Compiled;
-
 // ---- compiling ----------------------------------------------------------------------------------
-
-/// Compiles a spec through all stages: text, tree, model, graph, plan.
-std::optional<Compiled> compile(const source::File& file, const Request& request, diag::Sink& sink);
 
 /// `etlc SPEC.etl`: writes the header or another stage, the files of large target sets and of
 /// parameters, and the rule of their dependencies.
@@ -61,8 +56,8 @@ bool report(const source::File& spec, const Compiled& compiled, const Request& r
 
 /// Makes the page of one trace, without truths.
 std::optional<std::string> page_of_trace(const source::File& spec, const Compiled& compiled,
-                                         const std::string& trace, const data::NamesInFile& names,
-                                         diag::Sink& sink);
+                                         const std::string& trace,
+                                         const recordings::NamesInFile& names, diag::Sink& sink);
 
 // ---- commands that fill in what a spec lacks ----------------------------------------------------
 
@@ -112,8 +107,8 @@ fitted::File fitted_file(const check::Model& model, const std::string& spec,
                          const Request& request);
 
 /// Reports the names of --map that no spec has, E0804; false where there are any.
-bool check_names(const std::vector<const check::Model*>& models, const data::NamesInFile& names,
-                 diag::Sink& sink);
+bool check_names(const std::vector<const check::Model*>& models,
+                 const recordings::NamesInFile& names, diag::Sink& sink);
 
 /// Reads the labels that lie beside the episodes or that the call names into `reading`. Returns
 /// false after an error.

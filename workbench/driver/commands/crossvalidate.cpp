@@ -81,7 +81,7 @@ public:
             if (!(this->*stages[s])(of_stages[s])) return std::nullopt;
         auto model = check({});
         if (!model) return std::nullopt;
-        auto compiled = pipeline::compile(std::move(*model), request_, sink_);
+        auto compiled = compile(std::move(*model), request_, sink_);
         if (!compiled) return std::nullopt;
         return Trained{std::move(*compiled), std::move(calibration_.fitted),
                        std::move(thresholds_)};

@@ -27,7 +27,7 @@ struct Folds {
 
 /// The result of training on all folds but one.
 struct Trained {
-    pipeline::Compiled spec;
+    Compiled spec;
     fitted::File fitted;
     thresholds::File thresholds;
 };

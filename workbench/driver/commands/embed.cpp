@@ -20,7 +20,7 @@
 #include "parse/parse.hpp"
 #include "recordings/frames/frames.hpp"
 #include "recordings/open.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::driver {
 
@@ -65,7 +65,7 @@ bool has_inputs(const check::Model& model, const std::vector<embed::Recording>& 
 
 /// Reports names of --map and --camera that are not inputs.
 bool check_inputs(const check::Model& model, const Request& request, diag::Sink& sink) {
-    data::NamesInFile of_inputs;  // without labels, which embedding ignores
+    recordings::NamesInFile of_inputs;  // without labels, which embedding ignores
     for (const auto& [name, in_file] : request.names)
         if (!name.starts_with("truth.")) of_inputs.emplace(name, in_file);
     if (!check_names({&model}, of_inputs, sink)) return false;
@@ -140,7 +140,7 @@ std::vector<std::string> reference_paths(const std::string& folder) {
 
 bool write_references(const std::vector<std::string>& paths, OutputFiles& files, diag::Sink& sink) {
     for (std::uint32_t i = 0; i < paths.size(); ++i) {
-        const auto png = data::png_of(data::reference_frame(i));
+        const auto png = recordings::png_of(recordings::reference_frame(i));
         if (!png) {
             sink.report(data::in_file(png.failure(), paths[i]));
             return false;

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <numeric>
 
+#include "compile.hpp"
 #include "data/files/file.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/commands/crossvalidate.hpp"
 #include "driver/process/process.hpp"
-#include "library/settings.hpp"
 #include "library/version.hpp"
 #include "parse/parse.hpp"
 #include "recordings/open.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::driver {
 
@@ -37,7 +37,7 @@ std::optional<Candidate> candidate(const SpecToJudge& spec, const Request& reque
         result.untrained =
             check::check(parse::parse(spec.file, spec.sink), spec.file, options, spec.sink);
     } else {
-        result.compiled = library::compile(spec.file, options, request, spec.sink);
+        result.compiled = compile(spec.file, options, request, spec.sink);
     }
     if (spec.sink.refused() || (!result.compiled && !result.untrained)) return std::nullopt;
     return result;

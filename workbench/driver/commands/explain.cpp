@@ -5,13 +5,13 @@
 #include <utility>
 
 #include "data/files/file.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/process/process.hpp"
 #include "episodes/data_warnings.hpp"
 #include "episodes/replay.hpp"
 #include "explain/report.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::driver {
 
@@ -101,11 +101,11 @@ private:
         };
         const auto done = episodes::replay(*recording, {&monitors, &atoms}, frame, rest);
         if (!done) return fail(done.failure());
-        return observations_.steps() > 0 || fail(data::no_steps());
+        return observations_.steps() > 0 || fail(recordings::no_steps());
     }
 
     bool fail(const diag::Failure& failure) {
-        sink_.report(data::in_trace(failure, request_.trace));
+        sink_.report(recordings::in_trace(failure, request_.trace));
         return false;
     }
 

@@ -2,18 +2,18 @@
 #include <map>
 
 #include "calibrate/scores.hpp"
+#include "compile.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/commands/crossvalidate.hpp"
 #include "driver/process/process.hpp"
 #include "episodes/folds.hpp"
 #include "fit/fit.hpp"
 #include "fit/suggest/suggest.hpp"
-#include "library/settings.hpp"
 #include "library/version.hpp"
 #include "parse/parse.hpp"
 #include "recordings/episodes.hpp"
 #include "recordings/open.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::driver {
 
@@ -60,7 +60,7 @@ bool fit(const source::File& file, const Request& request, diag::Sink& sink) {
     asked.version = library::kVersion;
     const std::string output =
         request.output.empty() ? fitted::default_path(file.path()) : request.output;
-    asked.episodes = data::find_episodes(request.data, request.groups, sink);
+    asked.episodes = recordings::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return false;
     if (!read_labels({&*model}, request, asked.episodes, asked.reading, sink)) return false;
     if (request.fit.suggest) return suggest(file, *model, options, request, asked, sink);
@@ -122,7 +122,7 @@ public:
             return std::nullopt;
         }
         if (model->fitted.empty() && calibrate::calibrated_predicates(*model).empty()) {
-            const auto compiled = library::compile(file_, request_.check, request_, of_spec);
+            const auto compiled = compile(file_, request_.check, request_, of_spec);
             if (compiled) return judge_as_it_is(*compiled, file_.path(), request_, asked_, sink);
             sink.add(of_spec, "");
             return std::nullopt;

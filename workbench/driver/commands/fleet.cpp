@@ -10,7 +10,6 @@
 
 #include "data/files/atomic_file.hpp"
 #include "data/files/child.hpp"
-#include "data/files/descriptor.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "driver/process/process.hpp"
@@ -86,7 +85,7 @@ std::vector<std::string> find_shared_episodes(episodes::Sharing* sharing,
                                               const std::vector<std::string>& data,
                                               const std::string& groups, diag::Sink& sink) {
     if (sharing != nullptr && sharing->merges()) return sharing->part().episodes;
-    auto found = data::find_episodes(data, groups, sink);
+    auto found = recordings::find_episodes(data, groups, sink);
     if (sharing != nullptr) sharing->part().episodes = found;
     return found;
 }

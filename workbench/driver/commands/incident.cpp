@@ -15,13 +15,13 @@
 #include "plan/plan.hpp"
 #include "plan/recorder_plan.hpp"
 #include "recordings/incident.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::driver {
 
 namespace {
 
-using data::Incident;
+using recordings::Incident;
 
 using check::Index;
 using plan::RecorderColumns;
@@ -275,10 +275,10 @@ bool incident(const source::File& spec, const Compiled& compiled, const Request&
               diag::Sink& sink) {
     const plan::Plan& plan = compiled.plan;
     const std::string& path = request.incident.file;
-    const auto bytes = data::read_file(path, data::kMaxIncidentBytes,
+    const auto bytes = data::read_file(path, recordings::kMaxIncidentBytes,
                                        diag::Code::unreadable_incident, data::Streams::taken);
     if (!bytes) return sink.report(data::in_file(bytes.failure(), path)), false;
-    const auto read = data::within_memory([&] { return data::parse_incident(*bytes); });
+    const auto read = data::within_memory([&] { return recordings::parse_incident(*bytes); });
     if (!read) return sink.report(data::in_file(read.failure(), path)), false;
     if (!check_origin(*read, plan, path, sink) || !check_rows(*read, plan, path, sink))
         return false;

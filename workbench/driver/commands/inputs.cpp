@@ -9,15 +9,15 @@
 #include <utility>
 
 #include "data/files/file.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "driver/commands/commands.hpp"
 #include "recordings/open.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::driver {
 
-bool check_names(const std::vector<const check::Model*>& models, const data::NamesInFile& names,
-                 diag::Sink& sink) {
+bool check_names(const std::vector<const check::Model*>& models,
+                 const recordings::NamesInFile& names, diag::Sink& sink) {
     std::vector<std::string> known;
     for (const check::Model* model : models) {
         for (const check::Input& input : model->inputs) known.push_back(input.name);

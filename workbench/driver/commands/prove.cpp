@@ -17,7 +17,7 @@
 #include "emit/emit.hpp"
 #include "emit/standalone.hpp"
 #include "library/version.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::driver {
 

@@ -48,7 +48,7 @@ bool report(const source::File& spec, const Compiled& compiled, const Request& r
     wanted.megabytes = request.report.megabytes;
     wanted.limits = request.limits;
     if (!check_names({&model}, wanted.reading.names, sink)) return false;
-    wanted.episodes = data::find_episodes(request.data, request.groups, sink);
+    wanted.episodes = recordings::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return false;
     if (!request.report.without_truths &&
         !read_labels({&model}, request, wanted.episodes, wanted.reading, sink))
@@ -63,7 +63,7 @@ bool report(const source::File& spec, const Compiled& compiled, const Request& r
     if (!request.report.without_truths) {
         auto found = truths_of(compiled, wanted.episodes[0], wanted.reading);
         if (!found) {
-            sink.report(data::in_trace(found.failure(), wanted.episodes[0]));
+            sink.report(recordings::in_trace(found.failure(), wanted.episodes[0]));
             return false;
         }
         truths = std::move(*found);
@@ -95,8 +95,8 @@ bool report(const source::File& spec, const Compiled& compiled, const Request& r
 }
 
 std::optional<std::string> page_of_trace(const source::File& spec, const Compiled& compiled,
-                                         const std::string& trace, const data::NamesInFile& names,
-                                         diag::Sink& sink) {
+                                         const std::string& trace,
+                                         const recordings::NamesInFile& names, diag::Sink& sink) {
     report::Material material{spec, compiled};
     material.why_no_truth = "etlc run shows what the monitors say; etlc report compares it";
     report::Request wanted;

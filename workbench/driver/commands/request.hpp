@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "check/check.hpp"
+#include "compile.hpp"
 #include "embed/encoder.hpp"
 #include "episodes/labels/labels.hpp"
 #include "episodes/shared/sharing.hpp"
 #include "episodes/variants/variants.hpp"
-#include "pipeline/compile.hpp"
 #include "recordings/open.hpp"
 #include "report/report.hpp"
 
@@ -32,16 +32,16 @@ struct ShardRequest {
     bool from_input = false;
 };
 
-struct Request : pipeline::Options {
+struct Request : CompileOptions {
     /// Settings of constants, and the files of thresholds, fitted entries and embeddings; an empty
     /// path stands for the file beside the spec.
-    check::Options check = {.open_trace = data::open_trace};
+    check::Options check = {.open_trace = recordings::open_trace};
     std::string output;  ///< -o; "-" is standard output, empty the usual place of the command
 
     std::vector<std::string> data;  ///< episodes or recordings: files, folders and patterns
     std::string groups;             ///< pattern of the groups of .h5 files that are episodes
     std::string trace;
-    data::NamesInFile names;        ///< names of inputs and labels in the files
+    recordings::NamesInFile names;  ///< names of inputs and labels in the files
     episodes::LabelSources labels;  ///< besides those in the files
     std::string allow_overlap;      ///< why overlaps are accepted; empty: they are refused
     unsigned jobs = 0;              ///< threads; 0: as many as the machine has

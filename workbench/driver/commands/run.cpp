@@ -15,11 +15,11 @@
 #include "episodes/data_warnings.hpp"
 #include "episodes/replay.hpp"
 #include "etlmon/temporal/verdict.hpp"
-#include "plan/evaluate/evaluator.hpp"
+#include "execute/evaluator.hpp"
 #include "plan/recorder_plan.hpp"
 #include "recordings/episodes.hpp"
 #include "recordings/open.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 #include "watch/summary.hpp"
 
 namespace etlc::driver {
@@ -48,7 +48,8 @@ public:
     bool execute() {
         if (!check_names({plan_.model}, request_.names, sink_)) return false;
         std::vector<std::string> traces{request_.trace};
-        if (is_of_several()) traces = data::find_episodes(request_.data, request_.groups, sink_);
+        if (is_of_several())
+            traces = recordings::find_episodes(request_.data, request_.groups, sink_);
         if (sink_.has_errors()) return false;
         if (!check_outputs({request_.output, request_.run.html, request_.run.svg},
                            files_read(*plan_.model, spec_, traces), sink_))
@@ -85,7 +86,7 @@ private:
     }
 
     bool fail(const diag::Failure& failure) {
-        sink_.report(data::in_trace(failure, trace_));
+        sink_.report(recordings::in_trace(failure, trace_));
         return false;
     }
 
@@ -141,7 +142,7 @@ private:
 
     void warn_of_absent_inputs() {
         for (const check::Index input : plan_.inputs) {
-            const plan::SampleCounts& counts = monitors_.evaluator().sample_counts()[input];
+            const execute::SampleCounts& counts = monitors_.evaluator().sample_counts()[input];
             if (counts.missing + counts.out_of_range < steps_) continue;
             const char* why = counts.missing == steps_        ? "missing"
                               : counts.out_of_range == steps_ ? "out of its range"
@@ -165,7 +166,7 @@ private:
         if (request_.run.changes && !print_changes()) return false;
         ++step_;
         // A program that pipes a trace waits for each verdict.
-        const bool waits = request_.trace == data::kStandardInput;
+        const bool waits = request_.trace == recordings::kStandardInput;
         return (text_.size() < kBufferBytes && !waits) || flush();
     }
 

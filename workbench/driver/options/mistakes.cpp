@@ -13,8 +13,7 @@
 #include <utility>
 
 #include "check/names/reserved.hpp"
-#include "data/text/number.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "diag/diag.hpp"
 #include "driver/options/call.hpp"
 #include "driver/process/process.hpp"
@@ -226,7 +225,8 @@ std::string mistake_in_running(const Call& call) {
         return "expected --trace FILE, or --data FILE... for several episodes";
     if (call.trace.empty() && !(call.run.html.empty() && call.run.svg.empty()))
         return "--html and --svg show one trace: they need --trace FILE";
-    if (call.trace == data::kStandardInput && !(call.run.html.empty() && call.run.svg.empty()))
+    if (call.trace == recordings::kStandardInput &&
+        !(call.run.html.empty() && call.run.svg.empty()))
         return "--html and --svg read the trace once more, so it cannot be standard input";
     return mistake_in_retargetable(call);
 }

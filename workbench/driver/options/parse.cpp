@@ -12,7 +12,7 @@
 #include "driver/options/table.hpp"
 #include "driver/process/process.hpp"
 #include "library/version.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::driver {
 

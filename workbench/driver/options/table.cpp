@@ -10,8 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "data/text/number.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/options/mistakes.hpp"
 #include "recordings/open.hpp"
@@ -156,7 +155,7 @@ std::vector<Option> make_options() {
 
         // Recordings.
         {kFindEpisodes, "--data", texts("FILE...", in(&Call::data)),
-         "episodes: files (" + data::trace_endings() + "), folders, data sets, 'patterns'",
+         "episodes: files (" + recordings::trace_endings() + "), folders, data sets, 'patterns'",
          kRequired},
         {embed, "--data", texts("FILE...", in(&Call::data)),
          "recordings to make episodes of: videos, folders of images, data sets, .npz and .h5 files "
@@ -269,7 +268,7 @@ Takes page() {
 /// A trace that is watched comes on standard input.
 Takes checked_trace() {
     return checked(text("-", in(&Call::trace)), [](const std::string& found) {
-        return found == data::kStandardInput
+        return found == recordings::kStandardInput
                    ? std::string()
                    : fmt::format("found {}, expected -, standard input; etlc run reads files",
                                  data::in_quotes(found));

@@ -15,9 +15,8 @@
 #include <system_error>
 #include <utility>
 
-#include "data/files/descriptor.hpp"
 #include "data/files/file.hpp"
-#include "data/spill/file.hpp"
+#include "data/spill/spill.hpp"
 #include "diag/render.hpp"
 #include "recordings/open.hpp"
 
@@ -87,7 +86,7 @@ namespace fs = std::filesystem;
 using diag::Code;
 
 std::string words(const std::string& path, bool is_input) {
-    if (is_input && path == data::kStandardInput) return "standard input";
+    if (is_input && path == recordings::kStandardInput) return "standard input";
     return path == kStandardOutput ? "standard output" : path;
 }
 

@@ -15,7 +15,7 @@ namespace etlc::embed::worker {
 
 namespace {
 
-using data::frames::kRefused;
+using recordings::frames::kRefused;
 
 /// Skipping fewer pictures than these is slower than decoding them.
 constexpr std::int64_t kFewPictures = 50;

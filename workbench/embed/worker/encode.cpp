@@ -16,10 +16,10 @@ namespace etlc::embed::worker {
 
 namespace {
 
-using data::frames::kMaxExtent;
-using data::frames::kMaxPixels;
-using data::frames::kRefused;
-using data::frames::kWrongCall;
+using recordings::frames::kMaxExtent;
+using recordings::frames::kMaxPixels;
+using recordings::frames::kRefused;
+using recordings::frames::kWrongCall;
 
 std::string shape_of(const Value& value) {
     return value.shape ? shape_text(*value.shape) : "any shape";
@@ -161,8 +161,8 @@ std::span<const float> pooled(const Network::Output& output, const std::string& 
 bool read_frame(Frame& frame) {
     char head[8];
     if (!read_in(head, sizeof head)) return false;
-    const std::uint32_t height = data::frames::number_at(head);
-    const std::uint32_t width = data::frames::number_at(head + 4);
+    const std::uint32_t height = recordings::frames::number_at(head);
+    const std::uint32_t width = recordings::frames::number_at(head + 4);
     const std::uint64_t pixels = std::uint64_t{height} * width;
     if (pixels == 0 || height > kMaxExtent || width > kMaxExtent || pixels > kMaxPixels)
         refuse(kWrongCall, "standard input holds no frames");
@@ -216,7 +216,7 @@ namespace etlc::embed::worker {
 
 namespace {
 
-using namespace data::frames;
+using namespace recordings::frames;
 using Strings = std::vector<std::string>;
 
 /// Replaces this process by the program beside it that decodes video.

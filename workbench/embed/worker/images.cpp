@@ -23,11 +23,11 @@ namespace etlc::embed::worker {
 
 namespace {
 
-using data::frames::kMaxExtent;
-using data::frames::kMaxImageBytes;
-using data::frames::kMaxPixels;
-using data::frames::kRefused;
-using data::frames::kWrongCall;
+using recordings::frames::kMaxExtent;
+using recordings::frames::kMaxImageBytes;
+using recordings::frames::kMaxPixels;
+using recordings::frames::kRefused;
+using recordings::frames::kWrongCall;
 using Bytes = std::vector<std::uint8_t>;
 using View = std::span<const std::uint8_t>;
 
@@ -244,7 +244,7 @@ void send_given_images() {
     Bytes bytes;
     char head[4];
     while (read_in(head, sizeof head)) {
-        const std::uint32_t size = data::frames::number_at(head);
+        const std::uint32_t size = recordings::frames::number_at(head);
         if (size > kMaxImageBytes)
             refuse(kRefused, "has " + std::to_string(size) + " bytes, at most " +
                                  std::to_string(kMaxImageBytes) + " are read");

@@ -16,7 +16,7 @@ namespace etlc::embed::worker {
 
 namespace {
 
-using data::frames::kRefused;
+using recordings::frames::kRefused;
 
 /// Protocols of addresses. None reads files of this machine, which a playlist could name.
 constexpr const char* kProtocols =

@@ -30,7 +30,7 @@ using Shape = std::unique_ptr<ort::Shape, Release<ort::release_shape>>;
 
 namespace {
 
-using data::frames::kRefused;
+using recordings::frames::kRefused;
 
 /// Puts a message of ONNX Runtime on one line, without its source locations: "NAME.h:91 void
 /// Type::function(int, float) ".

@@ -213,7 +213,7 @@ std::string shape_text(const Extents& shape) {
 namespace {
 
 namespace fs = std::filesystem;
-using data::frames::kNoRuntime;
+using recordings::frames::kNoRuntime;
 using Paths = std::vector<fs::path>;
 
 constexpr std::string_view kLibrary = "libonnxruntime.so";

@@ -21,7 +21,7 @@ namespace etlc::embed::worker {
 
 namespace {
 
-using namespace data::frames;
+using namespace recordings::frames;
 
 std::string size_text(int width, int height) {
     return std::to_string(width) + " x " + std::to_string(height);

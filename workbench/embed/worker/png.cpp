@@ -6,7 +6,7 @@
 
 namespace etlc::embed::worker {
 
-using namespace data::frames;
+using namespace recordings::frames;
 
 void write_png() {
     char head[8];

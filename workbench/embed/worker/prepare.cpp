@@ -11,7 +11,7 @@ namespace etlc::embed::worker {
 
 namespace {
 
-using data::frames::kRefused;
+using recordings::frames::kRefused;
 
 /// Pillow's filters, by the distance from the centre.
 double weight(Filter filter, double x) {
@@ -109,8 +109,8 @@ Frame resized(const Frame& frame, const Settings& settings) {
         refuse(kRefused, "takes images of " + size(settings.height, settings.width) +
                              ", and 'resize' makes a frame of " + size(frame.height, frame.width) +
                              " smaller: " + size(height, width));
-    if (std::max(height, width) > std::int64_t{data::frames::kMaxExtent} ||
-        height * width > std::int64_t{data::frames::kMaxPixels})
+    if (std::max(height, width) > std::int64_t{recordings::frames::kMaxExtent} ||
+        height * width > std::int64_t{recordings::frames::kMaxPixels})
         refuse(kRefused, "takes frames of " + size(frame.height, frame.width) +
                              " that 'resize' makes too large: " + size(height, width));
     return resize_rows(resize_columns(frame, static_cast<int>(width), settings.filter),

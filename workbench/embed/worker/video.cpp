@@ -20,7 +20,7 @@ namespace etlc::embed::worker {
 
 namespace {
 
-using namespace data::frames;
+using namespace recordings::frames;
 
 // https://www.rfc-editor.org/rfc/rfc8794 (EBML), section 11, and RFC 9559 (Matroska)
 constexpr std::uint64_t kHead = 0x1A45DFA3;
@@ -241,8 +241,8 @@ namespace {
 /// The words are those of etlc-embed behind "video".
 void run(const std::vector<std::string>& words) {
     if (words.empty())
-        refuse(data::frames::kWrongCall, "etlc-embed-video belongs to etlc-embed: FILE ...");
-    limit_resources(data::frames::kMaxMemoryBytes);
+        refuse(recordings::frames::kWrongCall, "etlc-embed-video belongs to etlc-embed: FILE ...");
+    limit_resources(recordings::frames::kMaxMemoryBytes);
     const Words options({words.begin() + 1, words.end()});
     if (options.text("--pace", "") == "live")
         send_live(words[0]);

@@ -14,7 +14,7 @@
 
 namespace etlc::embed::worker {
 
-using namespace data::frames;
+using namespace recordings::frames;
 
 void refuse(int exit_status, const std::string& why) {
     std::fprintf(stderr, "%s\n", why.c_str());

@@ -10,7 +10,7 @@
 #include "check/points/project.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "episodes/admission/overlaps.hpp"
 
 namespace etlc::episodes {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "data/traces/suspects.hpp"
+#include "data/traces/overlap.hpp"
 
 namespace etlc::episodes {
 

@@ -1,13 +1,12 @@
 // Finds episodes of a call that overlap each other, or episodes that something was made from. Finds
 // what data::Recordings would find among all, and keeps in memory only the candidates
-// (data/traces/suspects.hpp).
+// (data/traces/overlap.hpp).
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "data/traces/known.hpp"
 #include "data/traces/overlap.hpp"
 #include "episodes/recording.hpp"
 

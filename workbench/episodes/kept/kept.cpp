@@ -216,7 +216,7 @@ diag::Result<KeptTraces::Opened> KeptTraces::open(const std::string& path,
     });
     if (all && episode.frames > 0)
         return Opened{std::make_unique<Player>(episode, channels), episode.identities};
-    auto trace = data::open_trace(path, channels);
+    auto trace = recordings::open_trace(path, channels);
     if (!trace) return trace.failure();
     if (!stamp) return Opened{std::move(*trace), nullptr};
     return Opened{std::make_unique<Keeper>(*this, path, episode, std::move(*trace), channels),

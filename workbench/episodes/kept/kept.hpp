@@ -63,8 +63,8 @@ public:
         std::unique_ptr<data::Trace> trace;
         std::shared_ptr<KnownIdentities> identities;  ///< of its frames; null: they are not kept
     };
-    /// Opens an episode as data::open_trace does: from memory if these channels are kept, else from
-    /// its file, and keeps them once it is read to its end.
+    /// Opens an episode as recordings::open_trace does: from memory if these channels are kept,
+    /// else from its file, and keeps them once it is read to its end.
     diag::Result<Opened> open(const std::string& path, const std::vector<data::Channel>& channels);
 
 private:

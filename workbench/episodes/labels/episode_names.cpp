@@ -44,7 +44,7 @@ std::vector<std::string> whole_names(const EpisodePath& parts) {
     if (parts.group.empty()) {
         std::vector<std::string> names{parts.file};
         const fs::path path(parts.file);
-        if (data::is_trace(parts.file))
+        if (recordings::is_trace(parts.file))
             names.push_back((path.parent_path() / path.stem()).string());
         return names;
     }
@@ -59,7 +59,7 @@ std::vector<std::string> traces_in(const std::string& folder) {
     std::error_code error;
     for (fs::directory_iterator it(folder.empty() ? "." : folder, error), end; !error && it != end;
          it.increment(error))
-        if (data::is_trace(it->path().string())) found.push_back(it->path().string());
+        if (recordings::is_trace(it->path().string())) found.push_back(it->path().string());
     return found;
 }
 
@@ -162,10 +162,10 @@ std::vector<std::string> neighbours_of(const std::vector<std::string>& episodes)
     for (const std::string& episode : episodes) {
         const EpisodePath parts = parts_of(episode);
         if (parts.is_number) {
-            const auto set = data::Dataset::known(parts.file);
+            const auto set = recordings::Dataset::known(parts.file);
             if (!set || !places.insert(parts.file).second) continue;
-            for (const data::DatasetEpisode& one : (*set)->episodes())
-                found.push_back(data::episode_path(parts.file, one.index));
+            for (const recordings::DatasetEpisode& one : (*set)->episodes())
+                found.push_back(recordings::episode_path(parts.file, one.index));
             continue;
         }
         const std::string folder = folder_of(episode);
@@ -175,7 +175,7 @@ std::vector<std::string> neighbours_of(const std::vector<std::string>& episodes)
         for (const std::string& file : traces_in(folder)) {
             if (pattern.empty()) found.push_back(file);
             if (pattern.empty() || !data::is_hdf5(file)) continue;
-            const auto groups = data::list_hdf5(file, pattern);
+            const auto groups = recordings::list_hdf5(file, pattern);
             if (!groups) continue;
             for (const std::string& group : *groups) found.push_back(file + ":" + group);
         }

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::episodes {
 
@@ -101,8 +101,8 @@ namespace {
 diag::Result<std::unique_ptr<data::Trace>> open_unlabelled(
     const std::string& path, const std::vector<data::Channel>& channels, const ReadOptions& options,
     std::shared_ptr<KnownIdentities>* identities) {
-    const auto renamed = data::renamed(channels, options.names);
-    if (!options.kept) return data::open_trace(path, renamed);
+    const auto renamed = recordings::renamed(channels, options.names);
+    if (!options.kept) return recordings::open_trace(path, renamed);
     auto opened = options.kept->open(path, renamed);
     if (!opened) return opened.failure();
     if (identities != nullptr) *identities = opened->identities;
@@ -127,7 +127,7 @@ diag::Result<std::unique_ptr<data::Trace>> open_labelled(
             return diag::Failure{
                 diag::Code::contradictory_labels,
                 fmt::format("has an array {}, and {} labels {} too: remove one of them",
-                            data::in_quotes(data::name_in_file(name, options.names)),
+                            data::in_quotes(recordings::name_in_file(name, options.names)),
                             found->second.front().place, data::in_quotes(found->first))};
         labelled->label(c, found->second);
     }

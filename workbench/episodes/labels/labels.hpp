@@ -73,14 +73,15 @@ private:
 
 /// How a call reads its episodes.
 struct ReadOptions {
-    data::NamesInFile names;                 ///< names of inputs and labels in the files
+    recordings::NamesInFile names;           ///< names of inputs and labels in the files
     std::shared_ptr<const LabelSet> labels;  ///< null: none beside the files
     std::shared_ptr<KeptTraces> kept;        ///< what was read; null: files are read each time
 };
 
-/// Opens an episode as data::open_trace does, with its labels as Boolean channels `truth.NAME`.
-/// Fails with E0862 where the file has such an array too. At its end `next` fails with E0861 where
-/// there are labels of later steps. `identities`: set to those of the episode if it is kept.
+/// Opens an episode as recordings::open_trace does, with its labels as Boolean channels
+/// `truth.NAME`. Fails with E0862 where the file has such an array too. At its end `next` fails
+/// with E0861 where there are labels of later steps. `identities`: set to those of the episode if
+/// it is kept.
 diag::Result<std::unique_ptr<data::Trace>> open_labelled(
     const std::string& path, const std::vector<data::Channel>& channels, const ReadOptions& options,
     std::shared_ptr<KnownIdentities>* identities = nullptr);

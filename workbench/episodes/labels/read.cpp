@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "data/files/file.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "episodes/labels/episode_names.hpp"
 #include "episodes/labels/labels.hpp"
 #include "episodes/labels/table.hpp"
@@ -40,7 +40,7 @@ std::vector<TableFile> label_files(const LabelSources& sources,
     std::map<std::string, std::vector<std::string>> folders;
     for (const std::string& episode : episodes) folders[folder_of(episode)].push_back(episode);
     for (auto& [folder, inside] : folders) {
-        const std::string path = (fs::path(folder) / data::kLabelsFile).string();
+        const std::string path = (fs::path(folder) / recordings::kLabelsFile).string();
         std::error_code ignored;
         if (fs::exists(path, ignored)) files.push_back({path, std::move(inside)});
     }
@@ -281,7 +281,8 @@ private:
             }
         if (length > 0) return length;
         if (const auto which = data::dataset_path(episode))
-            if (const auto set = data::Dataset::known(which->folder); set && (*set)->fps() > 0)
+            if (const auto set = recordings::Dataset::known(which->folder);
+                set && (*set)->fps() > 0)
                 return 1 / (*set)->fps();
         if (!std::exchange(has_told_of_time_, true))
             report(Code::steps_without_time, path, line,

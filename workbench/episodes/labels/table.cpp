@@ -8,8 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "data/text/number.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "data/traces/csv.hpp"
 #include "data/traces/trace_formats.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "data/files/bytes.hpp"
+#include "data/files/file.hpp"
 #include "diag/diag.hpp"
 #include "episodes/labels/label.hpp"
 

@@ -78,10 +78,10 @@ bool may_be_recorded(const check::Model& model, const Distance& distance) {
 
 /// Returns the numbers of a vector of scalars; empty where one is missing.
 std::vector<float> gathered(const check::Model& model, const Distance& distance,
-                            const std::vector<plan::Sample>& samples) {
+                            const std::vector<execute::Sample>& samples) {
     std::vector<float> point;
     for (const Index input : inputs_of(model, distance)) {
-        const plan::Sample& sample = samples[input];
+        const execute::Sample& sample = samples[input];
         if (!sample.present || !model.inputs[input].range.contains(sample.values[0])) return {};
         point.push_back(sample.values[0]);
     }
@@ -193,7 +193,7 @@ void Leaks::add_near(Measuring by, Index point, Index target, std::uint32_t offs
     if (!known) watched_near_.push_back({by.predicate, by.distance, std::move(rows)});
 }
 
-void Leaks::find_near(const std::vector<plan::Sample>& samples, std::uint64_t frame,
+void Leaks::find_near(const std::vector<execute::Sample>& samples, std::uint64_t frame,
                       std::vector<NearLeak>& near) const {
     near.resize(watched_near_.size());
     for (std::size_t i = 0; i < watched_near_.size(); ++i) {
@@ -206,7 +206,7 @@ void Leaks::find_near(const std::vector<plan::Sample>& samples, std::uint64_t fr
     }
 }
 
-std::optional<Leak> Leaks::find(const std::vector<plan::Sample>& samples,
+std::optional<Leak> Leaks::find(const std::vector<execute::Sample>& samples,
                                 std::uint64_t frame) const {
     for (const Watched& watched : watched_) {
         const auto row = row_of(watched, samples);
@@ -218,11 +218,11 @@ std::optional<Leak> Leaks::find(const std::vector<plan::Sample>& samples,
 /// Compares row by row; the first element excludes nearly all. z is the row g or, by direction, |z|
 /// / |g| times g.
 std::optional<std::uint32_t> Leaks::row_of(const Watched& watched,
-                                           const std::vector<plan::Sample>& samples) const {
+                                           const std::vector<execute::Sample>& samples) const {
     const Distance& distance = model_.distances[watched.distance];
     const check::Target& target = declared_target(model_, distance);
     const Index first = inputs_of(model_, distance)[0];
-    const plan::Sample& sample = samples[first];
+    const execute::Sample& sample = samples[first];
     const bool embedding = is_embedding(model_, distance);
     const auto vector = embedding ? std::vector<float>{} : gathered(model_, distance, samples);
     const std::vector<float>& z = embedding ? sample.values : vector;

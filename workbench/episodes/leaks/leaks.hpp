@@ -11,7 +11,7 @@
 
 #include "check/model/model.hpp"
 #include "episodes/leaks/rounded_rows.hpp"
-#include "plan/evaluate/inputs.hpp"
+#include "execute/inputs.hpp"
 
 namespace etlc::episodes {
 
@@ -53,9 +53,10 @@ public:
     Leaks(const check::Model& model, const std::vector<Index>& predicates);
 
     /// Returns the row that this frame equals. `samples`: by index of the model's inputs.
-    std::optional<Leak> find(const std::vector<plan::Sample>& samples, std::uint64_t frame) const;
+    std::optional<Leak> find(const std::vector<execute::Sample>& samples,
+                             std::uint64_t frame) const;
     /// Adds the evidence of this frame to `near`, which is empty before the first.
-    void find_near(const std::vector<plan::Sample>& samples, std::uint64_t frame,
+    void find_near(const std::vector<execute::Sample>& samples, std::uint64_t frame,
                    std::vector<NearLeak>& near) const;
 
 private:
@@ -83,7 +84,7 @@ private:
     };
     void add_near(Measuring by, Index point, Index target, std::uint32_t offset = 0);
     std::optional<std::uint32_t> row_of(const Watched& watched,
-                                        const std::vector<plan::Sample>& samples) const;
+                                        const std::vector<execute::Sample>& samples) const;
 
     const check::Model& model_;
     std::vector<Watched> watched_;

@@ -151,12 +151,12 @@ bool RoundedRows::may_be_near(const std::vector<float>& sample) const {
 
 /// Returns the recorded point, and how far storing may have moved it.
 RoundedRows::Rounded RoundedRows::taken(Index index,
-                                        const std::vector<plan::Sample>& samples) const {
+                                        const std::vector<execute::Sample>& samples) const {
     const check::Point& point = model_.points[index];
     const check::Input& input = model_.inputs[point.inputs[0]];
     Rounded result;
     for (const Index of : point.inputs) {
-        const plan::Sample& sample = samples[of];
+        const execute::Sample& sample = samples[of];
         const bool there = sample.present && (input.is_embedding() ||
                                               model_.inputs[of].range.contains(sample.values[0]));
         const bool finite = std::all_of(sample.values.begin(), sample.values.end(),
@@ -227,7 +227,7 @@ void RoundedRows::weigh(Rounded& at) const {
         at.error[i] += outweighed / std::sqrt(static_cast<double>(weights_[i]));
 }
 
-RoundedRows::Found RoundedRows::find(const std::vector<plan::Sample>& samples) const {
+RoundedRows::Found RoundedRows::find(const std::vector<execute::Sample>& samples) const {
     const check::Point& point = model_.points[point_];
     const bool is_plain = !point.is_projected() && point.inputs.size() == 1 && weights_.empty();
     if (is_plain && !may_be_near(samples[point.inputs[0]].values)) return {};

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "plan/evaluate/inputs.hpp"
+#include "execute/inputs.hpp"
 
 namespace etlc::episodes {
 
@@ -48,7 +48,7 @@ public:
         Around wide;                       ///< within many times as much
     };
     /// Compares a frame with all rows. `samples`: by index of the model's inputs.
-    Found find(const std::vector<plan::Sample>& samples) const;
+    Found find(const std::vector<execute::Sample>& samples) const;
 
 private:
     /// A point of a frame, and how far rounding may have moved each element.
@@ -71,7 +71,7 @@ private:
     bool may_be_near(const std::vector<float>& sample) const;
     /// Projects `at`, the value of the point `from`, to `point`.
     Rounded projected(Index point, Index from, const Rounded& at) const;
-    Rounded taken(Index point, const std::vector<plan::Sample>& samples) const;
+    Rounded taken(Index point, const std::vector<execute::Sample>& samples) const;
     std::vector<double> carried(const Rounded& inner, const check::Projection& map,
                                 const std::vector<RowNorms>& norms, Index from) const;
     /// Widens errors that the weights make negligible.

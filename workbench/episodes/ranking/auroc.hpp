@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "data/spill/sorted.hpp"
+#include "data/spill/spill.hpp"
 
 namespace etlc::episodes {
 

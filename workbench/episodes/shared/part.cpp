@@ -11,7 +11,7 @@
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/spill/pack.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "recordings/open.hpp"
 
 namespace etlc::episodes {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "data/spill/spool.hpp"
+#include "data/spill/spill.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::episodes {

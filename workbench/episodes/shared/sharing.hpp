@@ -87,7 +87,7 @@ std::optional<std::vector<Index>> labelled_in_first(const check::Model& model,
         return request.sharing->part().labelled;
     auto labelled = labelled_in(model, request.episodes.front(), request.reading);
     if (!labelled) {
-        sink.report(data::in_trace(labelled.failure(), request.episodes.front()));
+        sink.report(recordings::in_trace(labelled.failure(), request.episodes.front()));
         return std::nullopt;
     }
     if (request.sharing != nullptr) request.sharing->part().labelled = *labelled;

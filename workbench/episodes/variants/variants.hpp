@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "data/spill/spool.hpp"
+#include "data/spill/spill.hpp"
 #include "episodes/recording.hpp"
 
 namespace etlc::episodes {

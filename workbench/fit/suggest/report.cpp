@@ -6,7 +6,7 @@
 
 #include "fit/suggest/in_time.hpp"
 #include "fit/suggest/suggest.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::fit {
 

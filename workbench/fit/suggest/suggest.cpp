@@ -6,7 +6,7 @@
 #include <cctype>
 #include <limits>
 
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "diag/diag.hpp"
 #include "episodes/admission/admission.hpp"
 #include "episodes/data_warnings.hpp"
@@ -252,7 +252,7 @@ std::optional<Suggested> suggest(const check::Model& model, const CheckText& che
                                  diag::Sink& sink) {
     const auto labelled = episodes::labelled_in(model, request.episodes.front(), request.reading);
     if (!labelled) {
-        sink.report(data::in_trace(labelled.failure(), request.episodes.front()));
+        sink.report(recordings::in_trace(labelled.failure(), request.episodes.front()));
         return std::nullopt;
     }
     const auto predicates = asked_for(model, names, *labelled, sink);

@@ -31,7 +31,7 @@
 namespace {
 
 using namespace etlc::label::protocol;
-using etlc::data::frames::number_at;
+using etlc::recordings::frames::number_at;
 
 constexpr const char* kHost = "127.0.0.1";
 constexpr int kGood = 200;
@@ -314,7 +314,7 @@ int serve() {
     server.Get(".*", pass);
     server.Post(".*", pass);
     std::string head;
-    etlc::data::frames::append(head, static_cast<std::uint32_t>(port));
+    etlc::recordings::frames::append(head, static_cast<std::uint32_t>(port));
     if (!write_all(head)) return 1;
     etlc.listen();
     return server.listen_after_bind() ? 0 : 1;

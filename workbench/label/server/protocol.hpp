@@ -23,7 +23,7 @@ inline constexpr std::uint32_t kMostAnswer = 1U << 30U;   ///< bytes of an answe
 inline constexpr std::uint32_t kEvent = 0;  ///< in place of a status
 
 inline void append(std::string& bytes, std::string_view text) {
-    data::frames::append(bytes, static_cast<std::uint32_t>(text.size()));
+    recordings::frames::append(bytes, static_cast<std::uint32_t>(text.size()));
     bytes += text;
 }
 

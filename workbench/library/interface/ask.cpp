@@ -79,7 +79,7 @@ etlc_status etlc_measure(etlc_session session, uint32_t predicate, etlc_measured
         if (measured == nullptr) return refuse_null("measured");
         const std::size_t count = opened.model().predicates.size();
         if (predicate >= count) return refuse_index("predicate", predicate, count);
-        const plan::Evaluator& evaluator = opened.evaluator();
+        const execute::Evaluator& evaluator = opened.evaluator();
         *measured = {evaluator.distance(predicate), evaluator.threshold(predicate),
                      evaluator.nearest(predicate)};
         return ETLC_OK;
@@ -105,7 +105,7 @@ etlc_status etlc_count(etlc_session session, uint32_t input, etlc_counts* counts
         if (counts == nullptr) return refuse_null("counts");
         const std::size_t inputs = opened.model().inputs.size();
         if (input >= inputs) return refuse_index("input", input, inputs);
-        const plan::SampleCounts& of = opened.evaluator().sample_counts()[input];
+        const execute::SampleCounts& of = opened.evaluator().sample_counts()[input];
         *counts = {of.missing + of.stale, of.out_of_range, of.held};
         return ETLC_OK;
     });
@@ -154,7 +154,7 @@ etlc_status etlc_encoder_difference(etlc_session session, const char* encoder, u
 }
 
 etlc_status etlc_incidents(etlc_session session, uint32_t* complete, uint32_t* lost) {
-    return with_recorder(session, [&](plan::FlightRecorder& recorder) -> etlc_status {
+    return with_recorder(session, [&](execute::FlightRecorder& recorder) -> etlc_status {
         if (complete == nullptr) return refuse_null("complete");
         if (lost == nullptr) return refuse_null("lost");
         *complete = recorder.complete();
@@ -165,7 +165,7 @@ etlc_status etlc_incidents(etlc_session session, uint32_t* complete, uint32_t* l
 
 etlc_status etlc_incident(etlc_session session, uint32_t incident, const void** bytes,
                           size_t* size) {
-    return with_recorder(session, [&](plan::FlightRecorder& recorder) -> etlc_status {
+    return with_recorder(session, [&](execute::FlightRecorder& recorder) -> etlc_status {
         if (bytes == nullptr) return refuse_null("bytes");
         if (size == nullptr) return refuse_null("size");
         if (incident >= recorder.complete())
@@ -179,14 +179,14 @@ etlc_status etlc_incident(etlc_session session, uint32_t incident, const void** 
 }
 
 etlc_status etlc_close_incidents(etlc_session session) {
-    return with_recorder(session, [](plan::FlightRecorder& recorder) -> etlc_status {
+    return with_recorder(session, [](execute::FlightRecorder& recorder) -> etlc_status {
         recorder.close();
         return ETLC_OK;
     });
 }
 
 etlc_status etlc_forget_incidents(etlc_session session) {
-    return with_recorder(session, [](plan::FlightRecorder& recorder) -> etlc_status {
+    return with_recorder(session, [](execute::FlightRecorder& recorder) -> etlc_status {
         recorder.forget();
         return ETLC_OK;
     });

@@ -60,7 +60,7 @@ etlc_status check_environments(const Batch& batch, std::uint64_t environments) {
 etlc_status check_memory(Session& opened, std::uint64_t environments) {
     std::vector<std::uint8_t> state;
     opened.evaluator().state().write(state);
-    const std::uint64_t bytes = sizeof(plan::State) + state.size();
+    const std::uint64_t bytes = sizeof(execute::State) + state.size();
     const long pages = sysconf(_SC_PHYS_PAGES);
     const long page = sysconf(_SC_PAGE_SIZE);
     const auto memory = static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page);
@@ -162,7 +162,7 @@ etlc_status etlc_measure_batch(etlc_session batch, uint32_t predicate, etlc_meas
         const std::size_t count = opened.model().predicates.size();
         if (predicate >= count) return refuse_index("predicate", predicate, count);
         for (std::uint64_t e = 0; e < of.size(); ++e) {
-            const plan::State& state = of.state(e);
+            const execute::State& state = of.state(e);
             const etlmon::Measured& found = state.measured[predicate];
             measured[e] = {found.delta, state.thresholds[predicate], found.nearest};
         }

@@ -5,7 +5,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "data/spill/file.hpp"
+#include "data/spill/spill.hpp"
 #include "library/program.hpp"
 
 namespace etlc::library {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "check/model/fingerprint.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "library/interface/call.hpp"
 #include "library/program.hpp"
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compile.hpp"
 #include "diag/render.hpp"
 #include "library/interface/call.hpp"
 #include "library/settings.hpp"
@@ -17,8 +18,8 @@ namespace {
 
 /// The options of a compilation.
 struct Wish {
-    check::Options check = {.open_trace = data::open_trace};
-    pipeline::Options plan;
+    check::Options check = {.open_trace = recordings::open_trace};
+    CompileOptions plan;
 };
 
 std::string text_of(const char* words) {

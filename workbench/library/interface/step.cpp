@@ -171,7 +171,7 @@ etlc_status etlc_ahead(etlc_session session, const etlc_grid* grids, size_t grid
                 check_grids(opened, samples, grid_count, threads, verdicts, verdict_count))
             return failed;
         if (steps == 0) return ETLC_OK;
-        std::vector<const plan::State*> states;
+        std::vector<const execute::State*> states;
         for (std::uint64_t e = 0; e < environments; ++e)
             states.push_back(batch == nullptr ? &opened.evaluator().state() : &batch->state(e));
         look_ahead(opened.program(), states, plans, samples, threads_for(threads, samples),

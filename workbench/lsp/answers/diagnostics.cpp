@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "lsp/text/json.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::lsp {
 

@@ -4,7 +4,7 @@
 #include "lsp/answers/answers.hpp"
 #include "lsp/text/json.hpp"
 #include "parse/stream/words.hpp"
-#include "source/escape.hpp"
+#include "source/text.hpp"
 
 namespace etlc::lsp {
 

@@ -8,7 +8,7 @@
 #include "diag/diag.hpp"
 #include "parse/parse.hpp"
 #include "parse/stream/words.hpp"
-#include "source/utf8.hpp"
+#include "source/text.hpp"
 
 namespace etlc::lsp {
 

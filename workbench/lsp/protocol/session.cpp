@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
-#include "data/spill/file.hpp"
-#include "data/text/number.hpp"
+#include "data/spill/spill.hpp"
+#include "data/text/text.hpp"
 
 namespace etlc::lsp {
 

@@ -18,7 +18,7 @@ Analysis::Analysis(std::string path, std::string text, Encoding encoding,
     spec = parse::parse(file, sink);
     has_syntax_errors = sink.has_errors();
     check::Options options;
-    options.open_trace = data::open_trace;
+    options.open_trace = recordings::open_trace;
     options.allow_missing = true;
     checked =
         std::make_unique<const check::Inspected>(check::inspect(spec, file, options, known, sink));
@@ -62,7 +62,7 @@ const Analysis& Document::analysis() {
 void Document::plan() {
     const check::Model& model = analysis().checked->model;
     planned_ = std::make_unique<Planned>();  // where it fails there is no plan, and no second try
-    planned_->compiled = pipeline::compile(model, {}, planned_->sink);
+    planned_->compiled = compile(model, {}, planned_->sink);
     is_news = is_news || !planned_->sink.sorted().empty();
 }
 

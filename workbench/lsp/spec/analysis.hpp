@@ -13,10 +13,10 @@
 #include "ast/ast.hpp"
 #include "check/check.hpp"
 #include "check/context/scope.hpp"
+#include "compile.hpp"
 #include "diag/diag.hpp"
 #include "lsp/text/json.hpp"
 #include "parse/stream/words.hpp"
-#include "pipeline/compile.hpp"
 #include "source/source.hpp"
 
 namespace etlc::lsp {
@@ -101,7 +101,7 @@ private:
 
 struct Planned {
     diag::Sink sink;
-    std::optional<pipeline::Compiled> compiled;
+    std::optional<Compiled> compiled;
 };
 
 /// A text that is open in the client.

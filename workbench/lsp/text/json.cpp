@@ -8,7 +8,7 @@
 #include <limits>
 #include <system_error>
 
-#include "source/utf8.hpp"
+#include "source/text.hpp"
 
 namespace etlc::lsp {
 

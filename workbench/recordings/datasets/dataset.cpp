@@ -13,11 +13,12 @@
 #include <string_view>
 
 #include "data/files/file.hpp"
-#include "data/text/number.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "recordings/parquet/table.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 namespace {
 
 namespace fs = std::filesystem;
@@ -573,4 +574,4 @@ std::string with_dataset_meant(const std::string& why, const std::string& path) 
                        in_quotes((parent / *meant).string()));
 }
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

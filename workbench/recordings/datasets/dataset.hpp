@@ -17,7 +17,7 @@
 #include "data/traces/trace.hpp"
 #include "diag/diag.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
 
 /// The part of a video that shows an episode.
 struct Clip {
@@ -120,4 +120,4 @@ struct PathNames {
 /// of the folder. Failures: E0850.
 diag::Result<std::string> path_from(const std::string& pattern, const PathNames& names);
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

@@ -7,12 +7,14 @@
 #include <tuple>
 
 #include "data/files/file.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "recordings/datasets/dataset.hpp"
 #include "recordings/datasets/trace.hpp"
 #include "recordings/parquet/table.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 
 namespace {
 
@@ -199,4 +201,4 @@ std::string camera_lack(Dataset& set, const DatasetEpisode& episode, const std::
     return "";
 }
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

@@ -7,15 +7,16 @@
 #include <utility>
 #include <vector>
 
-#include "data/text/number.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "data/traces/trace_formats.hpp"
 #include "recordings/datasets/dataset.hpp"
 #include "recordings/datasets/trace.hpp"
 #include "recordings/frames/frames.hpp"
 #include "recordings/parquet/table.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 
 namespace {
 
@@ -422,4 +423,4 @@ diag::Result<std::unique_ptr<FrameSource>> open_clip(Dataset& set, const Dataset
         std::move(*frames), clip.path, (episode.length + stride - 1) / stride));
 }
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

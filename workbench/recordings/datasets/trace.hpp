@@ -12,7 +12,7 @@
 #include "recordings/datasets/dataset.hpp"
 #include "recordings/frames/frames.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
 
 /// An episode that agrees with the metadata, and its data set.
 struct SoundEpisode {
@@ -22,8 +22,8 @@ struct SoundEpisode {
 /// Failures: E0850, E0854.
 diag::Result<SoundEpisode> find_episode(const std::string& path);
 
-diag::Result<std::unique_ptr<Trace>> open_dataset_trace(const std::string& path,
-                                                        const std::vector<Channel>& channels);
+diag::Result<std::unique_ptr<data::Trace>> open_dataset_trace(
+    const std::string& path, const std::vector<data::Channel>& channels);
 
 /// Returns the number of rows in a step of 1 / rate seconds; 1 for a rate of 0. Failures: E0853.
 diag::Result<std::uint64_t> rows_a_step(const Dataset& set, double rate);
@@ -40,11 +40,11 @@ diag::Result<std::unique_ptr<FrameSource>> open_clip(Dataset& set, const Dataset
                                                      std::uint64_t stride);
 
 /// Returns the paths of the valid episodes of a data set; warns of the others (W0850).
-diag::Result<std::vector<std::string>> find_dataset_episodes(const DatasetPath& path,
+diag::Result<std::vector<std::string>> find_dataset_episodes(const data::DatasetPath& path,
                                                              diag::Sink& sink);
 
 /// Fails where the path is an episode of a data set whose rows are not at the rate of the spec.
 /// 0 seconds, no rate, fits every data set.
 std::optional<diag::Failure> check_rate(const std::string& path, double step_seconds);
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

@@ -11,11 +11,13 @@
 #include "artifacts/embedded.hpp"
 #include "data/files/child.hpp"
 #include "data/files/file.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 #include "recordings/frames/frames.hpp"
 #include "recordings/frames/protocol.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 
 namespace {
 
@@ -339,4 +341,4 @@ std::unique_ptr<FrameSource> reference_frames() {
     return std::make_unique<ReferenceFrames>();
 }
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

@@ -16,7 +16,7 @@
 #include "data/files/child.hpp"
 #include "diag/diag.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
 
 struct Frame {
     std::uint32_t height = 0;
@@ -70,9 +70,9 @@ public:
     std::optional<diag::Failure> decode(std::string_view bytes, Frame& frame);
 
 private:
-    explicit ImageDecoder(std::unique_ptr<Child> child);
+    explicit ImageDecoder(std::unique_ptr<data::Child> child);
 
-    std::unique_ptr<Child> child_;
+    std::unique_ptr<data::Child> child_;
 };
 
 /// Returns the bytes of a PNG file.
@@ -115,13 +115,13 @@ public:
     std::optional<diag::Failure> ending();
 
 private:
-    explicit LiveFrames(std::unique_ptr<Child> decoder) : decoder_(std::move(decoder)) {}
+    explicit LiveFrames(std::unique_ptr<data::Child> decoder) : decoder_(std::move(decoder)) {}
 
     static constexpr std::size_t kHeadBytes = 16;  ///< the time, height and width
 
     bool read_head();
 
-    std::unique_ptr<Child> decoder_;
+    std::unique_ptr<data::Child> decoder_;
     bool has_head_ = false;   ///< that of the next frame is whole
     std::size_t filled_ = 0;  ///< bytes of its head, or of its pixels
     std::array<char, kHeadBytes> head_{};
@@ -139,4 +139,4 @@ Frame reference_frame(std::uint32_t index);
 /// Returns a source of all reference frames.
 std::unique_ptr<FrameSource> reference_frames();
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <string>
 
-namespace etlc::data::frames {
+namespace etlc::recordings::frames {
 
 inline constexpr std::uint32_t kMaxExtent = 1U << 14U;       ///< rows or columns
 inline constexpr std::uint64_t kMaxPixels = 1ULL << 26U;     ///< of a frame
@@ -47,4 +47,4 @@ inline std::uint32_t number_at(const char* bytes) {
     return result;
 }
 
-}  // namespace etlc::data::frames
+}  // namespace etlc::recordings::frames

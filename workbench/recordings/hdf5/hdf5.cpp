@@ -7,14 +7,16 @@
 #include <cstring>
 #include <optional>
 
-#include "data/arrays/npy_header.hpp"
-#include "data/text/quote.hpp"
+#include "data/arrays/array.hpp"
+#include "data/text/text.hpp"
 #include "data/traces/trace_formats.hpp"
 #include "recordings/frames/protocol.hpp"
 #include "recordings/records/protocol.hpp"
 #include "recordings/records/records.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 namespace {
 
 using diag::Code;
@@ -246,4 +248,4 @@ diag::Result<std::unique_ptr<FrameSource>> open_hdf5_images(const std::string& p
         std::make_unique<RecordedFrames>(std::move(*records), shape));
 }
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

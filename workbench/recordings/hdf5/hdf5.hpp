@@ -12,16 +12,15 @@
 #include "data/traces/trace.hpp"
 #include "recordings/frames/frames.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
 
 /// Lists the groups whose path matches a pattern, "data/*", sorted bytewise: "data/demo_0", ...
 diag::Result<std::vector<std::string>> list_hdf5(const std::string& path,
                                                  const std::string& pattern);
 
 /// Opens the datasets that the channels name, relative to the group; an empty group is the root.
-diag::Result<std::unique_ptr<Trace>> open_hdf5_trace(const std::string& path,
-                                                     const std::string& group,
-                                                     const std::vector<Channel>& channels);
+diag::Result<std::unique_ptr<data::Trace>> open_hdf5_trace(
+    const std::string& path, const std::string& group, const std::vector<data::Channel>& channels);
 
 /// Opens images, steps x rows x columns x 3 of uint8, or `with_grey` steps x rows x columns; an
 /// empty name stands for the only dataset of images in colour in the group.
@@ -30,4 +29,4 @@ diag::Result<std::unique_ptr<FrameSource>> open_hdf5_images(const std::string& p
                                                             const std::string& name,
                                                             bool with_grey);
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

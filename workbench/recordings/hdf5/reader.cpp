@@ -18,7 +18,7 @@
 
 namespace {
 
-using namespace etlc::data::records;
+using namespace etlc::recordings::records;
 
 constexpr std::size_t kChunkCacheBytes = 64U << 20U;  ///< of each dataset
 constexpr std::size_t kMaxListed = 8;                 ///< names in a message

@@ -8,7 +8,7 @@
 #include "recordings/parquet/chunk.hpp"
 #include "recordings/parquet/footer.hpp"
 
-namespace etlc::data::parquet {
+namespace etlc::recordings::parquet {
 
 namespace {
 
@@ -408,4 +408,4 @@ void ChunkReader::plain(Cursor& from, double& number, std::string& text) {
     }
 }
 
-}  // namespace etlc::data::parquet
+}  // namespace etlc::recordings::parquet

@@ -13,7 +13,7 @@
 
 #include "recordings/parquet/footer.hpp"
 
-namespace etlc::data::parquet {
+namespace etlc::recordings::parquet {
 
 /// The hybrid of runs and packed bits in which Parquet writes levels and dictionary places. Memory
 /// does not grow with the length of a run. Source: apache/parquet-format, Encodings.md, "Run Length
@@ -169,4 +169,4 @@ private:
     std::uint32_t definition_ = 0;
 };
 
-}  // namespace etlc::data::parquet
+}  // namespace etlc::recordings::parquet

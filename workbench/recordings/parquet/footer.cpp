@@ -4,7 +4,7 @@
 
 #include "recordings/parquet/footer.hpp"
 
-namespace etlc::data::parquet {
+namespace etlc::recordings::parquet {
 
 namespace {
 
@@ -344,4 +344,4 @@ void Thrift::pass_over(Type type) {
     wrong();
 }
 
-}  // namespace etlc::data::parquet
+}  // namespace etlc::recordings::parquet

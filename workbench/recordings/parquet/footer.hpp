@@ -13,7 +13,7 @@
 
 #include "recordings/records/protocol.hpp"
 
-namespace etlc::data::parquet {
+namespace etlc::recordings::parquet {
 
 enum class Physical : std::uint8_t {
     boolean = 0,
@@ -229,4 +229,4 @@ private:
     int depth_ = 0;
 };
 
-}  // namespace etlc::data::parquet
+}  // namespace etlc::recordings::parquet

@@ -20,7 +20,7 @@
 
 namespace {
 
-using namespace etlc::data;
+using namespace etlc::recordings;
 using records::Cause;
 using records::Tag;
 

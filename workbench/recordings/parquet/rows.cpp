@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-namespace etlc::data::parquet {
+namespace etlc::recordings::parquet {
 namespace {
 
 /// Returns a name from the file without bytes that control a terminal.
@@ -150,4 +150,4 @@ bool Rows::next(std::vector<Cell>& cells) {
     }
 }
 
-}  // namespace etlc::data::parquet
+}  // namespace etlc::recordings::parquet

@@ -13,7 +13,7 @@
 #include "recordings/parquet/chunk.hpp"
 #include "recordings/parquet/footer.hpp"
 
-namespace etlc::data::parquet {
+namespace etlc::recordings::parquet {
 
 class Rows {
 public:
@@ -56,4 +56,4 @@ private:
     Cell key_cell_;
 };
 
-}  // namespace etlc::data::parquet
+}  // namespace etlc::recordings::parquet

@@ -6,7 +6,9 @@
 #include "data/files/file.hpp"
 #include "recordings/records/protocol.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 namespace {
 
 using diag::Code;
@@ -104,4 +106,4 @@ diag::Result<bool> Table::next(std::vector<Cell>& cells) {
     return true;
 }
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

@@ -12,7 +12,7 @@
 #include "diag/diag.hpp"
 #include "recordings/records/records.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
 
 class Table {
 public:
@@ -54,4 +54,4 @@ private:
     bool has_ended_ = false;
 };
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace etlc::data::records {
+namespace etlc::recordings::records {
 
 enum class Tag : char { name = 'N', shapes = 'S', rows = 'R', failure = 'F', end = 'E' };
 
@@ -64,4 +64,4 @@ void send(Tag tag, const std::string& text);
 [[noreturn]] void fail(Cause cause, const std::string& text);
 [[noreturn]] void done();
 
-}  // namespace etlc::data::records
+}  // namespace etlc::recordings::records

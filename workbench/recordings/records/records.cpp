@@ -8,9 +8,11 @@
 #include <system_error>
 
 #include "data/files/file.hpp"
-#include "data/text/quote.hpp"
+#include "data/text/text.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
+
+using namespace data;
 namespace {
 
 using diag::Failure;
@@ -78,4 +80,4 @@ Failure Records::stopped() {
                         child_->ending())};
 }
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

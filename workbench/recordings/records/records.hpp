@@ -12,7 +12,7 @@
 #include "diag/diag.hpp"
 #include "recordings/records/protocol.hpp"
 
-namespace etlc::data {
+namespace etlc::recordings {
 
 class Records {
 public:
@@ -38,15 +38,15 @@ public:
     diag::Failure nonsense() const;
 
 private:
-    Records(std::unique_ptr<Child> child, const Codes& codes)
+    Records(std::unique_ptr<data::Child> child, const Codes& codes)
         : child_(std::move(child)), codes_(codes) {}
 
     diag::Code code_of(char cause) const;
     diag::Failure stopped();
 
-    std::unique_ptr<Child> child_;
+    std::unique_ptr<data::Child> child_;
     Codes codes_;
     std::string bytes_;
 };
 
-}  // namespace etlc::data
+}  // namespace etlc::recordings

@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace etlc::data::records {
+namespace etlc::recordings::records {
 namespace {
 
 void write_all(const char* bytes, std::size_t n) {
@@ -69,4 +69,4 @@ void done() {
     quit(0);
 }
 
-}  // namespace etlc::data::records
+}  // namespace etlc::recordings::records
