@@ -7,6 +7,7 @@
 #include <set>
 
 #include "check/guarantees/guarantees.hpp"
+#include "compile.hpp"
 #include "driver/commands/commands.hpp"
 #include "episodes/truth.hpp"
 #include "execute/evaluator.hpp"
@@ -71,7 +72,7 @@ bool breaks(const check::Claim& claim, const etlmon::Verdict& said, const etlmon
     return false;
 }
 
-void count(const driver::Compiled& monitors, const driver::Compiled& truths, Random& random,
+void count(const Compiled& monitors, const Compiled& truths, Random& random,
            std::map<std::string, KeptClaims>& kept) {
     execute::Evaluator said(monitors.plan);
     execute::Evaluator is(truths.plan);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "embed/worker/onnx.hpp"
+#include "embed/worker/onnxruntime.hpp"
 #include "embed/worker/prepare.hpp"
 
 namespace etlc::embed::worker {
