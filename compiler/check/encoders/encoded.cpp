@@ -298,14 +298,21 @@ std::optional<std::vector<std::uint64_t>> frames_of(Context& c, const ast::Frame
     return frames;
 }
 
+/// Opens a recording, where the caller has readers.
+diag::Result<std::unique_ptr<data::Trace>> open_recording(const Context& c, const Input& input,
+                                                          const std::string& path) {
+    if (c.options.open_trace == nullptr)
+        return diag::Failure{Code::unknown_trace_format, "recordings are not read here"};
+    return c.options.open_trace(path, {{input.name, data::Channel::Kind::vector, input.dimension}});
+}
+
 std::optional<Matrix> read_frames(Context& c, const ast::Frames& written) {
     const Input* const input = input_of(c, written);
     const auto frames = frames_of(c, written);
     if (input == nullptr || !frames) return std::nullopt;
     const std::string path = beside_spec(c, written.path);
     c.dependencies.insert(data::trace_file(path));
-    const auto trace =
-        c.options.open_trace(path, {{input->name, data::Channel::Kind::vector, input->dimension}});
+    const auto trace = open_recording(c, *input, path);
     if (!trace) return report(c, written, path, trace.failure()), std::nullopt;
     if (input->encoder != kNone) {
         const auto marks = embedded::read_marks(path);

@@ -211,7 +211,7 @@ std::string report(const check::Model& model, const embedded::File& file,
 bool embed(const source::File& file, const Request& request, diag::Sink& sink) {
     if (!request.embed.pipe.empty()) return pipe_frames(file, request, sink);
     ast::Spec spec = parse::parse(file, sink);
-    check::Options options;
+    check::Options options = {.open_trace = request.check.open_trace};
     options.settings = request.check.settings;
     auto model = check::check_encoded(std::move(spec), file, options, sink);
     if (!model || !has_work(*model, !request.data.empty(), sink) || sink.refused()) return false;

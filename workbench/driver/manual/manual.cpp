@@ -473,6 +473,7 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
+
 class Option(NamedTuple):
     """An option: its name, the form of its value, and how values stand in a call.
 
@@ -483,6 +484,7 @@ class Option(NamedTuple):
     name: str
     value: str
     manner: Literal["positional", "flag", "word", "one", "several", "any"]
+
 
 #: The options of each command, without those that only print help.
 OPTIONS: dict[str, tuple[Option, ...]] = {
