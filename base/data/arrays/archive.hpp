@@ -53,9 +53,6 @@ private:
     std::vector<std::uint64_t> indices_;  ///< places of the keys in the archive
 };
 
-}  // namespace etlc::data
-namespace etlc::data {
-
 // The layout of a zip archive, restricted to what all readers read alike.
 // Takes: the bytes. Gives: the entries of its directory, or why it is refused. Keeps true: the
 // members begin at the file's first byte and follow each other without a gap, then the directory,

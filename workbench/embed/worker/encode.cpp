@@ -208,11 +208,7 @@ void encode(const std::string& path, const Words& options) {
     }
 }
 
-}  // namespace etlc::embed::worker
-
 // etlc-embed: everything but video.
-
-namespace etlc::embed::worker {
 
 namespace {
 

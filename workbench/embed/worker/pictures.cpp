@@ -1,9 +1,5 @@
 #include "embed/worker/pictures.hpp"
 
-#include <thread>
-
-#include "embed/worker/worker.hpp"
-
 extern "C" {
 #include <libavutil/display.h>
 #include <libavutil/opt.h>
@@ -13,6 +9,7 @@ extern "C" {
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <thread>
 
 #include "embed/worker/worker.hpp"
 #include "recordings/frames/protocol.hpp"
@@ -134,9 +131,6 @@ void send(const AVFrame& picture, Converter& converter, int turns, std::int64_t 
     for (int i = 0; i < turns; ++i) turn(turned, height, width);
     write_frame(std::uint32_t(height), std::uint32_t(width), turned.data());
 }
-
-}  // namespace etlc::embed::worker
-namespace etlc::embed::worker {
 
 namespace {
 

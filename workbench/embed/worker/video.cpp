@@ -230,11 +230,7 @@ void send_video(const std::string& path, const Words& options) {
     }
 }
 
-}  // namespace etlc::embed::worker
-
 // etlc-embed-video: the only part that loads FFmpeg, whose libraries are many.
-
-namespace etlc::embed::worker {
 
 namespace {
 
