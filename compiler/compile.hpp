@@ -1,6 +1,6 @@
-// Compiles a spec to a plan: the order of the stages. All that need a plan call these functions;
-// the back ends (emit/emit.hpp) make a header of it, the evaluator (execute/evaluator.hpp) executes
-// it.
+// Compiles a spec to a plan: the order of the stages. Everything that needs a plan calls these
+// functions; the back ends (emit/emit.hpp) turn it into a header, and the evaluator
+// (execute/evaluator.hpp) executes it.
 #pragma once
 
 #include <memory>

@@ -23,7 +23,7 @@ namespace etlc::watch {
 // Which step a frame of a live source belongs to.
 // Takes: the times at which frames arrive, and the time that it is now. Gives: steps, in order.
 // Keeps true: a step is 1 / rate seconds after the one before, whether or not a frame came: where
-// none did, the step has no sample, and the steps behind it do not move. The clock follows a camera
+// none did, the step has no sample, and the steps after it do not move. The clock follows a camera
 // whose clock differs by at most half a percent (29.97 frames a second are 30), as `etlc embed`
 // does with files.
 

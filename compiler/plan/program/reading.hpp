@@ -20,7 +20,7 @@ namespace etlc::plan {
 
 // Terms: minima and maxima over streams, registers and constants, which readings compute at every
 // step. Neutral constants are dropped, absorbing ones replace the whole, and no max is an operand
-// of a max, so equal bounds mostly are equal terms.
+// of a max, so equal bounds are mostly equal terms.
 
 using check::Index;
 using check::kNone;
