@@ -1,9 +1,8 @@
-// The program that steps a class on symbols: its sources, its compilation, and what it says.
+// The program that drives a class on symbols: its sources, its compilation, and what it says.
 #pragma once
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -14,31 +13,20 @@
 #include "emit/standalone.hpp"
 #include "plan/plan.hpp"
 #include "prove/prove.hpp"
-#include "prove/symbols/definition.hpp"
-#include "prove/symbols/symbol.hpp"
+#include "prove/symbols.hpp"
 
 namespace etlc::prove {
 
 using emit::RuntimeFile;
 
-/// A class.
-struct Subject {
-    std::string header;      ///< text of the generated header
-    std::string name_space;  ///< of its class
-};
-
 /// The compiled program, in a temporary folder of its own.
 class Program {
 public:
-    /// Writes and compiles it.
-    static diag::Result<Program> make(const plan::Plan& plan, const Subject& subject,
-                                      const std::vector<Atom>& atoms);
-    /// `headers`: the first that compiles is taken; `main`: the text of the program; `folders`:
-    /// where the compiler looks for headers; `files`: more of them, in the folder of those that
-    /// stand in.
-    static diag::Result<Program> make(const std::vector<std::string>& headers,
-                                      const std::string& main, const std::string& folders,
-                                      const std::vector<RuntimeFile>& files);
+    /// Writes and compiles it, and asks the compiler for the variables of the class besides its
+    /// members: fails where there are some.
+    static diag::Result<Program> make(const plan::Plan& plan, const Request& request,
+                                      const std::vector<Atom>& atoms,
+                                      const std::vector<Truths>& truths);
     Program(Program&& other) noexcept;
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;
@@ -55,22 +43,21 @@ private:
     std::string compiler_;
 };
 
+/// Calls of finish() after each step, in which every sliding monitor reports its last positions.
+std::uint32_t finishes_of(const plan::Plan& plan);
+
+/// Returns the parts of an object file that a program can write: "4 bytes in .bss"; "" if it has
+/// none, and "no ELF file" for another format.
+std::string writable_parts(const std::string& object);
+
 /// How a program ended before its last entry.
 struct Ended {
-    enum class Why : std::uint8_t {
-        branches,
-        exhausted,
-        too_many,
-        leftovers,
-        failed
-    } why = Why::failed;
+    int status = 0;
     std::string how;  ///< "was stopped by signal 11 (Segmentation fault)"
 };
 
 /// Returns why there is no proof.
 std::string why(const Ended& ended);
-/// Returns "; it is right for all inputs of up to 4 steps", or nothing.
-std::string how_far(std::uint32_t steps);
 
 /// A window over pairs: whether it is one window of the lows and one of the highs.
 struct Window {
@@ -79,20 +66,16 @@ struct Window {
     bool is_too_long = false;  ///< for a proof of that
 };
 
-/// Restarts of several monitors: whether none disturbs another, and for how many steps that is
-/// known.
-struct Together {
-    std::uint32_t steps = 0;
-    bool is_proved = false;
-};
-
-/// The conditions of a verdict of truth values, of a monitor that began at a step.
-struct Status {
-    std::uint32_t begun = 0;
-    Diagram condition = 0;  ///< that it began there; the others are within this one
+/// A verdict of the class.
+struct Said {
+    bool may_be_missing = false;  ///< every sample; else none
+    std::uint32_t monitor = 0;
+    std::uint32_t step = 0;
+    std::uint32_t finishes = 0;        ///< calls of finish() after it
+    std::vector<std::uint32_t> begun;  ///< [monitor] the step at which it last began
+    Numbers numbers;
     Diagram satisfied = 0;
     Diagram violated = 0;
-    Diagram decided = 0;
     Diagram final = 0;
 };
 
@@ -101,39 +84,44 @@ struct State {
     enum class Kind : std::uint8_t { control, diagram, counter };
     struct Word {
         Kind kind = Kind::control;
-        std::uint32_t value = 0;  ///< of this proof, if it is a diagram
+        std::uint32_t value = 0;    ///< of this proof, if it is a diagram
+        std::uint32_t counted = 0;  ///< a counter that reaches this would have another effect
     };
-    std::vector<Word> words;  ///< none where the class has other members than words
-    /// A counter that reaches this would have another effect; 0 where none would.
-    std::uint32_t counted = 0;
-    static constexpr std::uint32_t kAll = 0xffffffffU;  ///< where each value may have one
-    Place oldest_negated = 0;                           ///< of the samples in what was negated
+    std::vector<Word> words;   ///< none where the class has other members than words
+    Place oldest_negated = 0;  ///< of the samples in what was negated
 };
 
-/// Reads what the program says, into the diagrams of this proof.
+/// Reads what the program says, into the diagrams of this proof. All throw Ended and NewNumber.
 class Answers {
 public:
-    Answers(data::Child& child, Space& space) : child_(child), space_(space) {}
+    Answers(data::Child& child, Space& space, std::size_t monitors)
+        : child_(child), space_(space), monitors_(monitors) {}
 
-    /// Return the next entry, which must be of this kind. Throw Ended and NewNumber.
-    Numbers verdict();
+    /// As stand_in/etlprove/output.hpp has them.
+    enum class Entry : std::uint32_t {
+        number = 1,
+        node,
+        verdict,
+        state,
+        restarts,
+        saturation,
+        window,
+        end
+    };
+    /// Returns the kind of the next entry, which is then read.
+    Entry next();
+    Said verdict();
     State state();
-    /// Whether all later restarts were alike.
-    bool forgotten();
-    Together together();
-    /// The next of the conditions of a step, if there is one more.
-    std::optional<Status> status();
-    /// The next window of the class, if there is one more.
-    std::optional<Window> window();
+    Window window();
+    std::uint32_t word();
 
 private:
-    std::uint32_t word();
-    std::uint32_t next();  ///< the kind of the next entry besides diagrams
     Diagram known(std::uint32_t theirs) const;
     [[noreturn]] void end();
 
     data::Child& child_;
     Space& space_;
+    std::size_t monitors_;
     std::unordered_map<std::uint32_t, Diagram> known_{{0, 0}, {1, 1}};
 };
 

@@ -7,237 +7,287 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <tuple>
 
-#include "prove/boolean.hpp"
 #include "prove/program.hpp"
 #include "prove/repetition.hpp"
-#include "prove/text/members.hpp"
 
 namespace etlc::prove {
 namespace {
+
+using etlprove::kAlways;
+using etlprove::kNever;
 
 /// Compares the verdicts of one class with their definition, in the order in which its program
 /// gives them.
 class Comparison {
 public:
     /// `done`: counts the steps whose verdicts were compared.
-    Comparison(const plan::Plan& plan, const std::set<float>& numbers, Proof& proof,
-               data::Child& child, std::uint32_t& done)
+    Comparison(const plan::Plan& plan, const std::set<float>& numbers,
+               const std::vector<Truths>& truths, Proof& proof, data::Child& child,
+               std::uint32_t& done)
         : plan_(plan),
           proof_(proof),
-          space_(numbers),
+          truths_(truths),
+          space_(numbers, !truths.empty()),
           scope_(space_),
-          answers_(child, space_),
-          known_(plan, proof.atoms, proof.steps, false),
-          all_(plan, proof.atoms, proof.steps, true),
+          answers_(child, space_, plan.monitors.size()),
+          known_(plan, proof.atoms, truths, proof.places, false),
+          all_(plan, proof.atoms, truths, proof.places, true),
           repetition_(plan, all_, proof, space_),
           done_(done) {}
 
-    /// Throws Ended and Exhausted.
+    /// Throws Ended, Exhausted and NewNumber.
     void run() {
-        for (; done_ < proof_.steps && !proof_.fault; ++done_) {
-            compare_step(done_, Kind::known);
-            repetition_.begin_step();
-            compare_step(done_, Kind::missing);
-            compare_finishes(done_);
-            if (!proof_.fault) repetition_.end_step(answers_.state(), compared_later());
-            known_.forget(done_);
+        using Entry = Answers::Entry;
+        while (!proof_.fault) {
+            switch (answers_.next()) {
+                case Entry::verdict: compare(answers_.verdict()); break;
+                case Entry::state: end_step(answers_.state()); break;
+                case Entry::saturation: end_first_episode(answers_.word() == 1); break;
+                case Entry::restarts: proof_.together = answers_.word(); break;
+                case Entry::window: take(answers_.window()); break;
+                case Entry::end: return end();
+                default: throw Ended{0, "contradicts itself"};
+            }
         }
-        proof_.repeats = repetition_.found();
-        if (!proof_.repeats) proof_.why_not_longer = repetition_.why_not();
-        if (!proof_.repeats) proof_.steps_needed = repetition_.steps_needed();
-        for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m)
-            if (restarts(m) != check::Restarts::never) compare_restarted(m);
-        for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m)
-            if (restarts(m) == check::Restarts::when_final) compare_restarted(m);
-        if (proof_.fault) return;
-        const Together together = answers_.together();
-        proof_.together = together.is_proved ? together.steps : 0;
-        while (const auto window = answers_.window()) take(*window);
+    }
+
+private:
+    /// The tightest bounds that a monitor has given so far, of those that the definition lacks.
+    struct Bounds {
+        Diagram lower = kNever;
+        Diagram upper = kAlways;
+    };
+    /// When a monitor was said to be final, though not by the definition.
+    struct Promise {
+        Diagram satisfied = kNever;
+        Diagram violated = kNever;
+    };
+    /// Key of the bounds of a monitor that began at a step: `may_be_missing`, monitor, step.
+    using Key = std::tuple<bool, std::uint32_t, std::uint32_t>;
+
+    /// A verdict, and what it is about.
+    struct Place {
+        const Said& said;
+        bool sliding;
+        std::uint32_t position;
+        bool decided;
+        Key key;
+    };
+
+    Place place(const Said& said) const {
+        const plan::Monitor& monitor = plan_.monitors[said.monitor];
+        const std::uint32_t begun = said.begun[said.monitor];
+        Place place{said, monitor.sliding, begun, true, {said.may_be_missing, said.monitor, begun}};
+        if (!monitor.sliding) return place;
+        // "`finish()` reports the last h positions, cut at the end of the trace, one per call"
+        const std::uint32_t h = monitor.horizon;
+        place.decided = said.step + said.finishes >= h && said.finishes <= h;
+        place.position = place.decided ? said.step + said.finishes - h : 0;
+        return place;
+    }
+
+    void compare(const Said& said) {
+        ++proof_.verdicts;
+        const Place at = place(said);
+        begin_run(said);
+        Definition& definition = said.may_be_missing ? all_ : known_;
+        begin_step(said);
+        Numbers expected;
+        if (at.decided) expected = definition.verdict(said.monitor, said.step, at.position);
+        if (is_first_episode_ && said.may_be_missing && at.decided) check_machine(at, expected);
+        if (said.numbers.decided != at.decided)
+            return blame(at, "whether it is decided", Witness());
+        if (!at.decided) return;
+        truths_.empty() ? compare_numbers(at, expected) : compare_truths(at, expected);
+    }
+
+    /// Forgets what was promised before, where the class goes on from an earlier step: with other
+    /// restarts. What a verdict promises binds the later ones of its own run.
+    void begin_run(const Said& said) {
+        if (said.step < last_step_) {
+            bounds_.clear();
+            promises_.clear();
+        }
+        last_step_ = said.step;
+    }
+
+    // ---- steps of the first episode in which samples may be missing
+
+    void begin_step(const Said& said) {
+        if (!is_first_episode_ || !said.may_be_missing || said.step < begun_steps_) return;
+        ++begun_steps_;
+        repetition_.begin_step();
+    }
+
+    void check_machine(const Place& at, const Numbers& expected) {
+        if (!at.sliding && at.position > 0)
+            return repetition_.give_up("a monitor restarts at every step");
+        repetition_.check(at.said.monitor, at.position, expected);
+    }
+
+    void end_step(const State& state) {
+        std::vector<Diagram> compared_later;
+        for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m) {
+            const Bounds& bounds = bounds_[{true, m, 0}];
+            const Promise& promise = promises_[{true, m, 0}];
+            compared_later.insert(compared_later.end(), {bounds.lower, bounds.upper,
+                                                         promise.satisfied, promise.violated});
+        }
+        repetition_.end_step(state, compared_later);
+        ++done_;
+    }
+
+    void end_first_episode(bool saturates) {
+        is_first_episode_ = false;
+        if (!saturates) repetition_.give_up("what it counts does not stay at the greatest number");
+        proof_.repeats = saturates ? repetition_.found() : std::nullopt;
+        if (proof_.repeats) return;
+        proof_.why_not_longer = repetition_.why_not();
+        proof_.steps_needed = repetition_.steps_needed();
+    }
+
+    void end() {
         if (proof_.long_windows.empty()) return;
         proof_.repeats.reset();
         proof_.why_not_longer = "what is assumed of its windows was compared in these steps only";
     }
 
-    bool forgets() const { return forgets_; }
+    // ---- robustness
 
-private:
-    enum class Kind : std::uint8_t { known, missing };
-
-    /// A verdict that comes next, and what it is about.
-    struct Place {
-        std::uint32_t monitor;
-        std::uint32_t step;
-        std::uint32_t position;
-        bool decided;
-        std::uint32_t finishes = 0;
-        std::optional<std::uint32_t> restarted{};
-    };
-
-    check::Restarts restarts(std::uint32_t m) const { return plan_.monitors[m].restarts; }
-
-    /// Returns what later verdicts are compared with, besides the definition.
-    std::vector<Diagram> compared_later() {
-        std::vector<Diagram> result;
-        for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m) {
-            const Bounds& promised = promised_[{m, Kind::missing}];
-            result.insert(result.end(), {promised.lower, promised.upper});
-        }
-        return result;
-    }
-
-    void compare_step(std::uint32_t step, Kind kind) {
-        for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m) compare(place(m, step), kind);
-    }
-
-    Place place(std::uint32_t m, std::uint32_t step) const {
-        const plan::Monitor& monitor = plan_.monitors[m];
-        const bool decided = !monitor.sliding || step >= monitor.horizon;
-        return {m, step, monitor.sliding && decided ? step - monitor.horizon : 0, decided};
-    }
-
-    /// "`finish()` reports the last h positions, cut at the end of the trace, one per call"
-    void compare_finishes(std::uint32_t step) {
-        std::uint32_t calls = 0;
-        for (const plan::Monitor& monitor : plan_.monitors)
-            calls = std::max(calls, monitor.horizon);
-        for (std::uint32_t call = 0; plan_.has_sliding && call < calls; ++call)
-            for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m) {
-                Place at = place(m, step);
-                at.finishes = call + 1;
-                if (const std::uint32_t h = plan_.monitors[m].horizon; plan_.monitors[m].sliding) {
-                    at.decided = call < h && step + 1 + call >= h;
-                    at.position = at.decided ? step + 1 + call - h : 0;
-                }
-                compare(at, Kind::missing);
-            }
-    }
-
-    void compare_restarted(std::uint32_t restarted) {
-        for (std::uint32_t at = 1; at < proof_.steps && !proof_.fault; ++at) {
-            promised_.clear();
-            for (std::uint32_t step = at; step < proof_.steps && !proof_.fault; ++step)
-                for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m) {
-                    Place here = place(m, step);
-                    if (m == restarted) here.position = at;
-                    if (m == restarted) here.restarted = at;
-                    compare(here, Kind::missing);
-                }
-            if (!proof_.fault) forgets_ = answers_.forgotten() && forgets_;
-        }
-    }
-
-    void compare(const Place& at, Kind kind) {
-        if (proof_.fault) return;
-        const Numbers found = answers_.verdict();
-        ++proof_.verdicts;
-        Numbers expected;
-        if (at.decided)
-            expected =
-                (kind == Kind::known ? known_ : all_).verdict(at.monitor, at.step, at.position);
-        // The runs with restarts, which the machine does not take, come after all steps.
-        const bool is_taken = kind == Kind::missing && done_ < proof_.steps;
-        if (is_taken && at.decided) repetition_.check(at.monitor, at.position, expected);
-        if (found.decided != expected.decided) return blame(at, "whether it is decided", Witness());
-        if (!found.decided) return;
-        check(at, kind, "robustness", found.low, expected.low);
+    void compare_numbers(const Place& at, const Numbers& expected) {
+        const Numbers& found = at.said.numbers;
+        check(at, "robustness", found.low, expected.low);
         // Only its sign is seen, in the status.
-        check(at, kind, "the greatest possible robustness", found.high, expected.high, true);
-        if (plan_.monitors[at.monitor].sliding) {
-            check(at, kind, "lower", found.lower, expected.lower);
-            check(at, kind, "upper", found.upper, expected.upper);
-        } else if (at.finishes == 0) {
-            check_bounds(at, kind, found, expected);
-            last_[at.monitor] = found;
+        check(at, "the greatest possible robustness", found.high, expected.high, true);
+        if (at.sliding) {
+            check(at, "lower", found.lower, expected.lower);
+            check(at, "upper", found.upper, expected.upper);
+        } else if (at.said.finishes == 0) {
+            check_bounds(at, found, expected);
+            last_[at.key] = found;
         } else {  // "a prefix monitor repeats its last verdict"
-            check(at, kind, "lower", found.lower, last_[at.monitor].lower);
-            check(at, kind, "upper", found.upper, last_[at.monitor].upper);
+            check(at, "lower", found.lower, last_[at.key].lower);
+            check(at, "upper", found.upper, last_[at.key].upper);
         }
+        check_status(at, found);
     }
 
     /// Bounds may be tighter than the definition's, if no later verdict leaves them.
-    void check_bounds(const Place& at, Kind kind, const Numbers& found, const Numbers& expected) {
-        const auto least = [&](Diagram a, Diagram b) { return space_.diagrams.both(a, b); };
-        check(at, kind, "lower", least(found.lower, expected.lower), expected.lower);
-        check(at, kind, "upper", least(found.upper, expected.upper), found.upper);
-        Bounds& promised = promised_[{at.monitor, kind}];
-        check(at, kind, "the robustness, which an earlier lower bound exceeds,",
-              least(promised.lower, found.low), promised.lower);
-        check(at, kind, "the robustness, which exceeds an earlier upper bound,",
-              least(promised.upper, found.high), found.high);
-        if (found.lower != expected.lower)
-            promised.lower = space_.diagrams.either(promised.lower, found.lower);
-        if (found.upper != expected.upper) promised.upper = least(promised.upper, found.upper);
+    void check_bounds(const Place& at, const Numbers& found, const Numbers& expected) {
+        check(at, "lower", both(found.lower, expected.lower), expected.lower);
+        check(at, "upper", both(found.upper, expected.upper), found.upper);
+        Bounds& promised = bounds_[at.key];
+        check(at, "the robustness, which an earlier lower bound exceeds,",
+              both(promised.lower, found.low), promised.lower);
+        check(at, "the robustness, which exceeds an earlier upper bound,",
+              both(promised.upper, found.high), found.high);
+        if (found.lower != expected.lower) promised.lower = either(promised.lower, found.lower);
+        if (found.upper != expected.upper) promised.upper = both(promised.upper, found.upper);
     }
 
-    void check(const Place& at, Kind kind, const std::string& name, Diagram found, Diagram expected,
+    /// "satisfied where rho >= 0, violated where rho_high < 0"; "final where lower >= 0 or
+    /// upper < 0"
+    void check_status(const Place& at, const Numbers& found) {
+        const auto sign = [&](Diagram of) { return space_.diagrams.at_zero(of); };
+        const Diagram final =
+            at.sliding ? kAlways : either(sign(found.lower), no(sign(found.upper)));
+        if (at.said.satisfied != sign(found.low) || at.said.violated != no(sign(found.high)) ||
+            at.said.final != final)
+            blame(at, "its status", Witness());
+    }
+
+    void check(const Place& at, const std::string& name, Diagram found, Diagram expected,
                bool at_zero = false) {
         if (proof_.fault || found == expected) return;
-        const auto witness = difference(space_, found, expected, proof_.atoms, at.step + 1,
-                                        proof_.steps, kind == Kind::missing, at_zero);
+        const Said& said = at.said;
+        const auto witness = difference(space_, found, expected, proof_.atoms, said.step + 1,
+                                        proof_.places, said.may_be_missing, at_zero);
         if (witness) return blame(at, name, *witness);
-        if (kind == Kind::missing && !at.restarted)
+        if (said.may_be_missing && is_first_episode_)
             repetition_.is_inexact(!at_zero &&
                                    are_equal_in_ranges(space_, found, expected, proof_.atoms));
     }
 
+    // ---- truth values
+
+    void compare_truths(const Place& at, const Numbers& expected) {
+        const Said& said = at.said;
+        check_truth(at, "satisfied", said.satisfied, expected.low);
+        check_truth(at, "violated", said.violated, no(expected.high));
+        const Diagram due = at.sliding ? kAlways : either(expected.lower, no(expected.upper));
+        check_truth(at, "final", both(said.final, due), due);
+        // It may be final earlier, if no later verdict contradicts it.
+        const Diagram early = both(said.final, no(due));
+        check_truth(at, "both final and unknown",
+                    both(early, no(either(said.satisfied, said.violated))), kNever);
+        Promise& promise = promises_[at.key];
+        promise.satisfied = either(promise.satisfied, both(early, said.satisfied));
+        promise.violated = either(promise.violated, both(early, said.violated));
+        check_truth(at, "final, and later no longer satisfied",
+                    both(promise.satisfied, no(expected.low)), kNever);
+        check_truth(at, "final, and later no longer violated",
+                    both(promise.violated, expected.high), kNever);
+    }
+
+    void check_truth(const Place& at, const std::string& name, Diagram found, Diagram expected) {
+        if (proof_.fault || found == expected) return;
+        const Diagram differ = space_.diagrams.differ(found, expected);
+        Witness witness = truths_where(space_.diagrams, differ, proof_.atoms, truths_,
+                                       at.said.step + 1, proof_.places);
+        witness.first_reaches = both(differ, expected) == kNever;
+        blame(at, name, std::move(witness));
+    }
+
     void take(const Window& window) {
         if (!window.is_two_windows && !window.is_too_long)
-            throw Ended{Ended::Why::failed,
-                        fmt::format("mixes up its windows of {} steps where samples are missing",
-                                    window.length)};
+            throw Ended{0, fmt::format("mixes up its windows of {} steps where samples are missing",
+                                       window.length)};
         (window.is_too_long ? proof_.long_windows : proof_.windows).push_back(window.length);
     }
 
     void blame(const Place& at, const std::string& number, Witness witness) {
-        proof_.fault = Fault{at.monitor,   at.step, at.position,       at.finishes,
-                             at.restarted, number,  std::move(witness)};
+        if (proof_.fault) return;
+        const Said& said = at.said;
+        proof_.fault = Fault{said.monitor, said.step,          at.position, said.finishes,
+                             number,       std::move(witness), {}};
+        for (std::uint32_t m = 0; m < said.begun.size(); ++m)
+            if (said.begun[m] > 0) proof_.fault->restarts.emplace_back(m, said.begun[m]);
     }
+
+    Diagram both(Diagram a, Diagram b) { return space_.diagrams.both(a, b); }
+    Diagram either(Diagram a, Diagram b) { return space_.diagrams.either(a, b); }
+    Diagram no(Diagram a) { return space_.diagrams.complement(a); }
 
     const plan::Plan& plan_;
     Proof& proof_;
+    const std::vector<Truths>& truths_;
     Space space_;
     Symbol::Scope scope_;
     Answers answers_;
     Definition known_;
     Definition all_;
     Repetition repetition_;
-    /// The tightest bounds that a monitor has given so far, of those that the definition lacks.
-    struct Bounds {
-        Diagram lower = etlprove::kNever;
-        Diagram upper = etlprove::kAlways;
-    };
-    std::map<std::pair<std::uint32_t, Kind>, Bounds> promised_;
-    std::map<std::uint32_t, Numbers> last_;  ///< verdict of each prefix monitor
+    std::map<Key, Bounds> bounds_;
+    std::map<Key, Promise> promises_;
+    std::map<Key, Numbers> last_;  ///< verdict of each prefix monitor
+    bool is_first_episode_ = true;
+    std::uint32_t begun_steps_ = 0;
+    std::uint32_t last_step_ = 0;  ///< of a verdict
     std::uint32_t& done_;
-    bool forgets_ = true;
 };
 
 diag::Failure no_proof(std::string why) {
     return {diag::Code::no_proof, std::move(why)};
 }
 
-}  // namespace
-
-std::uint32_t usual_steps(const plan::Plan& plan) {
-    std::uint32_t horizon = 0;
-    std::uint32_t buffer = 0;
-    for (const plan::Monitor& monitor : plan.monitors) horizon = std::max(horizon, monitor.horizon);
-    for (const plan::Stream& stream : plan.streams) buffer = std::max(buffer, stream.length);
-    return std::max(64U, 2 * horizon + buffer);
+/// Returns "; it is right for all inputs of up to 4 steps", or nothing.
+std::string how_far(std::uint32_t steps) {
+    return steps == 0 ? ""
+                      : fmt::format("; it is right for all inputs of up to {}",
+                                    diag::counted(steps, "step"));
 }
-
-float measured(const check::Predicate& predicate, float robustness) {
-    const float epsilon = predicate.threshold.value;
-    if (predicate.equality()) {
-        const bool is_equal =
-            (robustness > 0) == (predicate.comparison == check::Comparison::equal);
-        return is_equal ? epsilon : epsilon + 1;
-    }
-    return predicate.upper_bound() ? epsilon - robustness : epsilon + robustness;
-}
-
-namespace {
 
 /// Adds a number and its negation.
 void add(std::set<float>& numbers, double number) {
@@ -257,15 +307,14 @@ std::set<float> numbers_of(const std::vector<Atom>& atoms) {
 }
 
 /// Makes the proof with these numbers. Throws NewNumber.
-diag::Result<Proof> prove_with(const std::set<float>& numbers, const plan::Plan& plan,
-                               const Program& program, Proof proof) {
+diag::Result<Proof> prove_with(const std::set<float>& numbers, const std::vector<Truths>& truths,
+                               const plan::Plan& plan, const Program& program, Proof proof) {
+    proof.places = proof.steps + proof.finishes;
     const auto child = program.start(numbers, proof.steps);
     if (!child) return no_proof("cannot run the program that was compiled for the proof");
     std::uint32_t done = 0;
     try {
-        Comparison comparison(plan, numbers, proof, *child, done);
-        comparison.run();
-        proof.restarts = comparison.forgets();
+        Comparison(plan, numbers, truths, proof, *child, done).run();
         return proof;
     } catch (const Exhausted&) {
         return no_proof("the diagrams of the definition are too large" + how_far(done));
@@ -275,12 +324,13 @@ diag::Result<Proof> prove_with(const std::set<float>& numbers, const plan::Plan&
 }
 
 /// Makes the proof, and adds to the numbers what it needs.
-diag::Result<Proof> prove_steps(std::set<float>& numbers, const plan::Plan& plan,
-                                const Program& program, const Proof& proof) {
+diag::Result<Proof> prove_steps(std::set<float>& numbers, const std::vector<Truths>& truths,
+                                const plan::Plan& plan, const Program& program,
+                                const Proof& proof) {
     constexpr std::size_t kMostNumbers = 10000;
     while (numbers.size() < kMostNumbers) {
         try {
-            return prove_with(numbers, plan, program, proof);
+            return prove_with(numbers, truths, plan, program, proof);
         } catch (const NewNumber& unknown) {
             add(numbers, unknown.number);
         }
@@ -293,22 +343,46 @@ constexpr std::uint32_t kMostStepsToGoOn = 256;
 
 }  // namespace
 
+std::uint32_t usual_steps(const plan::Plan& plan) {
+    std::uint32_t horizon = 0;
+    std::uint32_t buffer = 0;
+    for (const plan::Monitor& monitor : plan.monitors) horizon = std::max(horizon, monitor.horizon);
+    for (const plan::Stream& stream : plan.streams) buffer = std::max(buffer, stream.length);
+    return std::max(64U, 2 * horizon + buffer);
+}
+
+std::uint32_t finishes_of(const plan::Plan& plan) {
+    constexpr std::uint32_t kMore = 8;  // after the last that reports something
+    std::uint32_t calls = 0;
+    for (const plan::Monitor& monitor : plan.monitors) calls = std::max(calls, monitor.horizon);
+    return plan.has_sliding ? calls + kMore : 0;
+}
+
+float measured(const check::Predicate& predicate, float robustness) {
+    const float epsilon = predicate.threshold.value;
+    if (predicate.equality()) {
+        const bool is_equal =
+            (robustness > 0) == (predicate.comparison == check::Comparison::equal);
+        return is_equal ? epsilon : epsilon + 1;
+    }
+    return predicate.upper_bound() ? epsilon - robustness : epsilon + robustness;
+}
+
 diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
-    if (plan.values == check::Values::boolean) return prove_boolean(plan, request);
     Proof proof;
     proof.atoms = atoms_of(plan);
     proof.steps = request.steps > 0 ? request.steps : usual_steps(plan);
-    const auto program = Program::make(plan, {request.header, request.name_space}, proof.atoms);
+    proof.finishes = finishes_of(plan);
+    const std::vector<Truths> truths = truths_of(plan, proof.atoms);
+    const auto program = Program::make(plan, request, proof.atoms, truths);
     if (!program) return program.failure();
     proof.compiler = program->compiler();
-    if (may_hide_state(request.header))
-        proof.why_not_longer = "its header may have variables besides the members of the class";
     std::set<float> numbers = numbers_of(proof.atoms);
-    auto found = prove_steps(numbers, plan, *program, proof);
+    auto found = prove_steps(numbers, truths, plan, *program, proof);
     if (!found || found->fault || found->repeats || request.steps > 0) return found;
     if (found->steps_needed <= proof.steps || found->steps_needed > kMostStepsToGoOn) return found;
     proof.steps = found->steps_needed;
-    auto longer = prove_steps(numbers, plan, *program, proof);
+    auto longer = prove_steps(numbers, truths, plan, *program, proof);
     if (longer && (longer->fault || longer->repeats)) return longer;
     if (longer) found->why_not_longer = longer->why_not_longer;
     return found;

@@ -13,17 +13,18 @@
 #include "diag/diag.hpp"
 #include "emit/standalone.hpp"
 #include "plan/plan.hpp"
-#include "prove/symbols/definition.hpp"
-#include "prove/symbols/witness.hpp"
+#include "prove/symbols.hpp"
 
 namespace etlc::prove {
 
 struct Request {
-    std::string header;       ///< its text
+    std::string header;       ///< its text: what etlc generates from the plan
     std::string name_space;   ///< of its class
     std::uint32_t steps = 0;  ///< 0: usual_steps()
-    /// Most steps from a state with a sequence of truths, for a class of truth values.
-    std::uint64_t most_cases = 4000000;
+    /// Most ways through all steps, on which truths or final verdicts decide; and those of them in
+    /// which several monitors restart.
+    std::uint64_t most_ways = 4000000;
+    std::uint64_t most_together = 30000;
 };
 
 /// Twice the longest horizon and the longest buffer, at least 64.
@@ -33,13 +34,12 @@ std::uint32_t usual_steps(const plan::Plan& plan);
 struct Fault {
     std::uint32_t monitor = 0;  ///< of the plan
     std::uint32_t step = 0;
-    std::uint32_t position = 0;              ///< that the verdict is about
-    std::uint32_t finishes = 0;              ///< calls of finish() after the step
-    std::optional<std::uint32_t> restarted;  ///< the monitor was restarted before that step
-    std::string number;  ///< "robustness", "lower", "upper" or "whether it is decided"
+    std::uint32_t position = 0;  ///< that the verdict is about
+    std::uint32_t finishes = 0;  ///< calls of finish() after the step
+    std::string number;          ///< "robustness", "lower", "upper" or "whether it is decided"
     Witness witness;
-    /// In a class of truth values: the monitors that are restarted, and before which step.
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> requests;
+    /// The monitors that were restarted, and before which step.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> restarts;
 };
 
 /// Steps after which the class and the definition have the same form.
@@ -51,11 +51,12 @@ struct Repeats {
 struct Proof {
     std::vector<Atom> atoms;
     std::uint32_t steps = 0;
-    std::string compiler;                ///< its first line about its version
-    std::uint64_t verdicts = 0;          ///< that were compared
-    bool restarts = false;               ///< any sequence of restarts is covered
-    std::uint32_t together = 0;          ///< first steps in which those of several monitors are
-    std::vector<std::uint32_t> windows;  ///< lengths of those that were proved to be two
+    std::uint32_t finishes = 0;               ///< calls of finish() after each step
+    std::uint32_t places = 0;                 ///< steps that have variables
+    std::string compiler;                     ///< its first line about its version
+    std::uint64_t verdicts = 0;               ///< that were compared
+    std::uint32_t together = 0;               ///< first steps in which several monitors may restart
+    std::vector<std::uint32_t> windows;       ///< lengths of those that were proved to be two
     std::vector<std::uint32_t> long_windows;  ///< and of those that are assumed to be
     std::optional<Repeats> repeats;  ///< then the proof without restarts holds for all lengths
     std::string why_not_longer;      ///< else why it does not

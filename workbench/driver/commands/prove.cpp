@@ -63,7 +63,8 @@ std::string first_difference(std::string_view found, std::string_view expected) 
     const std::size_t at = static_cast<std::size_t>(
         std::mismatch(is.begin(), is.end(), should_be.begin(), should_be.end()).first - is.begin());
     const std::string there = at < is.size() ? shown_line(is[at]) : "the end of the file";
-    const std::string line = at < should_be.size() ? shown_line(should_be[at]) : "the end of it";
+    const std::string line =
+        at < should_be.size() ? shown_line(should_be[at]) : "the end of the file";
     if (there == line) return fmt::format("line {} ends in another way", at + 1);
     return fmt::format("line {} is {}; expected {}", at + 1, there, line);
 }
@@ -114,26 +115,43 @@ std::size_t restarting(const plan::Plan& plan) {
 std::string restarts_of(const plan::Plan& plan, const prove::Proof& proof) {
     const std::size_t count = restarting(plan);
     if (count == 0) return "";
-    if (!proof.restarts) return "proved for one restart of one monitor\n";
-    if (count == 1 || plan.values == check::Values::boolean)
-        return "proved for all sequences of restarts\n";
-    const std::string one = "proved for all sequences of restarts of one monitor";
-    if (proof.together == 0)
-        return one + "\nnot proved: that restarts of several monitors do not disturb each other\n";
-    return fmt::format("{}, and in the first {} of several\n", one,
-                       diag::counted(proof.together, "step"));
+    if (count == 1) return "proved for all sequences of restarts\n";
+    std::string text = "proved for all sequences of restarts of one monitor";
+    if (proof.together > 0)
+        text +=
+            fmt::format(", and of several in the first {}", diag::counted(proof.together, "step"));
+    if (proof.together >= proof.steps) return text + "\n";
+    return text + "\nnot proved: that restarts of several monitors do not disturb each other" +
+           (proof.together > 0 ? " later\n" : "\n");
 }
 
-/// The scope of a certificate, in its own text.
-constexpr const char* kScope =
-    "\nscope: the header above, which is what this etlc generates from this spec, and no other.\n"
-    "Proved are the verdicts that reset(), judge() and finish() give for the values of predicates "
-    "and bools, where any may be missing.\n"
-    "Not proved: measure(), that is distances, expressions, thresholds, hold, stale after and "
-    "points of earlier steps;\n"
-    "telemetry, lets, counters and the recorder; the constructor; calls in another order.\n"
-    "Assumed: the compiler of the product compiles C++ correctly, and the stand-ins do what the "
-    "files of the runtime do that they replace.\n";
+/// Returns what a certificate says of itself.
+std::string scope_of(const plan::Plan& plan, const prove::Proof& proof) {
+    const bool boolean = plan.values == check::Values::boolean;
+    const bool measures = !plan.model->retargetable;
+    return fmt::format(
+        "\nscope: the header above, which is what this etlc generates from this spec, and no "
+        "other.\n"
+        "driven: constructed in memory that holds anything; {}{}reset() after each of these "
+        "calls; restarts\n"
+        "proved: every verdict, by its name, with its status, for all values of predicates and "
+        "bools, any of which may be missing\n"
+        "state: {}, as planned; the object of the class has no other data that can be written\n"
+        "not proved: distances, expressions, thresholds, hold, stale after and points of earlier "
+        "steps; calibrated shifts;\n"
+        "  telemetry but the counts of alarms; lets, explanations and the recorder; other orders "
+        "of "
+        "calls\n"
+        "assumed: the compiler of the product compiles C++ correctly, and the stand-ins do what "
+        "the files of the runtime do that they replace\n",
+        measures  ? "step(), with samples and without; "
+        : boolean ? "step(), without samples; "
+                  : "judge(), not step(); ",
+        proof.finishes > 0 ? fmt::format("up to {} of finish() after each step; ",
+                                         diag::counted(proof.finishes, "call"))
+                           : "",
+        diag::counted(plan.cost.state_bytes, "byte"));
+}
 
 std::string certificate(const source::File& spec, const plan::Plan& plan, const Request& request,
                         const std::string& header, const prove::Proof& proof) {
@@ -175,7 +193,7 @@ std::string certificate(const source::File& spec, const plan::Plan& plan, const 
             "assumed of its windows of {} steps, which are too long for this "
             "proof: the same\n",
             lengths(proof.long_windows));
-    return text + restarts_of(plan, proof) + kScope;
+    return text + restarts_of(plan, proof) + scope_of(plan, proof);
 }
 
 /// Returns the measurements of a witness, as a trace.
@@ -216,8 +234,7 @@ std::string said(const plan::Plan& plan, const prove::Fault& fault) {
     std::string where = fmt::format("after step {}", fault.step);
     if (fault.finishes > 0)
         where += fmt::format(" and {} of finish()", diag::counted(fault.finishes, "call"));
-    if (fault.restarted) where += fmt::format(", restarted before step {}", *fault.restarted);
-    for (const auto& [monitor, step] : fault.requests)
+    for (const auto& [monitor, step] : fault.restarts)
         where += fmt::format(", '{}' restarted before step {}", plan.monitors[monitor].name, step);
     const std::string& name = plan.monitors[fault.monitor].name;
     if (plan.values == check::Values::boolean)

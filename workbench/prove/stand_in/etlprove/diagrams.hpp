@@ -18,13 +18,14 @@ constexpr Diagram kNever = 0;
 constexpr Diagram kAlways = 1;
 
 /// The variables, in their order. Place 1 is what was read before it was written; then numbers, the
-/// least first; then samples, the last first, four a sample: its lower end, the negated lower end,
-/// its upper end and the negated upper end. So the variables of a sample and of its negation are
-/// neighbours.
+/// least first; then what earlier steps left, by its word in a class; then samples, the last first,
+/// four a sample: its lower end, the negated lower end, its upper end and the negated upper end. So
+/// the variables of a sample and of its negation are neighbours.
 using Place = std::uint32_t;
 constexpr Place kUnwritten = 1;
 constexpr Place kFirstNumber = 2;
-constexpr Place kFirstSample = 1u << 16;
+constexpr Place kFirstLeft = 1u << 16;
+constexpr Place kFirstSample = 1u << 20;
 constexpr Place kNoPlace = 0xffffffffu;
 constexpr Place kLow = 0, kNegatedLow = 1, kHigh = 2, kNegatedHigh = 3;
 constexpr Place kPlacesPerSample = 4;
@@ -83,16 +84,32 @@ public:
     Diagram negation(Diagram a) {
         if (a <= kAlways) return 1 - a;
         const Place place = nodes_[a].place;
-        if (place >= kFirstNumber && place < kFirstSample) return negated_levels(a);
+        if (place >= kFirstNumber && place < kFirstLeft) return negated_levels(a);
         return remembered(Operation::negation, a, 0, [&] {
             const Node of = nodes_[a];
             const Diagram with = negation(of.without), without = negation(of.with);
-            return choose(place == kUnwritten ? place : place ^ 1u, without, with);
+            return choose(place < kFirstSample ? place : place ^ 1u, without, with);
         });
     }
 
-    /// Sets the number of numbers, which contain the negation of each.
-    void set_numbers(std::uint32_t count) { numbers_ = count; }
+    /// The robustness is at least 0: the function where the threshold is that.
+    Diagram at_zero(Diagram a) {
+        if (a <= kAlways) return a;
+        const Place place = nodes_[a].place;
+        if (place >= kFirstNumber && place < kFirstLeft)
+            return at_zero(place - kFirstNumber < negative_ ? nodes_[a].without : nodes_[a].with);
+        return remembered(Operation::zero, a, 0, [&] {
+            const Node of = nodes_[a];
+            const Diagram without = at_zero(of.without), with = at_zero(of.with);
+            return choose(of.place, without, with);
+        });
+    }
+
+    /// Sets the number of numbers, which contain the negation of each, and of those below 0.
+    void set_numbers(std::uint32_t count, std::uint32_t negative) {
+        numbers_ = count;
+        negative_ = negative;
+    }
 
     /// `with` where the variable is true, else `without`.
     Diagram choose(Place place, Diagram without, Diagram with) {
@@ -106,7 +123,7 @@ public:
     std::uint32_t size() const { return static_cast<std::uint32_t>(nodes_.size()); }
 
 private:
-    enum class Operation : std::uint32_t { none, both, either, differ, negation };
+    enum class Operation : std::uint32_t { none, both, either, differ, negation, zero };
     struct Result {
         Operation operation = Operation::none;
         Diagram a = 0, b = 0, result = 0;
@@ -205,7 +222,7 @@ private:
     }
 
     std::uint32_t most_;
-    std::uint32_t numbers_ = 0;
+    std::uint32_t numbers_ = 0, negative_ = 0;
     std::uint64_t operations_ = 0;  ///< whose result was not remembered
     void (*exhausted_)();
     std::vector<Node> nodes_;
@@ -219,7 +236,9 @@ class Numbers {
 public:
     /// `numbers`: in order, finite, with the negation of each.
     Numbers(Diagrams& diagrams, std::vector<float> numbers) : numbers_(std::move(numbers)) {
-        diagrams.set_numbers(static_cast<std::uint32_t>(numbers_.size()));
+        std::uint32_t negative = 0;
+        while (negative < numbers_.size() && numbers_[negative] < 0) ++negative;
+        diagrams.set_numbers(static_cast<std::uint32_t>(numbers_.size()), negative);
         Diagram so_far = kNever;
         for (std::uint32_t n = 0; n < numbers_.size(); ++n) {
             so_far = diagrams.either(so_far, diagrams.variable(kFirstNumber + n));
@@ -243,5 +262,23 @@ private:
     std::vector<float> numbers_;
     std::vector<Diagram> at_least_;
 };
+
+/// The truths that an atom may have at a step: any of three truths, one of the two that are known,
+/// or one.
+enum class Truths : std::uint32_t { any, known, yes, no };
+
+/// When a truth is surely true, and when it is possibly true.
+struct Ends {
+    Diagram low, high;
+};
+
+/// `sample`: the first place of the sample.
+inline Ends ends_of(Diagrams& diagrams, Truths truths, Place sample) {
+    if (truths == Truths::yes) return {kAlways, kAlways};
+    if (truths == Truths::no) return {kNever, kNever};
+    const Diagram high = diagrams.variable(sample + kHigh);
+    if (truths == Truths::known) return {high, high};
+    return {diagrams.both(high, diagrams.variable(sample + kLow)), high};
+}
 
 }  // namespace etlprove

@@ -145,11 +145,31 @@ bool is_two_windows() {
     return std::make_unique<PairProof<Operator, Value, Length>>()->run();
 }
 template <template <class> class Operator, class Value, uint32_t Length>
-constexpr WindowOfClass window_of_class() {
+void add(std::vector<WindowOfClass>& windows) {
     if constexpr (Length <= kLongestPair)
-        return {Length, is_two_windows<Operator, Value, Length>};
+        windows.push_back({Length, is_two_windows<Operator, Value, Length>});
     else
-        return {Length, nullptr};
+        windows.push_back({Length, nullptr});
+}
+
+/// Adds the window of a member, if it is one over pairs.
+template <class Member>
+void add_window(std::vector<WindowOfClass>&, const Member&) {}
+template <template <class> class Operator, class Value, uint32_t Length>
+void add_window(std::vector<WindowOfClass>& windows,
+                const etlmon::Window<Operator<Value>, Length>&) {
+    if constexpr (!etlmon::detail::Same<Value, etlmon::Truth>::value)
+        add<Operator, Value, Length>(windows);
+}
+template <class Value, uint32_t n, uint32_t Length>
+void add_window(std::vector<WindowOfClass>& windows, const etlmon::AtLeast<Value, n, Length>&) {
+    if constexpr (!etlmon::detail::Same<Value, etlmon::Truth>::value)
+        add<Nth<n>::template Of, Value, Length>(windows);
+}
+template <class Value, uint32_t n, uint32_t Length>
+void add_window(std::vector<WindowOfClass>& windows, const etlmon::AllBut<Value, n, Length>&) {
+    if constexpr (!etlmon::detail::Same<Value, etlmon::Truth>::value)
+        add<Nth<n>::template Of, Value, Length>(windows);
 }
 
 }  // namespace etlprove

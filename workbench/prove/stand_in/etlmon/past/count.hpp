@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Stands in for a part of the runtime's count.hpp when `etlc prove` compiles a class: the merge of
-// two sorted lists, which compares values, is replaced by mins and maxes with the same result. The
-// windows that it is used in are the runtime's.
+// two sorted lists, which compares values, is replaced by mins and maxes with the same result, and
+// counters of truths by such lists. Windows of other values are the runtime's.
 #pragma once
 
+#define AtLeast AtLeastOfRuntime
+#define AllBut AllButOfRuntime
 #include_next "etlmon/past/count.hpp"
+#undef AtLeast
+#undef AllBut
 
+#include "etlmon/temporal/boolean_window.hpp"
 #include "etlmon/temporal/sourced.hpp"
 
 namespace etlprove {
@@ -30,16 +35,35 @@ struct Nth {
     };
 };
 
-template <class Value, uint32_t n, uint32_t Length>
+template <class Few, uint32_t n, uint32_t Length>
 class AtLeast {
-    using Few = typename Nth<n>::template Of<Value>;
-
 public:
     constexpr void reset() noexcept { window_.reset(); }
-    Value push(Value value) noexcept { return window_.push(Few::at(value)).values[n - 1]; }
+    template <class Value>
+    Value push(Value value) noexcept {
+        return window_.push(Few::at(value)).values[n - 1];
+    }
 
 private:
     etlmon::Window<Few, Length> window_;
+};
+
+/// The nth greatest of the last truths.
+template <uint32_t n, uint32_t Length>
+class TrueAtLeast {
+public:
+    constexpr void reset() noexcept { last_.reset(etlmon::kNo); }
+    etlmon::Truth push(etlmon::Truth value) noexcept {
+        last_.push(value);
+        etlmon::Truth nth[n + 1];
+        for (uint32_t k = 0; k <= n; ++k) nth[k] = k == 0 ? etlmon::kYes : etlmon::kNo;
+        for (uint32_t i = 0; i < Length; ++i)
+            for (uint32_t k = n; k > 0; --k) nth[k] = max_of(nth[k], min_of(nth[k - 1], last_[i]));
+        return nth[n];
+    }
+
+private:
+    Last<etlmon::Truth, Length> last_;
 };
 
 }  // namespace etlprove
@@ -47,10 +71,21 @@ private:
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
+template <class Value, uint32_t n, uint32_t Length>
+class AtLeast : public etlprove::AtLeast<typename etlprove::Nth<n>::template Of<Value>, n, Length> {
+};
 template <uint32_t n, uint32_t Length>
-class AtLeast<Value, n, Length> : public etlprove::AtLeast<Value, n, Length> {};
-template <uint32_t n, uint32_t Length>
-class AtLeast<Sourced, n, Length> : public etlprove::AtLeast<Sourced, n, Length> {};
+class AtLeast<Truth, n, Length> : public etlprove::TrueAtLeast<n, Length> {};
+
+template <class Value, uint32_t n, uint32_t Length>
+class AllBut {
+public:
+    constexpr void reset() noexcept { failed_.reset(); }
+    Value push(Value value) noexcept { return negate(failed_.push(negate(value))); }
+
+private:
+    AtLeast<Value, n, Length> failed_;
+};
 
 }  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Stands in for the runtime's value.hpp when `etlc prove` compiles a class: a robustness is a
 // function of the samples, as a diagram. Takes: what the runtime's file takes. Gives: the same
-// names and sizes. Keeps true: min, max and negation are those of diagrams; a comparison of two
+// names. Keeps true: min, max and negation are those of diagrams; a comparison of two
 // values, which the class would branch on, ends the proof.
 #pragma once
 
+#include <math.h>
 #include <stdint.h>
 
 #include "etlmon/bits.hpp"
 #include "etlprove/space.hpp"
-#include "etlprove/uses.hpp"
 
 namespace etlprove {
 
@@ -18,17 +18,6 @@ inline Numbers& numbers() {
     return kept;
 }
 [[noreturn]] void ask_for(float number);
-
-/// A diagram in the state of a class is marked, so that counters are told from diagrams.
-constexpr uint32_t kMark = 0xa0000000u;
-constexpr uint32_t kMarkBits = 0xf0000000u;
-constexpr bool is_marked(uint32_t bits) {
-    return (bits & kMarkBits) == kMark;
-}
-
-inline Diagram diagram_of(uint32_t bits) {
-    return is_marked(bits) ? bits & ~kMarkBits : diagrams().variable(kUnwritten);
-}
 
 }  // namespace etlprove
 
@@ -42,14 +31,21 @@ struct Key {
     Key() noexcept = default;
     /// Numbers of earlier steps are keys too; those in measure() have no diagram.
     constexpr Key(int32_t) noexcept : bits(0) {}
-    static constexpr Key marked(uint32_t bits) noexcept {
+    static constexpr Key with_bits(uint32_t bits) noexcept {
         Key key(0);
         key.bits = bits;
         return key;
     }
-    static Key of(etlprove::Diagram diagram) noexcept { return marked(etlprove::kMark | diagram); }
+    static Key of(etlprove::Diagram diagram) noexcept {
+        return with_bits(etlprove::marked(diagram));
+    }
     etlprove::Diagram diagram() const noexcept { return etlprove::diagram_of(bits); }
-    explicit operator uint32_t() const noexcept { etlprove::stop(etlprove::kBranches); }
+    /// Whether it is at least 0.
+    etlprove::Diagram at_zero() const noexcept { return etlprove::diagrams().at_zero(diagram()); }
+    explicit operator uint32_t() const noexcept {
+        if (!etlprove::is_measuring()) etlprove::stop(etlprove::kBranches);
+        return bits;
+    }
 };
 
 ETLMON_INLINE uint32_t bits_of(const float& x) noexcept {
@@ -59,17 +55,21 @@ ETLMON_INLINE float float_of_bits(uint32_t bits) noexcept {
     return detail::from_bits(bits);
 }
 ETLMON_INLINE Key key_of(const float& x) noexcept {
+    if (etlprove::is_measuring()) return Key(0);
     const etlprove::Diagram found = etlprove::numbers().at_least(x);
     if (found == etlprove::Numbers::kNoNumber) etlprove::ask_for(x);
     return Key::of(found);
 }
-/// For telemetry, which is not proved.
-ETLMON_INLINE float float_of(Key) noexcept {
+constexpr Key kTop = Key::with_bits(etlprove::marked(etlprove::kAlways));
+constexpr Key kBottom = Key::with_bits(etlprove::marked(etlprove::kNever));
+
+/// Of the two keys that are constants.
+ETLMON_INLINE float float_of(Key key) noexcept {
+    if (key.bits == kTop.bits) return HUGE_VALF;
+    if (key.bits == kBottom.bits) return -HUGE_VALF;
+    if (!etlprove::is_measuring()) etlprove::stop(etlprove::kBranches);
     return 0;
 }
-
-constexpr Key kTop = Key::marked(etlprove::kMark | etlprove::kAlways);
-constexpr Key kBottom = Key::marked(etlprove::kMark | etlprove::kNever);
 
 inline Key min_of(Key a, Key b) noexcept {
     return Key::of(etlprove::diagrams().both(a.diagram(), b.diagram()));
@@ -78,20 +78,22 @@ inline Key max_of(Key a, Key b) noexcept {
     return Key::of(etlprove::diagrams().either(a.diagram(), b.diagram()));
 }
 inline Key operator-(Key a) noexcept {
-    etlprove::uses().negates(etlprove::diagrams(), a.diagram());
+    etlprove::uses().negates(a.diagram());
     return Key::of(etlprove::diagrams().negation(a.diagram()));
 }
-/// Windows ask whether both ends of a value are equal. Where the diagrams differ they take the way
-/// for values that may differ.
-constexpr bool operator==(Key a, Key b) noexcept {
-    return a.bits == b.bits;
+/// A comparison of values that differ ends the proof.
+inline bool differ() noexcept {
+    if (!etlprove::is_measuring()) etlprove::stop(etlprove::kBranches);
+    return true;
 }
 constexpr bool operator!=(Key a, Key b) noexcept {
-    return a.bits != b.bits;
+    return a.bits == b.bits ? false : differ();
 }
-/// Any other comparison of values that differ ends the proof.
+constexpr bool operator==(Key a, Key b) noexcept {
+    return !(a != b);
+}
 constexpr bool is_less(Key a, Key b) noexcept {
-    return a == b ? false : (etlprove::stop(etlprove::kBranches), false);
+    return a != b && a.bits < b.bits;
 }
 constexpr bool operator<(Key a, Key b) noexcept {
     return is_less(a, b);
@@ -140,7 +142,7 @@ inline Value negate(Value a) noexcept {
 struct Register {
     struct End {
         uint32_t bits;
-        constexpr operator Key() const noexcept { return Key::marked(bits); }
+        constexpr operator Key() const noexcept { return Key::with_bits(bits); }
     };
     Key low;
     End high;

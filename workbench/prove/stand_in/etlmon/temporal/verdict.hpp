@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Stands in for the runtime's verdict.hpp when `etlc prove` compiles a class. Takes: values at the
-// end of a step. Gives: a verdict that holds them, in place of the floats and the status that the
-// runtime makes of them. Keeps true: a monitor restarts after the "final" verdicts that the proof
-// chooses, any of them, in place of those that are.
+// end of a step. Gives: a verdict that holds them, and its status by the conditions of the
+// runtime's file. Keeps true: what a class asks of a verdict is a condition on the samples, on
+// which it may branch.
 #pragma once
 
 #include <stdint.h>
@@ -11,16 +11,40 @@
 
 namespace etlprove {
 
-/// The repeating monitors whose verdict counts as final at this step, a bit each, and the number of
-/// them that have asked.
-struct Finals {
-    uint64_t chosen = 0;
-    uint32_t asked = 0;
+/// Whether the class has a recorder, which copies each status and which no verdict depends on; and
+/// how often it was copied in a step.
+struct Recorded {
+    bool is = false;
+    uint32_t statuses = 0;
 };
-inline Finals& finals() {
-    static Finals kept;
+inline Recorded& recorded() {
+    static Recorded kept;
     return kept;
 }
+
+class Word;
+
+/// The bits of a status.
+struct Status {
+    Bit satisfied = false;
+    Bit violated = false;
+    Bit final = false;
+    uint32_t decided = 0;
+
+    constexpr Status() noexcept = default;
+    constexpr Status(Bit is, Bit is_not, Bit for_good) noexcept
+        : satisfied(is), violated(is_not), final(for_good), decided(1) {}
+    constexpr Status(uint32_t bits) noexcept
+        : satisfied((bits & 1) != 0),
+          violated((bits & 2) != 0),
+          final((bits & 8) != 0),
+          decided(bits >> 2 & 1) {}
+    operator uint32_t() const noexcept {
+        if (recorded().is && ++recorded().statuses > 0) return 0;
+        return (satisfied ? 1u : 0u) | (violated ? 2u : 0u) | decided << 2 | (final ? 8u : 0u);
+    }
+    operator Word() const noexcept { return Word(static_cast<uint32_t>(*this)); }
+};
 
 }  // namespace etlprove
 
@@ -29,10 +53,25 @@ inline namespace ETLMON_BUILD {
 
 template <class Self>
 struct Answers {
+    using Bit = etlprove::Bit;
     static constexpr uint8_t kSatisfied = 1;
     static constexpr uint8_t kViolated = 2;
     static constexpr uint8_t kDecided = 4;
     static constexpr uint8_t kFinal = 8;
+
+    Bit alarm() const noexcept { return violated() && final(); }
+    Bit fulfilled() const noexcept { return satisfied() && final(); }
+    Bit open() const noexcept { return decided() && !final(); }
+    Bit satisfied() const noexcept { return status().satisfied; }
+    Bit violated() const noexcept { return status().violated; }
+    Bit unknown() const noexcept { return decided() && !satisfied() && !violated(); }
+    bool decided() const noexcept { return status().decided != 0; }
+    Bit final() const noexcept { return status().final; }
+
+private:
+    const etlprove::Status& status() const noexcept {
+        return static_cast<const Self*>(this)->status;
+    }
 };
 
 template <class Value, uint32_t count>
@@ -47,41 +86,36 @@ struct Named {
     constexpr const Entry* end() const noexcept { return entries + count; }
 };
 
-/// The bits of a status, which only the recorder copies, are all 0; its place holds rho.high.
-struct Status {
-    uint32_t high;
-    constexpr operator uint32_t() const noexcept { return 0; }
-};
-
-/// A number of a verdict. As a float, for telemetry, it is not proved.
+/// A number of a verdict, which a class stores and does not read.
 struct Shown {
     Key key;
     constexpr Shown(Key of) noexcept : key(of) {}
-    operator float() const noexcept { return 0; }
+    constexpr Shown(float) noexcept : key(Key::with_bits(0)) {}
+    operator float() const noexcept { etlprove::stop(etlprove::kBranches); }
 };
 
 struct Verdict : Answers<Verdict> {
-    Shown robustness = Key::marked(0);
-    Shown lower = Key::marked(0);
-    Shown upper = Key::marked(0);
-    Status status = {0};
-
-    bool final() const noexcept {
-        etlprove::Finals& finals = etlprove::finals();
-        return (finals.chosen >> finals.asked++ & 1u) != 0;
-    }
-    /// Only counters, which are not proved, ask this after a final verdict.
-    bool alarm() const noexcept { return false; }
-    bool satisfied() const noexcept { etlprove::stop(etlprove::kBranches); }
-    bool violated() const noexcept { etlprove::stop(etlprove::kBranches); }
+    Shown robustness = Key::with_bits(0);
+    Shown lower = Key::with_bits(0);
+    Shown upper = Key::with_bits(0);
+    Shown high = Key::with_bits(0);  ///< rho.high, of which the runtime keeps the sign
+    etlprove::Status status;
 };
-static_assert(sizeof(Verdict) == 16, "as large as the runtime's");
 
+/// The conditions of the runtime's file.
 inline Verdict prefix_verdict(Value rho, Key lower, Key upper) noexcept {
-    return {{}, rho.low, lower, upper, {rho.high.bits}};
+    const auto at_least_0 = [](Key key) { return etlprove::Bit::of(key.at_zero()); };
+    return {{},
+            rho.low,
+            lower,
+            upper,
+            rho.high,
+            {at_least_0(rho.low), !at_least_0(rho.high), at_least_0(lower) || !at_least_0(upper)}};
 }
 inline Verdict sliding_verdict(Value rho) noexcept {
-    return {{}, rho.low, rho.low, rho.high, {rho.high.bits}};
+    Verdict verdict = prefix_verdict(rho, rho.low, rho.high);
+    verdict.status.final = true;
+    return verdict;
 }
 
 }  // namespace ETLMON_BUILD

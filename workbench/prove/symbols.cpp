@@ -1,11 +1,140 @@
-#include "prove/symbols/witness.hpp"
+#include "prove/symbols.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
+#include <utility>
+
+#include "reference/clauses.hpp"
+#include "reference/explanation.hpp"
 
 namespace etlc::prove {
+
+namespace {
+
+Atom atom_of(const check::Model& model, bool is_predicate, Index index) {
+    reference::Unseen range{-reference::kInfinity, reference::kInfinity};
+    std::optional<bool> missing;
+    if (is_predicate) {
+        range = {model.predicates[index].robustness.low, model.predicates[index].robustness.high};
+        missing = model.predicates[index].missing;
+    } else {
+        missing = model.inputs[index].missing;
+    }
+    // "counts as false where it is missing": then it is known.
+    const double said = missing.value_or(false) ? reference::kInfinity : -reference::kInfinity;
+    const bool is_truth = !is_predicate || model.predicates[index].equality();
+    return {is_predicate,
+            index,
+            true,
+            is_truth,
+            missing ? reference::Unseen{said, said} : range,
+            range,
+            is_predicate ? model.predicates[index].threshold.value : 0};
+}
+
+bool is_of(const reference::Node& node, const Atom& atom) {
+    return node.is_atom() && node.index == atom.index &&
+           atom.is_predicate == (node.kind == reference::Node::Kind::predicate);
+}
+
+/// The atoms by kind, predicates first, and index.
+using Which = std::set<std::pair<int, Index>>;
+
+}  // namespace
+
+std::vector<Atom> atoms_of(const plan::Plan& plan) {
+    Which read;
+    for (const Index p : plan.predicates) read.emplace(0, p);
+    for (const plan::Stream& stream : plan.streams)
+        if (stream.op == plan::StreamOp::flag) read.emplace(1, stream.index);
+    Which other;
+    for (const reference::Node& node : reference::normal_form(*plan.model).nodes)
+        if (node.is_atom())
+            other.emplace(node.kind == reference::Node::Kind::predicate ? 0 : 1, node.index);
+    std::vector<Atom> atoms;
+    for (const auto& [kind, index] : read) atoms.push_back(atom_of(*plan.model, kind == 0, index));
+    for (const auto& [kind, index] : other) {
+        if (read.contains({kind, index})) continue;
+        atoms.push_back(atom_of(*plan.model, kind == 0, index));
+        atoms.back().is_read = false;
+    }
+    return atoms;
+}
+
+std::vector<Truths> truths_of(const plan::Plan& plan, const std::vector<Atom>& atoms) {
+    std::vector<Truths> result;
+    if (plan.values != check::Values::boolean) return result;
+    const reference::NormalForm form = reference::normal_form(*plan.model);
+    const reference::Literals ranges =
+        reference::literals(*plan.model, form, {}, check::Values::boolean);
+    for (const Atom& atom : atoms) {
+        const bool is_declared = atom.is_predicate
+                                     ? plan.model->predicates[atom.index].missing.has_value()
+                                     : plan.model->inputs[atom.index].missing.has_value();
+        result.push_back(is_declared ? Truths::known : Truths::any);
+        for (std::size_t n = 0; n < form.nodes.size(); ++n) {
+            if (!is_of(form.nodes[n], atom)) continue;
+            reference::Unseen range = ranges.ranges[n];
+            if (form.nodes[n].negated) range = reference::negate(range);
+            if (range.lowest >= 0) result.back() = Truths::yes;
+            if (range.highest < 0) result.back() = Truths::no;
+        }
+    }
+    return result;
+}
+
+Definition::Definition(const plan::Plan& plan, const std::vector<Atom>& atoms,
+                       const std::vector<Truths>& truths, std::uint32_t steps, bool missing)
+    : plan_(plan), form_(reference::normal_form(*plan.model)), prefixes_(steps) {
+    const reference::Literals ranges =
+        reference::literals(*plan.model, form_, {},
+                            truths.empty() ? check::Values::robustness : check::Values::boolean);
+    literals_.values.resize(form_.nodes.size());
+    literals_.ranges.resize(form_.nodes.size());
+    for (std::size_t n = 0; n < form_.nodes.size(); ++n) {
+        const reference::Node& node = form_.nodes[n];
+        if (!node.is_atom()) continue;
+        const auto atom = std::find_if(atoms.begin(), atoms.end(),
+                                       [&](const Atom& one) { return is_of(node, one); });
+        literals_.ranges[n] = {ranges.ranges[n].lowest, ranges.ranges[n].highest};
+        const auto at = static_cast<std::size_t>(atom - atoms.begin());
+        for (std::uint32_t step = 0; step < steps; ++step) {
+            const Place sample = etlprove::place_of({step, steps}, at, atoms.size(), 0);
+            literals_.values[n].push_back(truths.empty() ? number(sample, node.negated, missing)
+                                                         : truth(truths[at], sample, node.negated));
+        }
+    }
+}
+
+Definition::Literal Definition::number(Place sample, bool negated, bool missing) {
+    const Place high = missing ? etlprove::kHigh : etlprove::kLow;
+    const Place negated_high = missing ? etlprove::kNegatedHigh : etlprove::kNegatedLow;
+    const Symbol low = Symbol::variable(sample + (negated ? negated_high : etlprove::kLow));
+    const Symbol up = Symbol::variable(sample + (negated ? etlprove::kNegatedLow : high));
+    return {low, low, up, up};
+}
+
+Definition::Literal Definition::truth(Truths truths, Place sample, bool negated) {
+    const etlprove::Ends ends = Symbol::ends_of(truths, sample);
+    const Symbol low = Symbol::of(ends.low), high = Symbol::of(ends.high);
+    if (negated) return {-high, -high, -low, -low};
+    return {low, low, high, high};
+}
+
+Numbers Definition::verdict(std::uint32_t monitor, std::uint32_t end, std::uint32_t position) {
+    auto& prefix = prefixes_[end];
+    if (!prefix) prefix = std::make_unique<reference::PrefixOf<Symbol>>(form_, literals_, end);
+    const plan::Monitor& of = plan_.monitors[monitor];
+    const Literal value = prefix->at(form_.roots[of.index], position);
+    const Diagram low = value.rho.diagram(), high = value.rho_high.diagram();
+    // "A sliding verdict has lower = rho, upper = rho_high"
+    if (of.sliding) return {true, low, high, low, high};
+    return {true, low, high, value.lower.diagram(), value.upper.diagram()};
+}
+
 namespace {
 
 using etlprove::Diagrams;
@@ -134,7 +263,7 @@ bool holds(const Diagrams& diagrams, Diagram of, const std::map<Place, bool>& va
 /// Returns a threshold: the first number that reaches it, or one that is above all.
 float threshold_of(const etlprove::Numbers& numbers, const std::map<Place, bool>& variables) {
     for (const auto& [place, reached] : variables)
-        if (reached && place >= etlprove::kFirstNumber && place < kFirstSample)
+        if (reached && place >= etlprove::kFirstNumber && place < etlprove::kFirstLeft)
             return numbers[place];
     return numbers.all().back() + 1;
 }
@@ -185,6 +314,53 @@ std::set<std::vector<std::uint16_t>> ends_in_ranges(Space& space, const std::vec
         result.insert(possible);
     }
     return result;
+}
+
+namespace {
+
+/// Returns a robustness of an atom that is true, or false, in its range and as far from the
+/// threshold as there is room, so that it is not rounded to it.
+float robustness_of(const Atom& atom, bool truth) {
+    if (atom.is_truth) return truth ? INFINITY : -INFINITY;
+    const float far = std::max(1.0F, std::abs(atom.threshold));
+    return std::clamp(truth ? far : -far, static_cast<float>(atom.range.lowest),
+                      static_cast<float>(atom.range.highest));
+}
+
+}  // namespace
+
+Witness truths_where(const Diagrams& diagrams, Diagram condition, const std::vector<Atom>& atoms,
+                     const std::vector<Truths>& truths, std::uint32_t steps,
+                     std::uint32_t most_steps) {
+    std::map<Place, bool> chosen;
+    while (condition > kAlways) {  // a known sample, where there is a choice
+        const Diagrams::Node node = diagrams[condition];
+        const bool is_low = node.place >= kFirstSample &&
+                            (node.place - kFirstSample) % kPlacesPerSample == etlprove::kLow;
+        const bool with = is_low ? node.with != kNever : node.without == kNever;
+        chosen[node.place] = with;
+        condition = with ? node.with : node.without;
+    }
+    const auto is = [&](Place place, bool otherwise) {
+        const auto found = chosen.find(place);
+        return found == chosen.end() ? otherwise : found->second;
+    };
+    Witness witness;
+    for (std::uint32_t step = 0; step < steps; ++step) {
+        witness.values.emplace_back();
+        for (std::size_t a = 0; a < atoms.size(); ++a) {
+            const Place at = etlprove::place_of({step, most_steps}, a, atoms.size(), 0);
+            const bool high = truths[a] == Truths::yes ||
+                              (truths[a] != Truths::no && is(at + etlprove::kHigh, false));
+            const bool low =
+                truths[a] == Truths::any ? high && is(at + etlprove::kLow, true) : high;
+            std::optional<float> value;
+            if (low) value = robustness_of(atoms[a], true);
+            if (!high) value = robustness_of(atoms[a], false);
+            witness.values.back().push_back(value);
+        }
+    }
+    return witness;
 }
 
 std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
