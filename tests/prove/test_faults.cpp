@@ -205,8 +205,7 @@ std::vector<TextFault> faults_of_lines(const std::string& text, bool boolean) {
 /// How a fault shows.
 enum class Outcome { found, withheld, proved };
 
-Outcome outcome_of(const pipeline::Compiled& spec, const std::string& text,
-                   const TextFault& fault) {
+Outcome outcome_of(const Compiled& spec, const std::string& text, const TextFault& fault) {
     const auto proof = prove::prove(spec.plan, {planted(text, fault), "proved", kFaultSteps});
     if (!proof) return Outcome::withheld;
     if (proof->fault) return Outcome::found;
@@ -321,7 +320,7 @@ bool differ(const Verdicts& a, const Verdicts& b, bool with_bounds) {
 
 /// Whether two plans give other verdicts on some random trace.
 bool differ(const plan::Plan& one, const plan::Plan& other, int traces, std::uint32_t steps) {
-    plan::Evaluator first(one), second(other);
+    execute::Evaluator first(one), second(other);
     for (int n = 0; n < traces; ++n) {
         const auto trace = random_trace(*one.model, n, {.steps = steps, .missing = 0.1});
         first.reset();
@@ -335,17 +334,17 @@ bool differ(const plan::Plan& one, const plan::Plan& other, int traces, std::uin
 /// Whether the input of a proof shows the fault: the inputs of predicates are numbers.
 bool is_shown(const plan::Plan& right, const plan::Plan& wrong, const prove::Proof& proof) {
     const prove::Fault& fault = *proof.fault;
-    plan::Evaluator first(right), second(wrong);
+    execute::Evaluator first(right), second(wrong);
     bool shown = false;
     for (std::uint32_t step = 0; step <= fault.step; ++step) {
-        std::vector<plan::Sample> inputs(right.model->inputs.size());
+        std::vector<execute::Sample> inputs(right.model->inputs.size());
         for (std::size_t a = 0; a < proof.atoms.size(); ++a) {
             const prove::Atom& atom = proof.atoms[a];
             const auto& known = fault.witness.values[step][a];
             if (!known) continue;
             const auto* predicate =
                 atom.is_predicate ? &right.model->predicates[atom.index] : nullptr;
-            plan::Sample& sample = inputs[predicate ? predicate->inputs[0] : atom.index];
+            execute::Sample& sample = inputs[predicate ? predicate->inputs[0] : atom.index];
             sample.present = true;
             sample.values = {predicate ? prove::measured(*predicate, *known)
                                        : (*known > 0 ? 1.0F : 0.0F)};

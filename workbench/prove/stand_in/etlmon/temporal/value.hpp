@@ -63,7 +63,7 @@ ETLMON_INLINE Key key_of(const float& x) noexcept {
 constexpr Key kTop = Key::with_bits(etlprove::marked(etlprove::kAlways));
 constexpr Key kBottom = Key::with_bits(etlprove::marked(etlprove::kNever));
 
-/// Of the two keys that are constants.
+/// The two constants.
 ETLMON_INLINE float float_of(Key key) noexcept {
     if (key.bits == kTop.bits) return HUGE_VALF;
     if (key.bits == kBottom.bits) return -HUGE_VALF;
