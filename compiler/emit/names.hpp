@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "check/model/model.hpp"
-#include "emit/text/scope.hpp"
+#include "emit/text/identifiers.hpp"
 #include "plan/plan.hpp"
 
 namespace etlc::emit {

@@ -4,8 +4,8 @@
 
 #include "EtlLexer.h"
 #include "EtlParser.h"
-#include "parse/expected.hpp"
 #include "parse/stream/tokens.hpp"
+#include "parse/syntax_error.hpp"
 
 namespace etlc::parse {
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "diag/diag.hpp"
 #include "parse/stream/stuck.hpp"
@@ -32,5 +33,25 @@ private:
 
 /// `next` is the first token after the slice, which the user sees where the slice ended too early.
 SyntaxError explain(const Stuck& stuck, const Token& next, const source::File& file);
+
+/// Describes what was expected at a place: "a formula", "':' or ','", "a type (f32, f16[D], ...)".
+/// Names of grammar rules never reach a user.
+std::string expected_words(const Stuck& stuck);
+
+/// Whether the place accepts only a closed list of words (types, units, distances), so that another
+/// word is an unknown keyword.
+bool expects_keyword(const Stuck& stuck);
+
+/// Returns the accepted words, to find the one nearest to a misspelling.
+std::vector<std::string> expected_spellings(const Stuck& stuck);
+
+/// Returns the names of distances.
+const std::vector<std::string>& distance_words();
+
+/// Returns how distances are written: "l2", "mahalanobis(M)".
+std::vector<std::string> distance_forms();
+
+/// Describes an operator or a reserved word: "the operator 'eventually'".
+std::string description_of_reserved(std::size_t type);
 
 }  // namespace etlc::parse

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "reference/atoms.hpp"
+#include "reference/clauses.hpp"
 #include "reference/explanation.hpp"
 #include "reference/normal_form.hpp"
 #include "reference/prefix.hpp"
@@ -277,5 +278,7 @@ Run evaluate(const check::Model& model, const Trace& trace, Values values,
              const Thresholds& thresholds, const Requests& requests) {
     return Evaluation(model, normal_form(model), trace, values, thresholds, requests).run();
 }
+
+template class PrefixOf<double>;
 
 }  // namespace etlc::reference

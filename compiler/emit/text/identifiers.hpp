@@ -2,8 +2,10 @@
 // them, at most kLongestName characters, the same on every run.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "ir/graph.hpp"
 
@@ -29,5 +31,18 @@ std::string with_more(const std::string& operand, bool max);
 // around the code remove macros with names that it uses, and restore them after it.
 
 std::string shielded(const std::string& code);
+
+/// Gives out each name once. The same calls in the same order return the same names.
+class Scope {
+public:
+    explicit Scope(std::set<std::string> taken = {}) : taken_(std::move(taken)) {}
+    /// Returns `wanted` + `mark`; if that is taken, wanted_2 + mark, wanted_3 + mark, ...
+    std::string claim(const std::string& wanted, const std::string& mark = "");
+    /// Returns wanted_1; if that is taken, wanted_2, wanted_3, ...
+    std::string number(const std::string& wanted);
+
+private:
+    std::set<std::string> taken_;
+};
 
 }  // namespace etlc::emit
