@@ -152,6 +152,7 @@ const Formulas kCountsAhead = {
 struct ChainKind {
     const char* link;
     const char* end;
+    const char* whole = "{1}";
 };
 const std::map<std::string, ChainKind> kChains = {
     {"F", {"F ({0} && {1})", "F {0}"}},
@@ -167,6 +168,15 @@ const std::map<std::string, ChainKind> kChains = {
     {"until", {"({1} U {0})", "{0}"}},
     {"release", {"({1} R {0})", "{0}"}},
     {"mixed", {"F ({0} && (!{0} || G {0} || {1}))", "F[2, 2] {0}"}},
+    {"answer", {"F ({0} && {1})", "F {0}", "G ({0} -> {1})"}},
+    {"later answer", {"F[1, inf] ({0} && {1})", "F {0}", "G ({0} -> {1})"}},
+    {"refusal", {"G ({0} || {1})", "G {0}", "F (!{0} && {1})"}},
+    {"answer by U", {"F ({0} && {1})", "F {0}", "G ({0} -> {0} U ({0} && {1}))"}},
+    {"U in turn", {"({0} U ({1} U {0}))", "{0}"}},
+    {"R in turn", {"({0} R ({1} R {0}))", "{0}"}},
+    {"timed", {"F[0, 14] ({0} && {1})", "F[0, 3] {0}"}},
+    {"timed U", {"({0} U[2, 13] ({0} && {1}))", "({0} U[1, 9] {0})"}},
+    {"timed G", {"G[1, 11] ({0} || {1})", "G[0, 12] {0}"}},
     {"delayed", {"F[2, inf] ({0} && F[3, 3] {1})", "G[1, inf] {0}"}},
 };
 
@@ -286,7 +296,7 @@ std::string chain(const std::string& kind, const std::vector<std::string>& opera
     std::string result = fmt::format(fmt::runtime(parts.end), operands.back());
     for (std::size_t n = operands.size() - 1; n-- > 0;)
         result = fmt::format(fmt::runtime(parts.link), operands[n], result);
-    return result;
+    return fmt::format(fmt::runtime(parts.whole), operands.front(), result);
 }
 
 std::string exhaustive_chains_spec(const std::string& name, const std::string& kind,

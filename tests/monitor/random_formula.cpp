@@ -102,8 +102,53 @@ RandomFormula::Piece RandomFormula::response_in_two(int depth, Allowed allowed) 
     return unary(always ? "G" : "F", future_interval(), body);
 }
 
+/// In the dual of a chain: F (p && F (q && ...)).
+RandomFormula::Piece RandomFormula::early(int phases, bool max) {
+    const std::string word = max ? "G" : "F";
+    const std::string interval = random_.word({"", "", "", "[1, inf]", "[2, inf]"});
+    const Piece present = grow(random_.between(0, 1), {false, true});
+    if (phases <= 0) return unary(word, interval, present);
+    const Piece rest = early(phases - 1, max);
+    return unary(word, interval,
+                 max ? binary(present, "||", "", rest, disjunction)
+                     : binary(present, "&&", "", rest, conjunction));
+}
+
+/// In the dual of a chain: an U that, until its right side holds, holds at the next step too.
+RandomFormula::Piece RandomFormula::late(int phases, bool max) {
+    const Piece present = grow(random_.between(0, 1), {false, true});
+    const std::string wait = max ? "R" : "U";
+    if (phases <= 0) return binary(grow(0, {false, true}), wait, "", present, until);
+    switch (random_.between(0, 4)) {
+        case 0: return binary(present, wait, "", late(phases - 1, max), until);
+        case 1: return unary(max ? "G" : "F", "", late(phases - 1, max));
+        default: return binary(chain(phases - 1, max), wait, "", present, until);
+    }
+}
+
+/// One thing after the other, each in the time of the one before: F[a,b] (p && F[c,d] q).
+RandomFormula::Piece RandomFormula::sequence(int phases, bool max) {
+    const auto present = [&] { return grow(random_.between(0, 1), {false, true}); };
+    const auto join = [&](const Piece& a, const Piece& b, bool is_or) {
+        return is_or ? binary(a, "||", "", b, disjunction) : binary(a, "&&", "", b, conjunction);
+    };
+    Piece body = present();
+    if (phases > 0) {
+        const Piece rest = sequence(phases - 1, max);
+        const int kind = random_.between(0, 9);
+        body = kind == 0   ? rest
+               : kind == 1 ? join(body, join(present(), rest, max), !max)
+               : kind == 2 ? join(rest, sequence(0, max), max)
+                           : join(body, rest, !max);
+    }
+    const std::string interval = random_.chance(0.8) ? bounded_interval() : future_interval();
+    if (random_.chance(0.25)) return binary(present(), max ? "U" : "R", interval, body, until);
+    return unary(max ? "F" : "G", interval, body);
+}
+
 /// Formulas that wait for one thing after the other: in each && at most one side looks ahead, the
-/// left side of U does not, and the right one of R only in W. The dual exchanges the operators.
+/// left side of U does not, and the right one of R only in W or where its ways never compete. The
+/// dual exchanges the operators.
 RandomFormula::Piece RandomFormula::chain(int phases, bool max) {
     const Piece present = grow(random_.between(0, 2), {false, true});
     if (phases == 0) return present;
@@ -117,7 +162,12 @@ RandomFormula::Piece RandomFormula::chain(int phases, bool max) {
     const std::string hold = max ? "G" : "F";
     const Piece rest = chain(phases - 1, max);
     const std::string next = max ? "X" : "!X !";  // of a chain it is a step of the same chain
-    switch (random_.between(0, 12)) {
+    switch (random_.between(0, 15)) {
+        case 13: return unary(hold, interval(), either(present, early(phases - 1, max), max));
+        case 14:
+            return binary(rest, max ? "R" : "U", interval(),
+                          either(present, early(phases - 1, max), max), until);
+        case 15: return binary(present, max ? "R" : "U", interval(), late(phases - 1, max), until);
         case 0:
         case 1:
         case 2:

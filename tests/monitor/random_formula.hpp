@@ -18,7 +18,8 @@ struct FormulaShape {
     bool unbounded = true;          ///< unbounded future operators
     bool past_over_future = false;  ///< otherwise past operators see only the past and the present
     double future = 0.5;            ///< fraction of future operators where both kinds are allowed
-    int phases = 0;                 ///< if not 0: chains of at most so many phases
+    int phases = 0;                 ///< if not 0: chains of at most so many phases,
+    bool timed = false;             ///< or sequences of them, with bounded intervals
 };
 
 class RandomFormula {
@@ -33,6 +34,8 @@ public:
           let_name_(std::move(let_name)) {}
 
     std::string make() {
+        if (shape_.timed)
+            return sequence(random_.between(1, shape_.phases), random_.chance(0.5)).text;
         if (shape_.phases > 0)
             return chain(random_.between(1, shape_.phases), random_.chance(0.5)).text;
         return grow(shape_.depth, {true, true}).text;
@@ -67,6 +70,9 @@ private:
     Piece past(int depth, Allowed allowed);
     Piece response_in_two(int depth, Allowed allowed);
     Piece chain(int phases, bool max);
+    Piece early(int phases, bool max);
+    Piece late(int phases, bool max);
+    Piece sequence(int phases, bool max);
     Piece count(const Piece& operand);
     Piece named(Piece piece);
     Piece unary(const std::string& word, const std::string& interval, const Piece& operand);

@@ -305,7 +305,8 @@ FormulaShape formula_shape(const SpecShape& shape, bool sliding) {
     result.unbounded = !sliding;
     result.past_over_future = sliding;
     result.future = shape.future;
-    if (shape.formulas == Formulas::chains) result.phases = shape.depth;
+    result.timed = shape.formulas == Formulas::sequences;
+    if (shape.formulas == Formulas::chains || result.timed) result.phases = shape.depth;
     return result;
 }
 

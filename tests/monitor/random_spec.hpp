@@ -19,6 +19,7 @@ struct SpecShape {
         sliding,            ///< sliding monitors: future bounded, past over future too
         chains,             ///< chains of at most `depth` phases
         mixed,              ///< prefix and sliding monitors in turn
+        sequences,          ///< of at most `depth` phases, with bounded intervals
     };
     Formulas formulas = Formulas::unnested;
     int monitors = 8;

@@ -103,8 +103,21 @@ private:
         }
         const bool opens_later = node.interval.low > 0;
         if (opens_later) to(later(node));
-        if (node.op == is_.guard()) return now(node.operands[0]);
-        if (!opens_later) now(node.operands.back());
+        if (node.op == is_.guard()) now(node.operands[0]);
+        if (is_chosen(node)) {
+            const Choice choice = *choice_of(graph_, is_, node);
+            std::for_each(choice.beyond.begin(), choice.beyond.end(), now);
+        } else if (node.op != is_.guard() && !opens_later) {
+            now(node.operands.back());
+        }
+    }
+
+    /// Returns whether the operator is open-ended, of the other kind, and waits for what looks
+    /// ahead.
+    bool is_chosen(const Node& node) const {
+        if (!is_open_ended(node) || is_.is_owed(node.op)) return false;
+        return graph_[node.operands.back()].has_future &&
+               (node.op == is_.hold() || !beside(graph_, node, is_.either()));
     }
 
     /// Adds the places that ways reach, those beyond a place before it.
@@ -205,6 +218,8 @@ private:
             open = stored(visit, std::move(open));
             arrive(last, open);
             visit.stays = *visit.kept;
+        } else if (is_chosen(node)) {
+            pass_choice(node, visit, named(std::move(open)));
         } else if (node.op == is_.hold()) {
             visit.stays = through(std::move(open), parts(last, is_.both()));
         } else if (node.op == is_.wait()) {
@@ -222,6 +237,21 @@ private:
                 graph_.combine(is_.either(), *beside(graph_, node, is_.either()), node.span);
             visit.stays = through(open, {other});
         }
+    }
+
+    /// Passes the open ways of a choice on (chain.hpp).
+    void pass_choice(const Node& node, Visit& visit, const Term& open) {
+        const Choice choice = *choice_of(graph_, is_, node);
+        if (choice.is_late) {
+            visit.stays = through(open, parts(choice.present[0], is_.both()));
+            for (NodeId beyond : choice.beyond)
+                arrive(beyond, through(open, parts(node.operands[0], is_.both())));
+            return;
+        }
+        const NodeId begins = graph_.combine(is_.either(), choice.present, node.span);
+        visit.stays = through(open, parts(begins, is_.both()));
+        for (NodeId beyond : choice.beyond) arrive(beyond, open);
+        if (node.op == is_.guard()) arrive(node.operands[0], *visit.stays);
     }
 
     /// Stores a value at once: what follows in this step reads the new one.
@@ -376,11 +406,18 @@ private:
         const bool is_delay = interval.low == interval.high;
         if (interval.low > kLongestDelay || (interval.bounded() && !is_delay)) return false;
         if (node.op == is_.seek() || (node.op == is_.hold() && is_delay)) return is_chain(last);
-        if (node.op == is_.hold()) return !looks_ahead(last);
+        if (node.op == is_.hold()) return !looks_ahead(last) || is_choice(node);
         if (is_delay) return false;
         if (node.op == is_.wait()) return !looks_ahead(node.operands[0]) && is_chain(last);
-        const bool fits = !looks_ahead(last) || beside(graph_, node, is_.either()).has_value();
-        return fits && is_chain(node.operands[0]);
+        if (looks_ahead(last) && !beside(graph_, node, is_.either())) return is_choice(node);
+        return is_chain(node.operands[0]);
+    }
+
+    bool is_choice(const Node& node) {
+        const auto choice = choice_of(graph_, is_, node);
+        return choice && is_chain(node.operands[0]) &&
+               std::all_of(choice->beyond.begin(), choice->beyond.end(),
+                           [&](NodeId beyond) { return is_chain(beyond); });
     }
 
     bool one_looks_ahead(const Node& node) const {
@@ -408,6 +445,38 @@ std::optional<std::vector<NodeId>> beside(const ir::Graph& graph, const Node& gu
     const bool without_future =
         std::none_of(rest.begin(), rest.end(), [&](NodeId part) { return graph[part].has_future; });
     return holds_left && without_future ? std::optional(rest) : std::nullopt;
+}
+
+namespace {
+
+/// Returns what ends the wait for this formula if it lasts (chain.hpp).
+std::optional<NodeId> end_of(const ir::Graph& graph, ChainOperators is, NodeId id) {
+    const Node& node = graph[id];
+    if (!node.has_future) return id;
+    const bool lasts = node.op == is.hold() || node.op == is.guard();
+    if (!lasts || node.interval != Interval{}) return std::nullopt;
+    return end_of(graph, is, node.operands.back());
+}
+
+}  // namespace
+
+std::optional<Choice> choice_of(const ir::Graph& graph, ChainOperators is, const Node& node) {
+    const NodeId last = node.operands.back();
+    Choice early;
+    for (NodeId part : graph[last].op == is.either() ? graph[last].operands : std::vector{last})
+        (graph[part].has_future ? early.beyond : early.present).push_back(part);
+    const auto lasts_before = [&](NodeId id) {
+        return graph[id].op == is.hold() && !graph[id].interval.bounded();
+    };
+    if (std::all_of(early.beyond.begin(), early.beyond.end(), lasts_before)) return early;
+    const auto end = end_of(graph, is, last);
+    if (!end) return std::nullopt;
+    Choice late{.is_late = true, .present = {*end}};
+    if (node.op == is.guard()) {
+        if (graph[node.operands[0]].has_future) return std::nullopt;
+        late.beyond = {last};
+    }
+    return late;
 }
 
 bool is_chain(const ir::Graph& graph, ChainOperators operators, NodeId id) {

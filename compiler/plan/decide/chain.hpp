@@ -9,6 +9,19 @@
 // parts of the obligation. Obligations are visited after those that they come from, so one step
 // passes through any number of phases, and the work is in proportion to the formula. The
 // transitions of an automaton list every pair of phases instead.
+//
+// In the dual every obligation has to be met. One that may be met in two ways, F g or p U g with a
+// g that looks ahead, is part of it only where one of the ways is the best whatever follows:
+// - early: F (c && F h) and p U (c && F h). An F that holds at some step holds at all steps before,
+//   so once c holds there is nothing to wait for. F h may even be demanded from the beginning, as
+//   it follows from the whole. So G (s -> F (a && F (b && F c))) has a register for each F.
+// - late: p U g, where g without its end, q, holds at the next step too: g is f U q. g may be
+// demanded as late as p fails, and the wait is over where q holds. It
+//   may also last while g is demanded, because it follows from g. So p U ((r U (f U s)) U q), where
+//   left and right sides look ahead in turn, has a register for each U.
+// These are identities of truth values, and so of min and max, for any values beyond the prefix of
+// which that of g is at most that of p U g. The unseen values are such, so bounds are the same,
+// too.
 #pragma once
 
 #include <optional>
@@ -47,6 +60,14 @@ struct ChainOperators {
 /// operands of f. Returns nothing where its right side has another form.
 std::optional<std::vector<ir::NodeId>> beside(const ir::Graph& graph, const ir::Node& guard,
                                               ir::Op either);
+
+/// The parts of a `hold` or `guard` whose right side g looks ahead.
+struct Choice {
+    bool is_late = false;
+    std::vector<ir::NodeId> present;  ///< early: operands of c; late: what ends the wait, q
+    std::vector<ir::NodeId> beyond;   ///< what looks ahead, and is demanded
+};
+std::optional<Choice> choice_of(const ir::Graph& graph, ChainOperators is, const ir::Node& node);
 
 bool is_chain(const ir::Graph& graph, ChainOperators operators, ir::NodeId id);
 

@@ -223,16 +223,15 @@ std::uint32_t ReadingBuilder::pending_part(Pending& pending, std::map<NodeId, st
     return known[id] = static_cast<std::uint32_t>(pending.parts.size() - 1);
 }
 
-/// Returns the reading of a response or fold in two parts, whatever the lengths of its windows.
-std::optional<Reading> ReadingBuilder::in_two(NodeId id) {
+/// Returns a reading whose cost does not depend on the lengths of its windows.
+std::optional<Reading> ReadingBuilder::over_windows(NodeId id) {
     const auto straight = [&](const char* as, Straight code) {
         return Reading{
             .kind = Reading::Kind::straight, .node = id, .as = as, .straight = std::move(code)};
     };
     if (auto code = response(streams_, graph_, id, Answer::in_two))
         return straight("response, answered in two parts", std::move(*code));
-    if (auto code = fold_in_two(streams_, graph_, id))
-        return straight("fold, in two parts", std::move(*code));
+    if (auto code = sequence(streams_, graph_, id)) return straight("sequence", std::move(*code));
     return std::nullopt;
 }
 
@@ -329,10 +328,10 @@ std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id)
     if (auto small = machine(id, small_machine_limits(limits_))) {
         Reading reading = as_reading(id, *small);
         if (cost_of(reading, values_).operations > kFewOperations)
-            if (auto code = in_two(id)) reading = std::move(*code);
+            if (auto code = over_windows(id)) reading = std::move(*code);
         return add(std::move(reading));
     }
-    if (auto code = in_two(id)) {
+    if (auto code = over_windows(id)) {
         oversize_.resize(failures);
         return add(std::move(*code));
     }

@@ -35,7 +35,7 @@ private:
     /// work.
     std::optional<Machine> machine(NodeId id, const AutomatonLimits& limits);
     Reading as_reading(NodeId id, const Machine& machine) const;
-    std::optional<Reading> in_two(NodeId id);
+    std::optional<Reading> over_windows(NodeId id);
     std::optional<Reading> pending(const ir::Node& node, NodeId id);
     std::uint32_t pending_part(Pending& pending, std::map<NodeId, std::uint32_t>& known, NodeId id);
     std::optional<std::uint32_t> apart(NodeId id, double below);

@@ -1,6 +1,9 @@
 #include "plan/decide/straight.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <map>
+#include <utility>
 
 namespace etlc::plan {
 
@@ -299,34 +302,146 @@ std::optional<Straight> response(StreamBuilder& streams, ir::Graph& graph, NodeI
     return code;
 }
 
-std::optional<Straight> fold_in_two(StreamBuilder& streams, ir::Graph& graph, NodeId id) {
-    const Node node = graph[id];
-    const bool seeks = node.op == Op::eventually;
-    if ((!seeks && node.op != Op::always) || !node.interval.bounded()) return std::nullopt;
-    const std::optional<InTwo> found = in_two(graph, node.operands[0], seeks);
-    if (!found) return std::nullopt;
-    const auto [low, high] = found->within;
-    const Slot begun =
-        streams.within(streams.of(graph.combine(both(seeks), found->begins, node.span)),
-                       node.interval, neutral(seeks));
-    const Slot lately = streams.recent(seeks, begun, high - low + 1);
-    const Slot completed = streams.combine(
-        !seeks, {streams.of(found->completes), streams.earlier(lately, low, neutral(seeks))});
-    const End end = seeks ? End::high : End::low;
-    const Term may_complete =
-        Term::extreme(!seeks, {streams.term(streams.unseen(found->completes), end),
-                               streams.term(streams.recent(seeks, begun, high))});
-    const Term may_begin = streams.term(streams.unseen(node.operands[0]), end);
+namespace {
 
-    Straight code;
-    const Term best = Term::reg(0);
-    code.registers = {value(seeks, id)};
-    code.assignments = {{.value = Term::extreme(seeks, {best, streams.term(completed)})}};
-    code.rho = code.lower = code.upper = best;
-    (seeks ? code.upper : code.lower) =
-        Term::before(node.interval.high, Term::extreme(seeks, {best, may_complete, may_begin}),
-                     Term::extreme(seeks, {best, may_complete}));
-    return code;
+class SequenceWriting {
+public:
+    SequenceWriting(StreamBuilder& streams, ir::Graph& graph, bool max)
+        : streams_(streams), graph_(graph), max_(max) {}
+
+    bool is_sequence(NodeId id) const {
+        const Node& node = graph_[id];
+        if (!node.has_future) return true;
+        if (node.op == both(max_) && !ahead(node)) return false;
+        if (node.op == both(max_) || node.op == either(max_))
+            return std::all_of(node.operands.begin(), node.operands.end(),
+                               [&](NodeId operand) { return is_sequence(operand); });
+        const bool waits =
+            ir::info(node.op).tense == ir::Tense::future && ir::takes_max(node.op) == max_;
+        const bool left_is_present =
+            node.operands.size() == 1 || !graph_[node.operands[0]].has_future;
+        return waits && left_is_present && is_sequence(node.operands.back());
+    }
+
+    Straight write(NodeId id) {
+        const Node root = graph_[id];  // a copy: the graph grows meanwhile
+        begin(root);
+        // Operands have smaller numbers, so everything that arrives at a formula is known.
+        while (!arrived_.empty()) {
+            const auto [formula, ways] = *arrived_.rbegin();
+            arrived_.erase(std::prev(arrived_.end()));
+            const Slot way = streams_.combine(max_, ways);
+            pass(formula, ways.size() > 1 ? streams_.call(way, "in_time", "") : way);
+        }
+        const Term best = Term::reg(0);
+        Straight code;
+        code.registers = {value(max_, id)};
+        code.assignments = {
+            {.value = Term::extreme(max_, {best, streams_.term(streams_.combine(max_, met_))})}};
+        code.rho = code.lower = code.upper = best;
+        may_go_on_.insert(may_go_on_.begin(), best);
+        const Term later = Term::extreme(max_, std::move(may_go_on_));
+        // Without a left side, what may begin bounds what has begun, if ranges are all there is.
+        const bool bounds = root.operands.size() == 1 && may_begin_.kind == Term::Kind::constant;
+        (max_ ? code.upper : code.lower) = Term::before(
+            root.interval.high, Term::extreme(max_, {bounds ? best : later, may_begin_}), later);
+        return code;
+    }
+
+private:
+    /// Returns the only operand that looks ahead.
+    std::optional<NodeId> ahead(const Node& node) const {
+        std::optional<NodeId> found;
+        for (NodeId operand : node.operands) {
+            if (!graph_[operand].has_future) continue;
+            if (found) return std::nullopt;
+            found = operand;
+        }
+        return found;
+    }
+
+    Term unseen(NodeId id) {
+        return streams_.term(streams_.unseen(id), max_ ? End::high : End::low);
+    }
+
+    /// Lets the first thing happen at the positions of the outer interval.
+    void begin(const Node& root) {
+        const Value none = neutral(max_);
+        Slot before = streams_.constant(neutral(!max_));
+        Term may_begin = unseen(root.operands.back());
+        if (root.operands.size() == 2) {
+            const Slot held = streams_.recent(!max_, streams_.of(root.operands[0]), kUnbounded);
+            may_begin = Term::extreme(!max_, {streams_.term(held), std::move(may_begin)});
+            before = streams_.earlier(held, 1, neutral(!max_));
+        }
+        may_begin_ = std::move(may_begin);
+        arrived_[root.operands.back()] = {streams_.within(before, root.interval, none)};
+    }
+
+    void pass(NodeId id, Slot way) {
+        const Node node = graph_[id];
+        std::vector<NodeId> present;
+        for (NodeId operand : node.operands)
+            if (!graph_[operand].has_future) present.push_back(operand);
+        if (!node.has_future) {
+            met_.push_back(streams_.combine(!max_, {way, streams_.of(id)}));
+        } else if (node.op == both(max_)) {
+            const Slot happens = streams_.of(graph_.combine(node.op, present, node.span));
+            arrived_[*ahead(node)].push_back(
+                streams_.call(streams_.combine(!max_, {way, happens}), "reached", ""));
+        } else if (node.op == either(max_)) {
+            for (NodeId operand : node.operands) arrived_[operand].push_back(way);
+        } else {
+            wait(node, way);
+        }
+    }
+
+    /// Passes on what has come up to F[a,b] or U[a,b] in the last steps.
+    void wait(const Node& node, Slot way) {
+        const auto [low, high] = node.interval;
+        const bool bounded = node.interval.bounded();
+        const NodeId last = node.operands.back();
+        std::vector<Slot>& next = arrived_[last];
+        if (low == 0) next.push_back(way);
+        if (high == 0) return;
+        const bool binary = node.operands.size() == 2;
+        const Slot left = binary ? streams_.of(node.operands[0]) : kNone;
+        // The best way that came up from `from` to `until` steps ago, with the left side since.
+        const auto come = [&](std::uint32_t from, std::uint32_t until) {
+            if (binary)
+                return streams_.since(max_, left, streams_.combine(!max_, {left, way}),
+                                      {from, until});
+            const std::uint32_t length = bounded ? until - from + 1 : kUnbounded;
+            return streams_.earlier(streams_.recent(max_, way, length), from, neutral(max_));
+        };
+        const std::uint32_t latest = bounded ? high - 1 : kUnbounded;
+        const Slot open = streams_.call(come(0, latest), "underway",
+                                        "what has come this far, and may still go on");
+        may_go_on_.push_back(Term::extreme(!max_, {streams_.term(open), unseen(last)}));
+        if (low < 2 || binary)
+            next.push_back(
+                streams_.earlier(low < 2 ? open : come(low - 1, latest), 1, neutral(max_)));
+        else
+            next.push_back(come(low, high));
+    }
+
+    StreamBuilder& streams_;
+    ir::Graph& graph_;
+    bool max_;
+    std::map<NodeId, std::vector<Slot>> arrived_;
+    std::vector<Slot> met_;
+    std::vector<Term> may_go_on_;
+    Term may_begin_;
+};
+
+}  // namespace
+
+std::optional<Straight> sequence(StreamBuilder& streams, ir::Graph& graph, NodeId id) {
+    const Node& node = graph[id];
+    if (ir::info(node.op).tense != ir::Tense::future) return std::nullopt;
+    SequenceWriting writing(streams, graph, ir::takes_max(node.op));
+    if (!writing.is_sequence(id)) return std::nullopt;
+    return writing.write(id);
 }
 
 }  // namespace etlc::plan

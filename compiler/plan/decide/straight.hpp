@@ -56,8 +56,12 @@ enum class Answer : std::uint8_t { at_once, in_two };
 std::optional<Straight> response(StreamBuilder& streams, ir::Graph& graph, NodeId id,
                                  Answer answer);
 
-/// Reads F[A,B] (p && F[c,d] q) or its dual, [A,B] bounded: the parts that began in [A,B] and are
-/// completed now are q && O[c,d] p. Returns nothing for other formulas.
-std::optional<Straight> fold_in_two(StreamBuilder& streams, ir::Graph& graph, NodeId id);
+/// Reads F[A,B] (p && F[c,d] (q && ...)), with U in place of any F, or the dual: one thing after
+/// the other, each within a time of the one before. One stream a phase has the best way that came
+/// this far at each of the steps from which the next phase may still be reached; only the first
+/// phase is tied to the positions of [A,B]. The ways of a phase that are open meet, at best, the
+/// highest unseen value of what follows it, and after B nothing begins any more. Returns nothing
+/// for other formulas: in every && one operand may look ahead, the left side of U may not.
+std::optional<Straight> sequence(StreamBuilder& streams, ir::Graph& graph, NodeId id);
 
 }  // namespace etlc::plan

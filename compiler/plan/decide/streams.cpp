@@ -135,13 +135,14 @@ Slot StreamBuilder::aligned_combination(const Node& node, NodeId id) {
     return combine(node.op == Op::disjunction, align(node.operands), id);
 }
 
-Slot StreamBuilder::running(bool max, Slot slot, NodeId node) {
+Slot StreamBuilder::running(bool max, Slot slot, NodeId node, std::uint32_t begins_with) {
     const std::uint32_t lag = streams_[slot].lag;
     return intern({.op = StreamOp::running,
                    .max = max,
                    .operands = {slot},
                    .lag = lag,
                    .operand_lag = lag,
+                   .begins_with = begins_with,
                    .node = node});
 }
 
@@ -195,6 +196,7 @@ Slot StreamBuilder::pending(bool of_always, Slot excuse, Slot answer) {
 
 Slot StreamBuilder::recent(bool max, Slot slot, std::uint32_t length) {
     if (length == 1) return slot;
+    if (length == kUnbounded) return running(max, slot, kNone, begins_with_);
     return window(StreamOp::window, max, {slot}, length, 0, 0, kNone, begins_with_);
 }
 

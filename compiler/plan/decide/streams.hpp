@@ -50,9 +50,10 @@ public:
     /// Returns the value of open windows that wait for `answer`, unless `excuse` holds
     /// (decide/straight.hpp): of G (excuse || F answer), or of its dual; both without lag.
     Slot pending(bool of_always, Slot excuse, Slot answer);
-    /// Returns the max or min over the last `length` positions of a stream without lag.
+    /// Returns the max or min over the last `length` positions of a stream without lag, or over all
+    /// for kUnbounded.
     Slot recent(bool max, Slot slot, std::uint32_t length);
-    /// Returns left S[a,b] right over streams without lag, or the dual; the interval is bounded.
+    /// Returns left S[a,b] right over streams without lag, or the dual.
     Slot since(bool max, Slot left, Slot right, ir::Interval interval);
     /// Returns the best handover from `before` to `behind` in the last `length` positions, or the
     /// dual (etlmon/temporal/handover.hpp); both without lag.
@@ -79,7 +80,7 @@ private:
     Slot window(StreamOp op, bool max, std::vector<Slot> operands, std::uint32_t length,
                 std::uint32_t operand_lag, std::uint32_t lag, NodeId node,
                 std::uint32_t begins_with = kNone);
-    Slot running(bool max, Slot slot, NodeId node);
+    Slot running(bool max, Slot slot, NodeId node, std::uint32_t begins_with = kNone);
     std::vector<Slot> align(const std::vector<NodeId>& nodes);
     Slot unseen_temporal(const ir::Node& node, NodeId id);
 
