@@ -67,7 +67,10 @@ std::string text_of(const Context& context, std::uint32_t r, const Term& term, E
         case Term::Kind::constant:
             if (end == End::both) return context.literal(term.value);
             return context.bound(end == End::low ? term.value.low : term.value.high);
-        case Term::Kind::stream: return context.value(term.index) + part;
+        case Term::Kind::stream:
+            if (end != End::both && context.lazy(term.index))
+                return fmt::format("static_cast<Value>({}){}", context.value(term.index), part);
+            return context.value(term.index) + part;
         case Term::Kind::reg: return register_text(names, term.index, seen_from) + part;
         case Term::Kind::local: return names.locals[term.index] + part;
         case Term::Kind::before:
