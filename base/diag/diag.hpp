@@ -145,4 +145,14 @@ std::string alternatives(const std::vector<std::string>& words);
 /// Returns a count with its noun: "1 episode", "2 episodes".
 std::string counted(std::uint64_t n, const std::string& noun);
 
+// Prints diagnostics as text with carets (`spec.etl:12:24: error: ... [E0204]`, the source line, a
+// caret under the span, then notes) or as JSON. The same findings give the same bytes.
+
+enum class Colour { none, ansi };
+
+std::string render_text(const source::File& spec, const Sink& sink, Colour colour = Colour::none);
+/// {"diagnostics": [{"code", "severity", "message", "file", "line", "column", "end_line",
+/// "end_column", "notes"}]}
+std::string render_json(const source::File& spec, const Sink& sink);
+
 }  // namespace etlc::diag

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "compile.hpp"
-#include "diag/render.hpp"
+#include "diag/diag.hpp"
 #include "plan/targets/kernels.hpp"
 #include "timing.hpp"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "compile.hpp"
-#include "diag/render.hpp"
+#include "diag/diag.hpp"
 #include "etlmon/distance/widen.hpp"
 #include "execute/evaluator.hpp"
 #include "timing.hpp"

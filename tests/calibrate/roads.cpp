@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "diag/render.hpp"
+#include "diag/diag.hpp"
 #include "driver/commands/commands.hpp"
 #include "parse/parse.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "calibrate/bounds.hpp"
 #include "check/guarantees/conformal.hpp"
-#include "check/points/project.hpp"
+#include "check/points/points.hpp"
 #include "execute/evaluator.hpp"
 #include "generated_program.hpp"
 #include "ir/lower.hpp"

@@ -2,7 +2,7 @@
 // text is out of proportion. Bytes that begin with "spec" are the spec; others choose a deep random
 // one. libFuzzer's -timeout and replay.cpp limit the time of an input.
 #include "deep_spec.hpp"
-#include "diag/render.hpp"
+#include "diag/diag.hpp"
 #include "driver/commands/commands.hpp"
 #include "emit/emit.hpp"
 #include "fuzz_target.hpp"

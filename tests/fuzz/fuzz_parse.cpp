@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "../unit/tree_text.hpp"
-#include "diag/render.hpp"
+#include "diag/diag.hpp"
 #include "fuzz_target.hpp"
 #include "parse/parse.hpp"
 

@@ -16,7 +16,7 @@
 #include "check/check.hpp"
 #include "check/formulas/horizons.hpp"
 #include "check/guarantees/conformal.hpp"
-#include "diag/render.hpp"
+#include "diag/diag.hpp"
 #include "parse/parse.hpp"
 
 namespace etlc::tests {

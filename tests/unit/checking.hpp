@@ -6,7 +6,7 @@
 #include <string>
 
 #include "check/check.hpp"
-#include "diag/render.hpp"
+#include "diag/diag.hpp"
 #include "parse/parse.hpp"
 
 namespace etlc {

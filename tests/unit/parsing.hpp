@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "diag/render.hpp"
+#include "diag/diag.hpp"
 #include "parse/parse.hpp"
 #include "tree_text.hpp"
 

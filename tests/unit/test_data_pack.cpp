@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "data/spill/pack.hpp"
+#include "data/spill/spill.hpp"
 
 namespace etlc::data {
 namespace {

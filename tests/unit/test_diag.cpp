@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "diag/render.hpp"
+#include "diag/diag.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-#include "check/points/project.hpp"
+#include "check/points/points.hpp"
 
 namespace etlc::episodes {
 

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "check/points/project.hpp"
+#include "check/points/points.hpp"
 #include "episodes/exact_distance.hpp"
 #include "episodes/recent_frames.hpp"
 

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "check/points/project.hpp"
+#include "check/points/points.hpp"
 #include "fit/algebra/clusters.hpp"
 #include "fit/algebra/moments.hpp"
 #include "fit/collect.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "diag/render.hpp"
+#include "diag/diag.hpp"
 #include "etlmon/distance/widen.hpp"
 #include "plan/recorder_plan.hpp"
 

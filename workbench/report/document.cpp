@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "check/guarantees/guarantees.hpp"
-#include "report/blob.hpp"
+#include "report/report.hpp"
 
 namespace etlc::report {
 

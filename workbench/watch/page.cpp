@@ -11,8 +11,8 @@
 #include "check/guarantees/guarantees.hpp"
 #include "label/frames.hpp"
 #include "label/serve.hpp"
-#include "report/blob.hpp"
 #include "report/pictures.hpp"
+#include "report/report.hpp"
 #include "report/tracks.hpp"
 
 namespace etlc::watch {

@@ -10,7 +10,7 @@
 #include <unordered_map>
 
 #include "data/files/hash.hpp"
-#include "data/spill/pack.hpp"
+#include "data/spill/spill.hpp"
 
 namespace etlc::data {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "check/points/project.hpp"
+#include "check/points/points.hpp"
 
 namespace etlc::check {
 

@@ -9,7 +9,7 @@
 #include "check/formulas/horizons.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/guarantees.hpp"
-#include "check/points/project.hpp"
+#include "check/points/points.hpp"
 
 namespace etlc::check {
 

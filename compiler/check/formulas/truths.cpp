@@ -14,7 +14,7 @@
 #include "check/formulas/horizons.hpp"
 #include "check/guarantees/guarantees.hpp"
 #include "check/numbers/decimal.hpp"
-#include "check/points/project.hpp"
+#include "check/points/points.hpp"
 #include "check/predicates/predicates.hpp"
 #include "check/time/time.hpp"
 

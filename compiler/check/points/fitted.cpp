@@ -1,4 +1,4 @@
-#include "check/points/fitted.hpp"
+#include "check/points/points.hpp"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,6 @@
 #include "check/guarantees/provenance.hpp"
 #include "check/matrices/matrices.hpp"
 #include "check/numbers/decimal.hpp"
-#include "check/points/points.hpp"
-#include "check/points/project.hpp"
 
 namespace etlc::check {
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "check/numbers/range.hpp"
-#include "check/points/project.hpp"
 #include "check/time/time.hpp"
 
 namespace etlc::check {

@@ -5,9 +5,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "ast/ast.hpp"
 #include "check/context/context.hpp"
+#include "check/model/model.hpp"
 
 namespace etlc::check {
 
@@ -28,5 +31,58 @@ bool is_same_space(const Model& model, Index a, Index b);
 /// projected rows; kNone, with an error, if no projection of the point leads there or the
 /// dimensions differ.
 Index target_in_space(Context& context, Index target, Index point, Span span);
+
+// fitted(METHOD, of = POINT, where = FORMULA, ...): elements that `etlc fit` computes from
+// episodes, and their values in its file. An element depends only on projections declared before
+// it.
+
+/// Returns the index in model.fitted; kNone after an error. It fills the declaration `name`, the
+/// model's target or projection `index`. Metrics, mahalanobis(fitted(...)), have neither, and equal
+/// ones are shared.
+Index check_fitted(Context& context, const ast::Fitted& written, Fitted::Slot slot,
+                   std::string name = {}, Index index = kNone);
+
+/// Returns the entry with the shape that the spec asks for, and marks the element as filled; null
+/// if there is none, which is an error unless --check allows it. The first call reads the file.
+const fitted::Entry* fitted_entry(Context& context, Index fitted);
+
+// Projects points and rows of targets, and inserts fitted values. Rows go through all maps in
+// double and are rounded once, to float32.
+
+/// Returns A (z - m) in double; z has projection.dimension elements.
+std::vector<double> projected(const Projection& projection, const std::vector<double>& z);
+
+/// Returns the point computed from the elements of its inputs.
+std::vector<double> projected(const Model& model, Index point, std::vector<double> z);
+
+/// Sets the rows of a target that has a `source`; it has none until those and the maps are fitted.
+/// Returns the first row that is not finite in float32.
+std::optional<std::uint32_t> project_target(Model& model, Index target);
+
+/// Fitted values: R x D numbers, row-major, and the offset of a projection, D numbers or none.
+struct Filling {
+    std::vector<float> matrix;
+    std::vector<float> offset;
+};
+
+/// Inserts fitted values and projects the targets that depend on them again. Returns the first
+/// target with a row that is not finite.
+std::optional<Index> fill(Model& model, Index fitted, const Filling& filling);
+
+/// Whether the distance depends on something fitted.
+bool rests_on_fitted(const Model& model, const Distance& distance);
+
+/// Returns the steps between a point and the earliest sample that it needs.
+std::uint32_t longest_delay(const Model& model, Index point);
+
+/// Returns the point of the model that a delayed one is the earlier value of, also inside of
+/// projections; kNone for points put together.
+Index as_of_now(const Model& model, Index point);
+
+/// Whether a point consists of samples alone, now and of earlier steps, without projections.
+bool is_recorded(const Model& model, Index point);
+
+/// Returns the content hash of a projection's matrix, with the offset as one more row.
+std::string projection_hash(const Projection& projection);
 
 }  // namespace etlc::check

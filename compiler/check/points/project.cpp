@@ -1,4 +1,4 @@
-#include "check/points/project.hpp"
+#include "check/points/points.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,6 @@
 
 #include "check/context/context.hpp"
 #include "check/matrices/matrices.hpp"
-#include "check/points/fitted.hpp"
 #include "data/arrays/array.hpp"
 
 namespace etlc::check {

@@ -12,7 +12,6 @@
 #include "check/matrices/matrices.hpp"
 #include "check/numbers/decimal.hpp"
 #include "check/numbers/range.hpp"
-#include "check/points/fitted.hpp"
 #include "check/points/points.hpp"
 #include "data/arrays/array.hpp"
 

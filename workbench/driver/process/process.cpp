@@ -17,7 +17,7 @@
 
 #include "data/files/file.hpp"
 #include "data/spill/spill.hpp"
-#include "diag/render.hpp"
+#include "diag/diag.hpp"
 #include "recordings/open.hpp"
 
 namespace etlc::driver {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <set>
 
-#include "check/points/project.hpp"
+#include "check/points/points.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/text/text.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "check/points/project.hpp"
+#include "check/points/points.hpp"
 
 namespace etlc::episodes {
 

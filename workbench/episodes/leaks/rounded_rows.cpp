@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "check/points/project.hpp"
+#include "check/points/points.hpp"
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
 

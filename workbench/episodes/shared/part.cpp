@@ -10,7 +10,7 @@
 #include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/spill/pack.hpp"
+#include "data/spill/spill.hpp"
 #include "data/text/text.hpp"
 #include "recordings/open.hpp"
 

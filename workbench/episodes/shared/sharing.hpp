@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "data/spill/pack.hpp"
+#include "data/spill/spill.hpp"
 #include "episodes/parallel.hpp"
 #include "episodes/recording.hpp"
 #include "episodes/shared/part.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "fit/suggest/in_time.hpp"
 #include "fit/suggest/suggest.hpp"
 #include "source/text.hpp"
 

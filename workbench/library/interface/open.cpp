@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compile.hpp"
-#include "diag/render.hpp"
+#include "diag/diag.hpp"
 #include "library/interface/call.hpp"
 #include "library/settings.hpp"
 #include "library/version.hpp"
