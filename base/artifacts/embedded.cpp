@@ -35,6 +35,10 @@ void encoder_members(Archive& archive, auto& encoder, const std::string& array) 
     archive("model", encoder.model, Hash{});
     archive("settings", encoder.settings);
     archive("kind", encoder.kind);
+    if constexpr (Archive::kReads)
+        if (encoder.kind != kCommand && !encoder.kind.starts_with(kOnnxRuntime))
+            archive.refuse("kind", fmt::format("'{}', or '{}' and its version", kCommand,
+                                               kOnnxRuntime.substr(0, kOnnxRuntime.size() - 1)));
     std::uint64_t dimension = encoder.dimension;
     archive("dimension", dimension);
     std::string found = fingerprint(encoder);
@@ -42,7 +46,7 @@ void encoder_members(Archive& archive, auto& encoder, const std::string& array) 
     const std::uint64_t columns = encoder.references.size() / kReferenceFrames;
     const auto shape = archive(
         "references", artifacts::Array{array, {kReferenceFrames, columns}, "frames x dimension"},
-        encoder.references, artifacts::Presence::where_any);
+        encoder.references);
     if constexpr (Archive::kReads) {
         encoder.dimension = static_cast<std::uint32_t>(
             std::min<std::uint64_t>(dimension, std::numeric_limits<std::uint32_t>::max()));
@@ -53,7 +57,7 @@ void encoder_members(Archive& archive, auto& encoder, const std::string& array) 
                             in_quotes(archive.place("fingerprint")), in_quotes(found),
                             in_quotes(fingerprint(encoder))));
         const std::vector<std::uint64_t> expected = {kReferenceFrames, encoder.dimension};
-        if (!shape.empty() && shape != expected)
+        if (shape != expected)
             archive.refuse(fmt::format("{} has the shape {} x {}, expected {} x {}",
                                        in_quotes(archive.place("references")), shape[0], shape[1],
                                        expected[0], expected[1]));
@@ -147,7 +151,6 @@ std::map<std::string, std::string> fingerprints_otherwise(const Encoder& encoder
         if (kind != encoder.kind) found[fingerprint(other)] = name;
     };
     add(std::string(kCommand), "a command");
-    add("network", "OpenCV");
     for (unsigned minor = 13; minor < 100; ++minor)
         for (unsigned patch = 0; patch < 5; ++patch) {
             const std::string kind = fmt::format("{}1.{}.{}", kOnnxRuntime, minor, patch);
@@ -188,7 +191,7 @@ Origins read_origins(const std::string& path) {
 
 std::string write_marks(const Marks& marks, const Origins& origins) {
     const Said said{marks, origins};
-    return artifacts::file_text(kKind.newest_format, nullptr,
+    return artifacts::file_text(kKind.format, nullptr,
                                 [&](auto& members) { kSaidMembers(members, said); });
 }
 

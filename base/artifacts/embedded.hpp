@@ -33,7 +33,7 @@ struct Encoder {
     std::string settings;     ///< canonical text, with those of the .json beside the model
     std::string kind;         ///< kOnnxRuntime and its version, or kCommand
     std::uint32_t dimension = 0;
-    /// Its embeddings of the reference frames, a row each; empty in files of earlier versions.
+    /// Its embeddings of the reference frames, a row each.
     std::vector<float> references;
 };
 
@@ -41,7 +41,7 @@ struct Encoder {
 std::string fingerprint(const Encoder& encoder);
 
 /// Returns the fingerprints of the same model and settings under every other kind, with the name of
-/// the kind: a command, each release of ONNX Runtime, OpenCV in earlier versions of etlc.
+/// the kind: a command, each release of ONNX Runtime.
 std::map<std::string, std::string> fingerprints_otherwise(const Encoder& encoder);
 
 /// An image or a video.
@@ -60,7 +60,6 @@ struct Entry {
 };
 
 struct File {
-    std::uint32_t format = 1;
     std::string path;
     std::string spec;
     std::string etlc;                         ///< version that wrote the file

@@ -54,7 +54,7 @@ void allowance_members(Archive& archive, auto& allowances) {
 /// reads.
 template <class Archive>
 void group_members(Archive& archive, auto& groups) {
-    archive("groups", groups);
+    archive("groups", groups, Presence::where_any);
     if constexpr (Archive::kReads)
         for (const auto& [hash, name] : groups) {
             if (!data::hash_of_text(hash))
@@ -75,7 +75,7 @@ diag::Result<File> read_archive(const Kind& kind, const data::ArchivePlace& plac
     File file;
     file.path = path;
     const auto failure = read_description(kind, *archive, [&](Reader& root) {
-        file.format = root.read_file([&](auto& description) { members(description, file); });
+        root.read_file([&](auto& description) { members(description, file); });
     });
     if (failure) return *failure;
     return file;
@@ -86,7 +86,7 @@ template <class File, class Members>
 std::string archive_bytes(const Kind& kind, const File& file, const Members& members) {
     std::vector<data::ArchiveMember> arrays(1);
     std::string description =
-        file_text(file.format, &arrays, [&](auto& archive) { members(archive, file); });
+        file_text(kind.format, &arrays, [&](auto& archive) { members(archive, file); });
     arrays.front() = {kind.member, std::move(description)};
     return data::npz_bytes(arrays);
 }

@@ -42,9 +42,7 @@ void members(Archive& archive, auto& entry, const std::string& array) {
             archive.refuse(fmt::format(
                 "{} is neither the name of a projection or target nor the declaration of a metric",
                 in_quotes(archive.place(""))));
-    archive("of", entry.of);
-    archive("truth", entry.truth);
-    archive("reads", entry.reads);
+    archive("reads", entry.reads, Presence::always);
     const auto shape =
         archive("array", artifacts::Array{array, {entry.rows, entry.columns}, "rows x dimension"},
                 entry.matrix);

@@ -1,7 +1,7 @@
 // The file that `etlc fit` writes: fitted projections, targets and metrics, and what they were
 // computed from. It is an .npz archive with the member fitted.json and an array for each entry.
 // All numbers are finite, and writing a file that was read gives the same bytes. check/ decides
-// whether an entry fits the spec: it compares `declaration`, `of` and `truth`.
+// whether an entry fits the spec: it compares `declaration` and `reads`.
 #pragma once
 
 #include <cstdint>
@@ -23,10 +23,7 @@ struct Frame {
 struct Entry {
     std::string name;         ///< the projection's or target's; for a metric its declaration
     std::string declaration;  ///< canonical text of `fitted(...)`
-    std::string of;           ///< the fitted point: canonical text, and hashes of its projections
-    std::string truth;        ///< canonical text of `where`, and the source of its labels
-    /// Everything the entry was computed from, by kind and name (check::Reads); empty in files of
-    /// earlier versions.
+    /// Everything the entry was computed from, by kind and name (check::Reads).
     std::map<std::string, std::string> reads;
     std::uint32_t rows = 0;
     std::uint32_t columns = 0;
@@ -38,7 +35,6 @@ struct Entry {
 };
 
 struct File {
-    std::uint32_t format = thresholds::kFormat;
     std::string path;
     std::string spec;
     std::string etlc;  ///< version that wrote the file

@@ -61,16 +61,13 @@ void Reader::check_keys(const std::vector<std::string>& known) const {
     }
 }
 
-std::uint32_t Reader::format() const {
-    const std::uint32_t newest = shared_.kind.newest_format;
-    const bool one = newest == 1;
-    const std::string expected = one ? "1" : fmt::format("a number from 1 to {}", newest);
+void Reader::check_format() const {
+    const std::string expected = std::to_string(shared_.kind.format);
     const std::string& found = get("format", Json::Kind::number, expected).text;
-    for (std::uint32_t known = 1; known <= newest; ++known)
-        if (found == std::to_string(known)) return known;
-    throw Fault{{shared_.kind.unknown_format,
-                 fmt::format("'format' is {}, expected {}, the format{} that this version reads",
-                             in_quotes(found), expected, one ? "" : "s")}};
+    if (found != expected)
+        throw Fault{{shared_.kind.unknown_format,
+                     fmt::format("'format' is {}, expected {}, the format that this version reads",
+                                 in_quotes(found), expected)}};
 }
 
 void Reader::operator()(const std::string& key, std::string& text) {
@@ -112,8 +109,9 @@ void Reader::operator()(const std::string& key, float& number) {
         refuse(key, "a finite float32");
 }
 
-void Reader::operator()(const std::string& key, std::map<std::string, std::string>& texts) {
-    const Json* all = find(key, Json::Kind::object, "an object of texts", Presence::where_any);
+void Reader::operator()(const std::string& key, std::map<std::string, std::string>& texts,
+                        Presence presence) {
+    const Json* all = find(key, Json::Kind::object, "an object of texts", presence);
     if (all == nullptr) return;
     Reader inner(shared_, *all, place(key));
     for (const std::string& name : all->keys) inner(name, texts[name]);

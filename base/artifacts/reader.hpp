@@ -17,8 +17,7 @@ namespace etlc::artifacts {
 /// When a file has a member.
 enum class Presence : std::uint8_t {
     always,
-    added_later,  ///< always, except in files of earlier versions
-    where_any,    ///< unless it is empty
+    where_any,  ///< unless it is empty
 };
 
 // Kinds of text.
@@ -42,7 +41,7 @@ struct Array {
 struct Kind {
     std::string member;   ///< member of the archive that describes it, "fitted.json"; or empty
     std::string command;  ///< the command that writes it: "etlc fit"
-    std::uint32_t newest_format;
+    std::uint32_t format;
     diag::Code malformed;
     diag::Code unknown_format;
     diag::Code invalid;
@@ -86,12 +85,11 @@ public:
         check_keys(known.names);
         members(*this);
     }
-    /// Reads the root object of a file. Returns its format, a number from 1 to the newest.
+    /// Reads the root object of a file.
     template <class Members>
-    std::uint32_t read_file(const Members& members) {
-        const std::uint32_t known = format();
+    void read_file(const Members& members) {
+        check_format();
         read(members, {{"format"}});
-        return known;
     }
 
     void operator()(const std::string& key, std::string& text);
@@ -101,7 +99,8 @@ public:
     void operator()(const std::string& key, std::string& number, const Decimal& decimal);
     void operator()(const std::string& key, std::uint64_t& count);
     void operator()(const std::string& key, float& number);
-    void operator()(const std::string& key, std::map<std::string, std::string>& texts);
+    void operator()(const std::string& key, std::map<std::string, std::string>& texts,
+                    Presence presence);
     void operator()(const std::string& key, std::map<std::string, std::string>& hashes, Hash,
                     Presence presence = Presence::always);
     void operator()(const std::string& key, std::vector<double>& scores);
@@ -147,7 +146,7 @@ public:
     }
 
 private:
-    std::uint32_t format() const;
+    void check_format() const;
     void check_keys(const std::vector<std::string>& known) const;
     /// Returns null if an optional member is missing.
     const Json* find(const std::string& key, Json::Kind kind, const std::string& expected,

@@ -23,9 +23,8 @@ const artifacts::Kind kKind{"",
                             Code::invalid_thresholds,
                             Code::unreadable_thresholds};
 
-/// Describes an entry. `what` is the key of its canonical text: "predicate" or "formula".
 template <class Archive>
-void members(Archive& archive, auto& entry, const std::string& what) {
+void members(Archive& archive, auto& entry, bool of_monitor) {
     archive("method", entry.method,
             artifacts::Words{{"f1", "conformal", "class_conditional", "adaptive"}});
     const bool ranked = entry.method != "f1";
@@ -44,24 +43,23 @@ void members(Archive& archive, auto& entry, const std::string& what) {
         if (entry.k > entry.n) archive.refuse("k", fmt::format("at most n, which is {}", entry.n));
     }
     archive("scores", entry.scores);
-    archive(what, entry.predicate);
-    archive("truth", entry.truth);
-    archive("targets", entry.targets, artifacts::Hash{});
-    archive("reads", entry.reads);
-    if (what == "predicate") return;
+    archive("reads", entry.reads, Presence::always);
+    if (!of_monitor) return;
     archive("against", entry.against, artifacts::Words{{"missed_alarm", "missed_success"}});
     archive("episodes", entry.episodes, Presence::always);
 }
 
 template <class Archive>
 void file_members(Archive& archive, auto& file) {
-    const auto of = [](const char* what) {
-        return [what](auto& one, const std::string&, auto& entry) { members(one, entry, what); };
+    const auto entries = [](bool of_monitors) {
+        return [of_monitors](auto& one, const std::string&, auto& entry) {
+            members(one, entry, of_monitors);
+        };
     };
     archive("spec", file.spec);
-    archive("predicates", file.predicates, of("predicate"));
-    archive("monitors", file.monitors, of("formula"), Presence::added_later);
-    archive("episodes", file.episodes, Presence::added_later);
+    archive("predicates", file.predicates, entries(false));
+    archive("monitors", file.monitors, entries(true));
+    archive("episodes", file.episodes, Presence::always);
     archive("recordings", file.recordings, Presence::where_any);
     artifacts::group_members(archive, file.groups);
     artifacts::allowance_members(archive, file.allowances);
@@ -72,7 +70,7 @@ diag::Result<File> read_from(data::ByteSource& source, const std::string& path) 
     File file;
     file.path = path;
     const auto failure = artifacts::read_text(kKind, source, [&](artifacts::Reader& root) {
-        file.format = root.read_file([&](auto& archive) { file_members(archive, file); });
+        root.read_file([&](auto& archive) { file_members(archive, file); });
     });
     if (failure) return *failure;
     return file;
@@ -133,12 +131,12 @@ diag::Result<File> parse(const std::string& json, const std::string& path) {
 }
 
 bool write(const File& file, const std::function<bool(std::string_view)>& take) {
-    return artifacts::write_file(take, file.format, nullptr,
+    return artifacts::write_file(take, kFormat, nullptr,
                                  [&](auto& archive) { file_members(archive, file); });
 }
 
 std::string write(const File& file) {
-    return artifacts::file_text(file.format, nullptr,
+    return artifacts::file_text(kFormat, nullptr,
                                 [&](auto& archive) { file_members(archive, file); });
 }
 

@@ -1,6 +1,6 @@
 // The thresholds file: what `etlc calibrate` found, and what it was computed from.
 // Every float32 reads back to the same bits, and writing a file that was read gives the same text.
-// check/ decides whether an entry fits the spec: it compares `predicate` and `targets`.
+// check/ decides whether an entry fits the spec: it compares `reads`.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,8 @@
 
 namespace etlc::thresholds {
 
-/// The newest format of files that list episodes. Format 1 identifies an episode by the numbers
-/// that were stored, format 2 by the samples that the monitor sees (episodes/recording.hpp).
-inline constexpr std::uint32_t kFormat = 2;
+/// The format of files that list episodes: of thresholds, and of what was fitted.
+inline constexpr std::uint32_t kFormat = 3;
 
 /// One use of `--allow-overlap REASON`.
 struct Allowance {
@@ -37,26 +36,20 @@ struct Entry {
     std::uint64_t n = 0;
     std::uint64_t k = 0;         ///< rank of the score taken, 1 to n; 0 for f1
     std::vector<double> scores;  ///< may be infinite, not NaN
-    std::string predicate;       ///< canonical text: check::Predicate::text, or a monitor's formula
-    std::string truth;  ///< source of the labels: canonical truth formula, "array", or both
-    std::map<std::string, std::string> targets;  ///< target name -> content hash, 16 hex digits
-    /// Everything the entry was computed from, by kind and name (check::Reads); empty in files of
-    /// earlier versions.
+    /// Everything the entry was computed from, by kind and name (check::Reads).
     std::map<std::string, std::string> reads;
     std::string against;                  ///< monitors: missed_alarm or missed_success
     std::vector<std::uint64_t> episodes;  ///< monitors: hashes of the calibration episodes
 };
 
 struct File {
-    std::uint32_t format = kFormat;
     std::string path;
     std::string spec;
     std::string etlc;  ///< version that wrote the file
     std::map<std::string, Entry> predicates;
     std::map<std::string, Entry> monitors;
     std::vector<std::uint64_t> episodes;  ///< content hashes of the episodes behind `predicates`
-    /// Content that tells the episodes of predicates and monitors apart, by content hash. Episodes
-    /// from earlier versions may be missing; their hashes alone identify them.
+    /// Content that tells the episodes of predicates and monitors apart, by content hash.
     data::KnownEpisodes recordings;
     GroupNames groups;
     std::vector<Allowance> allowances;  ///< one per call of `etlc calibrate` that needed it

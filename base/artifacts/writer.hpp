@@ -71,7 +71,7 @@ public:
     }
     void operator()(const std::string& key, float number);
     void operator()(const std::string& key, const std::map<std::string, std::string>& texts,
-                    Presence presence = Presence::where_any);
+                    Presence presence);
     void operator()(const std::string& key, const std::map<std::string, std::string>& hashes, Hash,
                     Presence presence = Presence::always) {
         (*this)(key, hashes, presence);

@@ -29,9 +29,6 @@ class Referring(Described):
         Returns:
             |z - r| / |r|, where r is what `etlc embed` made of the frame; infinity where the
             embedding is not finite.
-
-        Raises:
-            NotKeptError: the embeddings of the spec were made by an earlier version of etlc embed.
         """
         array = conversion.as_elements(
             "embedding", embedding, np.dtype("f4"), (np.size(embedding),)

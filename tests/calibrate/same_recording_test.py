@@ -280,22 +280,6 @@ def test_beside_scalars(world):
                 assert ("E0675" in says) == repeats, (road, number, says)
 
 
-def test_old_files(world):
-    """Files of an earlier version are refused when episodes are compared."""
-    world.spec(episode_spec("f32"))
-    clear(world, "demos", "new")
-    world.write("demos", world.demos)
-    world.write("new", world.others)
-    assert world.run("calibrate", "--data", "demos") == set()
-    path = world.folder / "t.thresholds.json"
-    new = json.loads(path.read_text())
-    assert new["format"] == 2
-    path.write_text(json.dumps({**new, "format": 1}))
-    assert "E0668" in world.run("evaluate", "--data", "new")
-    done = subprocess.run([world.etlc, "t.etl", "--check"], cwd=world.folder, capture_output=True)
-    assert done.returncode == 0, done.stderr  # it still compiles
-
-
 def has_nameless_file(process, folder):
     """Returns whether a process writes a file that has no name yet in the folder."""
     with contextlib.suppress(OSError):  # of descriptors that are closed meanwhile
@@ -354,7 +338,6 @@ def main(etlc):
         test_episodes(world)
         test_scalars(world)
         test_beside_scalars(world)
-        test_old_files(world)
         test_another_call(world)
 
 

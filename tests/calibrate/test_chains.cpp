@@ -14,7 +14,7 @@
 #include "check/guarantees/provenance.hpp"
 #include "compile.hpp"
 #include "episodes.hpp"
-#include "episodes/replay.hpp"
+#include "episodes/recording.hpp"
 #include "random.hpp"
 #include "roads.hpp"
 

@@ -79,7 +79,7 @@ const std::set<std::string> kUnread{
     "Monitor.calibration",
     // Derived.
     "Fitted.name", "Fitted.declaration", "Fitted.index", "Fitted.filled",
-    // Names of formulas, and texts for people.
+    // Names of formulas, which short ones are written without, and texts for people.
     "Let.name", "Let.formula", "Let.telemetry", "Let.truth", "Model.constants", "Model.rounded",
     "Model.rounding",
     // Unrelated.

@@ -179,11 +179,12 @@ thresholds::Entry shift_at_the_rank(const std::string& formula, const std::strin
 TEST(Shift, IsBeyondTheScoreAtTheRank) {
     for (const std::string against : {"missed_alarm", "missed_success"}) {
         const thresholds::Entry plain = shift_at_the_rank(kOverPredicate, against);
-        EXPECT_EQ(plain.predicate, "F[0, 2] (a && F[0, 2] !a) where a = x <= 0.5");
-        EXPECT_EQ(plain.truth, "a: px > 0.5");
+        EXPECT_EQ(plain.reads.at("formula m"), "F[0, 2] (a && F[0, 2] !a)");
+        EXPECT_EQ(plain.reads.at("predicate a"), "x <= 0.5");
+        EXPECT_EQ(plain.reads.at("truth a"), "px > 0.5");
         const thresholds::Entry of_let = shift_at_the_rank(kOverLet, against);
-        EXPECT_EQ(of_let.predicate, "F[0, 2] (O[0, 1] a && F[0, 2] !O[0, 1] a) where a = x <= 0.5");
-        EXPECT_EQ(of_let.truth, "F[0, 2] (a && F[0, 2] !a); a: px > 0.5");
+        EXPECT_EQ(of_let.reads.at("formula m"), "F[0, 2] (O[0, 1] a && F[0, 2] !O[0, 1] a)");
+        EXPECT_EQ(of_let.reads.at("truth of the formula m"), "F[0, 2] (a && F[0, 2] !a)");
     }
 }
 

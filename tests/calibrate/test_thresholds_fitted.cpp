@@ -9,9 +9,9 @@
 #include <optional>
 
 #include "calibrate/calibrate.hpp"
-#include "calibrate/left_out.hpp"
+#include "calibrate/fit.hpp"
 #include "check/check.hpp"
-#include "check/guarantees/adaptation.hpp"
+#include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/conformal.hpp"
 #include "npy_bytes.hpp"
 #include "parse/parse.hpp"

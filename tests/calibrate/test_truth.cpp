@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "episodes/exact_distance.hpp"
 #include "episodes/truth.hpp"
 #include "loading.hpp"
 #include "random.hpp"

@@ -220,7 +220,7 @@ class InProcess(Box):
             Path("mine.model").unlink()
             etlc.embed("look.etl", "recorded", output="all", encoder=Mean(self.weights, 256))
             self.refused("E0652", lambda: etlc.Monitor("look.etl"),
-                         "the model or settings of 'mine' changed")  # fmt: skip
+                         "the model and settings of encoder mine changed")  # fmt: skip
             etlc.calibrate("look.etl", "all", allow_overlap="the frames are noise")
             etlc.Monitor("look.etl").close()
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <string>
 
-#include "evaluate/duration.hpp"
+#include "evaluate/figures.hpp"
 
 namespace etlc::evaluate {
 namespace {

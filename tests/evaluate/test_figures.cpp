@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-#include "episodes/random.hpp"
+#include "episodes/bootstrap.hpp"
 #include "evaluate/figures.hpp"
 
 namespace etlc::evaluate {

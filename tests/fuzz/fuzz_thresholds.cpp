@@ -7,7 +7,7 @@
 #include "artifacts/embedded.hpp"
 #include "artifacts/fitted.hpp"
 #include "artifacts/thresholds.hpp"
-#include "check/guarantees/consistency.hpp"
+#include "check/guarantees/conformal.hpp"
 #include "data/arrays/archive.hpp"
 #include "fuzz_target.hpp"
 

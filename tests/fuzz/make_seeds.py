@@ -107,23 +107,25 @@ for name, data in {
 
 ENTRY = """"method": "conformal", "alpha": 0.10, "epsilon": 0.31, "n": 2, "k": 1, \
 "scores": [0.1, "inf"],
- "predicate": "min l2(z, goal) <= ", "truth": "array", "targets": {"goal": "0123456789abcdef"}"""
+ "reads": {"predicate p": "min l2(z, goal) <=", \
+"target goal": "1 x 1, values #0123456789abcdef"}"""
 for name, text in {
-    "whole.json": f"""{{"format": 1, "spec": "s", "predicates": {{"p": {{{ENTRY}}}}}, \
+    "whole.json": f"""{{"format": 3, "spec": "s", "predicates": {{"p": {{{ENTRY}}}}}, \
 "monitors": {{}},
  "episodes": ["0123456789abcdef"], "etlc": "0.1.0"}}""",
-    "monitor.json": f"""{{"format": 1, "spec": "s", "predicates": {{}}, "monitors": {{"m": \
-{{{ENTRY.replace('"predicate"', '"formula"')}, "against": "missed_alarm", "episodes": []}}}},
- "etlc": "0.1.0"}}""",
-    "f1.json": """{"format": 1, "spec": "s", "predicates": {"p": {"method": "f1", \
+    "monitor.json": f"""{{"format": 3, "spec": "s", "predicates": {{}}, "monitors": {{"m": \
+{{{ENTRY}, "against": "missed_alarm", "episodes": []}}}},
+ "episodes": [], "etlc": "0.1.0"}}""",
+    "f1.json": """{"format": 3, "spec": "s", "predicates": {"p": {"method": "f1", \
 "epsilon": -0.0, "n": 1, "k": 0,
- "scores": [], "predicate": "g > ", "truth": "g > 0.5", "targets": {}}}, "etlc": "0.1.0"}""",
-    "consistent.json": """{"format": 1, "spec": "s", "predicates": {"p": {"method": "conformal", \
+ "scores": [], "reads": {"truth p": "g > 0.5"}}}, "monitors": {}, \
+"episodes": [], "etlc": "0.1.0"}""",
+    "consistent.json": """{"format": 3, "spec": "s", "predicates": {"p": {"method": "conformal", \
 "alpha": 0.5, "epsilon": 1, "n": 2,
- "k": 2, "scores": [0.5, 0.99999998], "predicate": "g <= ", "truth": "g > 0.5", "targets": {}}}, \
+ "k": 2, "scores": [0.5, 0.99999998], "reads": {"truth p": "g > 0.5"}}}, \
 "monitors": {},
  "episodes": ["0000000000000001", "0000000000000002"], "etlc": "0.1.0"}""",
-    "recordings.json": """{"format": 1, "spec": "s", "predicates": {}, "monitors": {},
+    "recordings.json": """{"format": 3, "spec": "s", "predicates": {}, "monitors": {},
  "episodes": ["0000000000000001"],
  "recordings": {"0000000000000001": {"g": "00112233445566aa:", \
 "z": "0123456789abcdef:0000000a00ff00ff"}},
@@ -131,7 +133,8 @@ for name, text in {
     "format2.json": '{"format": 2}',
     "nested.json": "[" * 40,
     "escapes.json":
-        '{"format": 1, "spec": "\\u00fc\\ud83d\\ude00\\n", "predicates": {}, "etlc": ""}',
+        '{"format": 3, "spec": "\\u00fc\\ud83d\\ude00\\n", "predicates": {}, "monitors": {}, '
+        '"episodes": [], "etlc": ""}',
 }.items():
     seed("fuzz_thresholds", name, text.encode())
 

@@ -39,7 +39,7 @@ TEST(Tree, DistancesAreNamedInOneFile) {
     static const std::set<std::string> kTheirs = {"runtime/include/etlmon/distance/distances.def",
                                                   "grammar/EtlLexer.g4"};
     static const std::set<std::string> kDefinitions = {
-        "compiler/reference/distance.cpp",   "workbench/episodes/exact_distance.cpp",
+        "compiler/reference/distance.cpp",   "workbench/episodes/truth.cpp",
         "workbench/calibrate/bounds.cpp",    "compiler/plan/targets/narrow_targets.cpp",
         "workbench/lsp/answers/words.def",   "compiler/parse/foreign/words.def",
         "workbench/fit/suggest/suggest.cpp", "runtime/include/etlmon/hosted/error_bounds.hpp"};

@@ -34,14 +34,11 @@ std::string made_adaptive(const std::string& line, Random& random) {
 
 thresholds::Entry entry(const check::Model& model, check::Index predicate, float start,
                         std::vector<std::uint64_t>& episodes) {
-    const check::Provenance provenance = check::provenance(model, predicate);
     thresholds::Entry result;
     result.method = "adaptive";
     result.alpha = "0.25";
     episodes = calibrate_to(start, model.predicates[predicate].upper_bound(), result);
-    result.predicate = provenance.predicate;
-    result.truth = "array";
-    result.targets = provenance.targets;
+    result.reads = check::reads(model, predicate);
     return result;
 }
 

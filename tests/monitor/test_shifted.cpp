@@ -54,7 +54,6 @@ ShiftedSpec random_shifted_spec(std::uint64_t seed, const SpecShape& shape) {
     file.spec = uncalibrated->name;
     for (const check::Monitor& monitor : uncalibrated->monitors) {
         if (!monitor.calibration) continue;
-        const check::Provenance provenance = check::provenance(*uncalibrated, monitor);
         thresholds::Entry& entry = file.monitors[monitor.name];
         entry.method = "conformal";
         entry.alpha = "0.1";
@@ -63,10 +62,7 @@ ShiftedSpec random_shifted_spec(std::uint64_t seed, const SpecShape& shape) {
                                                  : static_cast<float>(4 * random.uniform() - 2);
         entry.episodes = calibrate_to(
             shift, monitor.calibration->against == check::Against::missed_alarm, entry);
-        entry.predicate = provenance.predicate;
-        entry.truth = provenance.truth;
-        entry.targets = provenance.targets;
-        entry.reads = provenance.reads;
+        entry.reads = check::reads(*uncalibrated, monitor);
         entry.against = check::word(monitor.calibration->against);
     }
     result.thresholds = thresholds::write(file);

@@ -12,9 +12,10 @@ monitor safe = G (at_wall -> light);
 END
 cp "$SPECS/E0409_plain.npy" wall.npy
 thresholds() { cat > gripper.thresholds.json <<END
-{"format": 1, "spec": "gripper", "predicates": {"light": {"method": "conformal", "alpha": 0.5,
- "epsilon": $1, "n": 1, "k": 1, "scores": [$2], "predicate": "force <= ", "truth": "array",
- "targets": {}}}, "monitors": {}, "episodes": ["0123456789abcdef"], "etlc": "0.2.0"}
+{"format": 3, "spec": "gripper", "predicates": {"light": {"method": "conformal", "alpha": 0.5,
+ "epsilon": $1, "n": 1, "k": 1, "scores": [$2], "reads": {"input force": "scalar[1]",
+ "predicate light": "force <=", "rate": "0.1 s a step", "truth light": "an array or table"}}},
+ "monitors": {}, "episodes": ["0123456789abcdef"], "etlc": "0.2.0"}
 END
 }
 thresholds 3 2.9999998

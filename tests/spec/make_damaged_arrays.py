@@ -82,8 +82,7 @@ FITTED = """{
   "entries": {
     "g": {
       "declaration": "fitted(mean, of = z, where = true)",
-      "of": "z",
-      "truth": "true",
+      "reads": {},
       "array": "g",
       "frames": %s
     }
@@ -94,8 +93,8 @@ FITTED = """{
 }
 """
 for name, description in (
-    ("E0673_unknown_fitted_format", FITTED % (3, "3")),
-    ("E0674_invalid_fitted", FITTED % (1, '"three"')),
+    ("E0673_unknown_fitted_format", FITTED % (2, "3")),
+    ("E0674_invalid_fitted", FITTED % (3, '"three"')),
 ):
     write(name + ".fitted.npz", zipped([("fitted.json", description), ("g.npy", npy())]))
 
@@ -107,9 +106,10 @@ EMBEDDED = """{
       "declaration": "load(\\"net.onnx\\"), mean [0, 0, 0], deviation [1, 1, 1]",
       "model": "0123456789abcdef",
       "settings": "mean [0, 0, 0], deviation [1, 1, 1]",
-      "kind": "network",
+      "kind": "command",
       "dimension": 2,
-      "fingerprint": "%s"
+      "fingerprint": "%s",
+      "references": "references-1"
     }
   },
   "entries": {},
@@ -117,8 +117,9 @@ EMBEDDED = """{
 }
 """
 for name, version, fingerprint in (
-    ("E1004_of_earlier_etlc", 1, "ac1f36bbbdff9014"),
     ("E1006_unknown_embedded_format", 2, "0" * 16),
     ("E1007_invalid_embedded", 1, "0" * 16),
 ):
-    write(name + ".embedded.npz", zipped([("embedded.json", EMBEDDED % (version, fingerprint))]))
+    references = npy(shape="(4, 2)", data=bytes(32))
+    write(name + ".embedded.npz", zipped([("embedded.json", EMBEDDED % (version, fingerprint)),
+                                          ("references-1.npy", references)]))

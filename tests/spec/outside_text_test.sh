@@ -56,9 +56,11 @@ thresholds() {  # METHOD ETLC SPEC TRUTH
 import json, os, sys
 method, etlc, spec, truth = [os.fsencode(a).decode("utf-8", "replace") for a in sys.argv[1:5]]
 entry = {"method": method, "alpha": 0.5, "epsilon": 1, "n": 3, "k": 2,
-         "scores": [0.5, 0.99999997, 1.5], "predicate": "x < ", "truth": truth, "targets": {}}
+         "scores": [0.5, 0.99999997, 1.5],
+         "reads": {"input x": "scalar[1]", "input y": "scalar[1]", "predicate p": "x <",
+                   "predicate y > 0": "y > 0", "truth p": truth}}
 episodes = ["%016x" % i for i in range(3)]
-print(json.dumps({"format": 1, "spec": spec, "predicates": {"p": entry}, "monitors": {},
+print(json.dumps({"format": 3, "spec": spec, "predicates": {"p": entry}, "monitors": {},
                   "episodes": episodes, "etlc": etlc}))
 END
 }
@@ -161,7 +163,7 @@ for text in "${hostile[@]}"; do
         keep text "field $field of the thresholds $shown, report"
         "$etlc" plain.etl --thresholds hostile.json --emit report -o - >"$out" 2>&1 || true
     done
-    printf '{"format": 1, %s' "$text" >hostile.json
+    printf '{"format": 3, %s' "$text" >hostile.json
     header "thresholds $shown" none plain.etl --thresholds hostile.json
 
     # The data, its files, and everything else that a call names.

@@ -155,31 +155,77 @@ TEST(Thresholds, ANamedFileMustBeThere) {
     EXPECT_EQ(Checked(kCalibrated, {.thresholds_path = "no/such/file.json"}).codes(), "E0601");
 }
 
-Provenance provenance_of(const std::string& text, const std::string& predicate) {
+Reads read_for(const std::string& text, const std::string& predicate) {
     const Checked checked(text, {.allow_uncalibrated = true});
     EXPECT_TRUE(checked.model) << checked.diagnostics();
     for (Index i = 0; checked.model && i < checked.model->predicates.size(); ++i)
-        if (checked.model->predicates[i].name == predicate) return provenance(*checked.model, i);
+        if (checked.model->predicates[i].name == predicate) return reads(*checked.model, i);
     return {};
 }
 
-TEST(Thresholds, ProvenanceSaysAllThatTheThresholdDependsOn) {
+TEST(Thresholds, ReadsSayAllThatTheThresholdDependsOn) {
     const std::string head =
         "spec t; input z : i8[1] scale 0.5; input px : f32; target goal = [[1]]; target spot = "
         "[[0]]; predicate held = px > 0.25;";
-    const Provenance found = provenance_of(
-        head +
-            "predicate a = mahalanobis([2])(z, goal) <= calibrated(f1); let sure = held || false;"
-            "truth a = sure && l2([px], spot) < 0.50; monitor m = F a;",
-        "a");
-    EXPECT_EQ(found.predicate, "mahalanobis([2])(z, goal) <= ");
-    EXPECT_EQ(found.truth, "(held || false) && l2([px], spot) < 0.50 where held = px > 0.25");
-    ASSERT_EQ(found.targets.size(), 3U);
-    EXPECT_TRUE(found.targets.contains("goal"));
-    EXPECT_TRUE(found.targets.contains("z"));
-    EXPECT_TRUE(found.targets.contains("mahalanobis([2])(z, goal)"));
-    ASSERT_EQ(found.truth_targets.size(), 1U);
-    EXPECT_TRUE(found.truth_targets.contains("spot"));
+    const Reads found =
+        read_for(head +
+                     "predicate a = mahalanobis([2])(z, goal) <= calibrated(f1); let sure = held "
+                     "|| false; truth a = sure && l2([px], spot) < 0.50; monitor m = F a;",
+                 "a");
+    const std::string distance = "mahalanobis([2])(z, goal)";
+    const std::string near = "l2([px], spot) < 0.50";
+    EXPECT_EQ(found.at("predicate a"), distance + " <=");
+    EXPECT_EQ(found.at("truth a"), "(held || false) && " + near);
+    EXPECT_EQ(found.at("predicate held"), "px > 0.25");
+    EXPECT_EQ(found.at("predicate " + near), "l2([px], spot) < 0.5");
+    EXPECT_EQ(found.at("input z"), "i8[1] scale 0.5");
+    EXPECT_EQ(found.at("distance " + distance)
+                  .find("min 1 mahalanobis from z to goal, diagonal, "
+                        "weights #"),
+              0U);
+    for (const char* target : {"target goal", "target spot"})
+        EXPECT_EQ(found.at(target).find("1 x 1, values #"), 0U);
+    EXPECT_EQ(found.size(), 10U);
+}
+
+/// Long formulas contain names of lets, whose definitions count too.
+TEST(Thresholds, ReadsOfALongFormulaHaveItsLets) {
+    std::string text =
+        "spec t; input x, y : f32; predicate a = x <= calibrated(f1); let l0 = y > 1 && O y > 2;";
+    for (int i = 1; i < 12; ++i) text += fmt::format("let l{0} = l{1} && O l{1};", i, i - 1);
+    text += "truth a = O l11; monitor m = F a;";
+    const Reads found = read_for(text, "a");
+    EXPECT_EQ(found.at("truth a"), "O l11");
+    EXPECT_EQ(found.at("let l11"), "l10 && O l10");
+    EXPECT_EQ(found.at("let l0"), "y > 1 && O y > 2");
+    text.replace(text.find("y > 2"), 5, "y > 3");
+    EXPECT_NE(found.at("let l0"), read_for(text, "a").at("let l0"));
+}
+
+TEST(Thresholds, DifferencesSayWhatChanged) {
+    const Reads then{{"input z", "f32[2]"},
+                     {"predicate p", "l2(z, g) <="},
+                     {"target g", "1 x 2, values #0123456789abcdef"},
+                     {"truth p", "an array or table in place of y > 1"}};
+    const auto now = [&](const std::string& key, const std::string& text) {
+        Reads changed = then;
+        changed[key] = text;
+        changed["truth p"] = key == "truth p" ? text : "y > 1";
+        return differences(then, changed);
+    };
+    using Notes = std::vector<std::string>;
+    EXPECT_EQ(now("truth p", "y > 1"), Notes{});
+    EXPECT_EQ(now("truth p", "y > 2"),
+              Notes{"truth p was: an array or table in place of y > 1; it is: y > 2"});
+    EXPECT_EQ(now("predicate p", "l2(z, g) <"),
+              Notes{"predicate p was: l2(z, g) <=; it is: l2(z, g) <"});
+    EXPECT_EQ(now("target g", "1 x 2, values #ffffffffffffffff"),
+              Notes{"the values of target g changed"});
+    EXPECT_EQ(now("target g", "2 x 2, values #ffffffffffffffff"),
+              Notes{"target g was: 1 x 2; it is: 2 x 2"});
+    EXPECT_EQ(now("rate", "0.1 s a step"), Notes{"rate was: not read; it is: 0.1 s a step"});
+    EXPECT_TRUE(replaces_truths(then));
+    EXPECT_FALSE(replaces_truths({{"truth p", "an array or table"}, {"input x", "f32"}}));
 }
 
 // ---- names --------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@
 #include <iterator>
 #include <random>
 
-#include "check/guarantees/adaptation.hpp"
+#include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "check/numbers/decimal.hpp"
 #include "checking.hpp"
@@ -119,11 +119,11 @@ std::string thresholds_for(const std::string& spec) {
     const Checked uncalibrated(spec, {.allow_uncalibrated = true});
     std::ifstream file(std::string(ETLC_SOURCE_DIR) + "/tests/spec/ok/adaptive.thresholds.json");
     std::string json{std::istreambuf_iterator<char>(file), {}};
-    const std::string declared = "\"x\": \"";
-    const std::string hash = provenance(*uncalibrated.model, 0).targets.at("x");
+    const std::string declared = "\"scalar[1] in [0, 4]\"";
+    const std::string now = '"' + reads(*uncalibrated.model, 0).at("input x") + '"';
     for (std::size_t at = json.find(declared); at != std::string::npos;
-         at = json.find(declared, at + 1))
-        json.replace(at + declared.size(), hash.size(), hash);
+         at = json.find(declared, at + now.size()))
+        json.replace(at, declared.size(), now);
     std::string path = testing::TempDir() + "/adaptation.thresholds.json";
     std::ofstream(path) << json;
     return path;

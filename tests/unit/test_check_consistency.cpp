@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "check/guarantees/conformal.hpp"
-#include "check/guarantees/consistency.hpp"
 
 namespace etlc::check {
 namespace {

@@ -16,13 +16,11 @@ namespace {
 using diag::Code;
 
 const std::string kDescription = R"text({
-  "format": 2,
+  "format": 3,
   "spec": "dock",
   "entries": {
     "Q": {
       "declaration": "fitted(pca, of = z, where = true, r = 1)",
-      "of": "z",
-      "truth": "true",
       "reads": {
         "input z": "f32[3]",
         "where": "true"
@@ -33,8 +31,7 @@ const std::string kDescription = R"text({
     },
     "anchors": {
       "declaration": "fitted(medoids, of = z, where = near, k = 2)",
-      "of": "z",
-      "truth": "x <= 1",
+      "reads": {},
       "array": "anchors",
       "frames": 300,
       "medoids": [
@@ -44,8 +41,7 @@ const std::string kDescription = R"text({
     },
     "fitted(discriminant, of = z, where = near)": {
       "declaration": "fitted(discriminant, of = z, where = near)",
-      "of": "z",
-      "truth": "x <= 1",
+      "reads": {},
       "array": "metric-1",
       "frames": 300
     }
@@ -164,7 +160,7 @@ TEST(Fitted, FaultsNameTheKeyWhatIsThereAndWhatIsExpected) {
         EXPECT_EQ(failure.message, one.message);
         EXPECT_EQ(failure.code, Code::invalid_fitted);
     }
-    EXPECT_EQ(failure_of(R"("format": 2)", R"("format": 3)").code, Code::unknown_fitted_format);
+    EXPECT_EQ(failure_of(R"("format": 3)", R"("format": 2)").code, Code::unknown_fitted_format);
     EXPECT_EQ(failure_of("}\n", "").code, Code::malformed_fitted);
     EXPECT_EQ(failure_of(R"("array": "anchors")", R"("array": "anchor")").message,
               "has no array 'anchor'; it holds 'Q', 'Q-offset', 'anchors', 'metric-1' and "

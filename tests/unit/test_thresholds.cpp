@@ -15,10 +15,9 @@ namespace etlc::thresholds {
 namespace {
 
 using diag::Code;
-using tests::patched;
 
 const std::string kWhole = R"({
-  "format": 2,
+  "format": 3,
   "spec": "dubins",
   "predicates": {
     "at_a": {
@@ -28,14 +27,9 @@ const std::string kWhole = R"({
       "n": 3,
       "k": 2,
       "scores": [0.1, 0.2, "inf"],
-      "predicate": "min l2(z, goal_a) <= ",
-      "truth": "l2([px, py], corner) < 0.25",
-      "targets": {
-        "goal_a": "b08b72ea4df23cb1"
-      },
       "reads": {
         "input z": "f32[2]",
-        "target goal_a": "1 x 2, #b08b72ea4df23cb1"
+        "target goal_a": "1 x 2, values #b08b72ea4df23cb1"
       }
     },
     "held": {
@@ -44,9 +38,7 @@ const std::string kWhole = R"({
       "n": 100,
       "k": 0,
       "scores": [],
-      "predicate": "gripper > ",
-      "truth": "array",
-      "targets": {}
+      "reads": {}
     }
   },
   "monitors": {
@@ -57,12 +49,6 @@ const std::string kWhole = R"({
       "n": 1,
       "k": 1,
       "scores": [-0.5],
-      "formula": "F at_a",
-      "truth": "F at_a",
-      "targets": {
-        "corner": "0123456789abcdef",
-        "goal_a": "b08b72ea4df23cb1"
-      },
       "reads": {
         "monitor reach": "sliding, horizon 2"
       },
@@ -109,12 +95,8 @@ TEST(Thresholds, ReadsWhatIsThere) {
     EXPECT_EQ(at_a.n, 3U);
     EXPECT_EQ(at_a.k, 2U);
     EXPECT_EQ(at_a.scores, (std::vector<double>{0.1, 0.2, INFINITY}));
-    EXPECT_EQ(at_a.predicate, "min l2(z, goal_a) <= ");
-    EXPECT_EQ(at_a.truth, "l2([px, py], corner) < 0.25");
-    EXPECT_EQ(at_a.targets, (std::map<std::string, std::string>{{"goal_a", "b08b72ea4df23cb1"}}));
     EXPECT_EQ(file->predicates.at("held").alpha, "");
     EXPECT_EQ(file->predicates.at("held").epsilon, -5e-05F);
-    EXPECT_EQ(file->monitors.at("reach").predicate, "F at_a");
     EXPECT_EQ(file->monitors.at("reach").alpha, "5e-2");
     EXPECT_EQ(file->monitors.at("reach").against, "missed_success");
     EXPECT_EQ(all_episodes(*file), (std::vector<std::uint64_t>{1, 0xffff'ffff'ffff'ffff, 0xaa}));
@@ -124,12 +106,12 @@ TEST(Thresholds, WritingWhatWasReadChangesNothing) {
     const auto file = parse(kWhole, "x");
     ASSERT_TRUE(file);
     EXPECT_EQ(write(*file), kWhole);
-    const std::string old = patched(kWhole, "\"format\": 2", "\"format\": 1");
-    EXPECT_EQ(write(*parse(old, "x")), old);  // its episodes are identified by their stored bytes
 }
 
 TEST(Thresholds, SmallestFile) {
-    const auto file = parse(R"({"etlc":"0.1.0","predicates":{},"spec":"s","format":1})", "x");
+    const auto file = parse(
+        R"({"etlc":"0.1.0","predicates":{},"monitors":{},"episodes":[],"spec":"s","format":3})",
+        "x");
     ASSERT_TRUE(file) << file.failure().message;
     const std::string written = write(*file);
     const auto again = parse(written, "x");
@@ -153,8 +135,7 @@ TEST(Thresholds, NumbersReadBackToTheSameBits) {
         entry.n = std::numeric_limits<std::uint64_t>::max();
         entry.k = 1;
         entry.scores = doubles;
-        entry.predicate = "\"quotes\", \\ and \n";
-        entry.truth = "Z\xc3\xbcrich";
+        entry.reads["Z\xc3\xbcrich"] = "\"quotes\", \\ and \n";
         File file;
         file.predicates["p"] = entry;
         const auto read = parse(write(file), "x");
@@ -164,8 +145,7 @@ TEST(Thresholds, NumbersReadBackToTheSameBits) {
                   std::bit_cast<std::uint32_t>(epsilon));
         EXPECT_EQ(again.alpha, entry.alpha);
         EXPECT_EQ(again.n, entry.n);
-        EXPECT_EQ(again.predicate, entry.predicate);
-        EXPECT_EQ(again.truth, entry.truth);
+        EXPECT_EQ(again.reads, entry.reads);
         ASSERT_EQ(again.scores.size(), doubles.size());
         for (std::size_t i = 0; i < doubles.size(); ++i)
             EXPECT_EQ(std::bit_cast<std::uint64_t>(again.scores[i]),
@@ -239,15 +219,13 @@ std::vector<Broken> content() {
     const std::string at_a = "'predicates.at_a.";
     return {
         {"array", "[]", Code::invalid_thresholds, "the file is an array, expected an object"},
-        {"nothing in it", "{}", Code::invalid_thresholds,
-         "key 'format' is missing, expected a number from 1 to 2"},
-        {"format 3", with("\"format\": 2", "\"format\": 3"), Code::unknown_thresholds_format,
-         "'format' is '3', expected a number from 1 to 2, the formats that this version reads"},
-        {"format 3 with other keys", R"({"format": 3, "entries": []})",
+        {"nothing in it", "{}", Code::invalid_thresholds, "key 'format' is missing, expected 3"},
+        {"format 2", with("\"format\": 3", "\"format\": 2"), Code::unknown_thresholds_format,
+         "'format' is '2', expected 3, the format that this version reads"},
+        {"format 4 with other keys", R"({"format": 4, "entries": []})",
          Code::unknown_thresholds_format,
-         "'format' is '3', expected a number from 1 to 2, the formats that this version reads"},
-        broken("\"format\": 2", "\"format\": \"2\"",
-               "'format' is the text '2', expected a number from 1 to 2"),
+         "'format' is '4', expected 3, the format that this version reads"},
+        broken("\"format\": 3", "\"format\": \"3\"", "'format' is the text '3', expected 3"),
         broken("\"spec\": \"dubins\"", "\"spec\": null", "'spec' is null, expected a text"),
         broken("\"spec\"", "\"spek\"", "unknown key 'spek'; did you mean 'spec'?"),
         broken("\"etlc\"", "\"spec\"", "key 'spec' occurs twice in one object"),
@@ -289,22 +267,17 @@ std::vector<Broken> content() {
                at_a + "scores[1]' is true, expected a number, 'inf' or '-inf'"),
         broken("\"inf\"", "\"nan\"",
                at_a + "scores[2]' is the text 'nan', expected a number, 'inf' or '-inf'"),
-        broken("\"predicate\"", "\"formula\"", "unknown key 'predicates.at_a.formula'"),
-        broken("\"formula\"", "\"predicate\"", "unknown key 'monitors.reach.predicate'"),
         broken("\"missed_success\"", "\"error\"",
                "'monitors.reach.against' is the text 'error', expected 'missed_alarm' or "
                "'missed_success'"),
         broken("\"00000000000000aa\"", "1",
                "'monitors.reach.episodes[0]' is '1', expected a content hash of 16 hex digits"),
-        broken("\"truth\": \"array\"", "\"truth\": []",
-               "'predicates.held.truth' is an array, expected a text"),
-        broken("\"targets\": {}", "\"targets\": \"b08b72ea4df23cb1\"",
-               "'predicates.held.targets' is the text 'b08b72ea4df23cb1', expected an object"),
+        broken("\"reads\": {}", "\"reads\": \"b08b72ea4df23cb1\"",
+               "'predicates.held.reads' is the text 'b08b72ea4df23cb1', expected an object of "
+               "texts"),
+        broken("\"reads\": {}", "\"targets\": {}", "unknown key 'predicates.held.targets'"),
         broken("\"sliding, horizon 2\"", "[]",
                "'monitors.reach.reads.monitor reach' is an array, expected a text"),
-        broken("b08b72ea4df23cb1", "B08B72EA4DF23CB1",
-               at_a + "targets.goal_a' is the text 'B08B72EA4DF23CB1', expected a content hash of "
-                      "16 hex digits"),
         broken("\"0000000000000001\"", "1",
                "'episodes[0]' is '1', expected a content hash of 16 hex digits"),
         broken("\"ffffffffffffffff\"", "\"fffffffffffffffff\"",

@@ -17,7 +17,9 @@ namespace {
 using diag::Code;
 
 std::string with(const std::string& members) {
-    return R"({"format": 1, "spec": "s", "etlc": "1", "predicates": {}, )" + members + "}";
+    const bool has_episodes = members.find("\"episodes\"") != std::string::npos;
+    return R"({"format": 3, "spec": "s", "etlc": "1", "predicates": {}, "monitors": {}, )" +
+           std::string(has_episodes ? "" : R"("episodes": [], )") + members + "}";
 }
 
 std::string message(const std::string& members) {
@@ -75,7 +77,7 @@ TEST(ThresholdsOfEpisodes, FaultsComeInTheOrderOfTheKeysNotOfTheFile) {
               "'episodes[0]' is '1', expected a content hash of 16 hex digits");
     EXPECT_EQ(message(R"("recordings": {"x": {}}, )" + episodes + R"("spek": 1)"),
               "unknown key 'spek'; did you mean 'spec'?");
-    EXPECT_EQ(parse(R"({"recordings": {"x": {}}, "format": 3})", "x").failure().code,
+    EXPECT_EQ(parse(R"({"recordings": {"x": {}}, "format": 4})", "x").failure().code,
               Code::unknown_thresholds_format);
     EXPECT_NE(message(R"("recordings": {"x": {}}, ?)").find("is not JSON"), std::string::npos);
 }

@@ -8,7 +8,7 @@
 
 #include "check/numbers/decimal.hpp"
 #include "check/numbers/range.hpp"
-#include "episodes/exact_distance.hpp"
+#include "episodes/truth.hpp"
 #include "etlmon/hosted/error_bounds.hpp"
 #include "etlmon/temporal/expression.hpp"
 #include "plan/targets/kernels.hpp"

@@ -4,13 +4,11 @@
 
 #include <algorithm>
 
-#include "check/guarantees/adaptation.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/conformal.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
-#include "episodes/data_warnings.hpp"
 #include "episodes/folds.hpp"
 
 namespace etlc::calibrate {
@@ -63,12 +61,9 @@ void refuse(const check::Model& model, const check::Predicate& p, const Evidence
 
 thresholds::Entry entry_of_predicate(const check::Model& model, Index predicate,
                                      const Evidence& evidence, const Fitted& fitted) {
-    check::Provenance provenance = check::provenance(model, predicate);
     const check::Labelling labelling{evidence.demonstrations, {{predicate, evidence.from_array}}};
-    provenance.truth = check::labels(provenance.truth, predicate, labelling);
-    provenance.targets.merge(provenance.truth_targets);
-    const check::Threshold& threshold = model.predicates[predicate].threshold;
-    return entry_of(threshold, check::method_name(threshold.origin), fitted, std::move(provenance));
+    return entry_of(model.predicates[predicate].threshold, fitted,
+                    check::reads(model, predicate, labelling));
 }
 
 /// Returns the predicates with labels in the first demonstration. Calibration needs only those of
@@ -156,7 +151,8 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
                 *check::start(*threshold.adaptation, threshold.value, predicate.upper_bound());
         threshold.n = all.back().n;
         threshold.k = all.back().k;
-        threshold.by_group = groups.are_named() && check::takes_groups(threshold.origin);
+        threshold.by_group =
+            groups.are_named() && check::takes_groups(check::method_name(threshold.origin));
         result.file.predicates[predicate.name] =
             entry_of_predicate(model, predicates[i], evidence[i], all.back());
     }

@@ -14,6 +14,8 @@
 #include "calibrate/scores.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "diag/diag.hpp"
+#include "episodes/folds.hpp"
+#include "episodes/recording.hpp"
 
 namespace etlc::calibrate {
 
@@ -50,8 +52,8 @@ inline constexpr auto kAll = [](std::uint32_t) { return true; };
 Fit fit(const check::Predicate& predicate, const Evidence& evidence, const Counts& counts = kAll);
 
 /// Returns an entry of the thresholds file.
-thresholds::Entry entry_of(const check::Threshold& threshold, std::string_view method,
-                           const Fitted& fitted, check::Provenance provenance);
+thresholds::Entry entry_of(const check::Threshold& threshold, const Fitted& fitted,
+                           check::Reads reads);
 
 /// Describes the place of a threshold: "just above the 19th smallest of 20 scores, one per
 /// demonstration", where `each` is a demonstration. Lower bounds lie below the greatest scores.
@@ -95,5 +97,30 @@ void warn_of_large_alpha(const std::string& name, const check::Threshold& thresh
 /// nearly every frame is within, and a large alpha. Silent where too few episodes leave it open.
 void warn_of_doubts(const check::Predicate& predicate, const Evidence& evidence,
                     const Fitted& fitted, diag::Sink& sink);
+
+// ---- without each group -------------------------------------------------------------------------
+// The thresholds that all groups of episodes but one give, for each group, by the rule of the whole
+// calibration; an episode without a group is one by itself. At most two scores can be at the rank
+// of a conformal threshold when one of them is left out, so few thresholds are computed however
+// many groups there are.
+
+/// More groups than this are left out of an f1 threshold in as many parts: its best score is no
+/// order statistic.
+inline constexpr std::uint32_t kMostParts = 64;
+
+struct LeftOut {
+    std::vector<float> thresholds;  ///< per group; empty if one of them is missing
+    std::string why;                ///< why one is missing: "no finite threshold is left"
+    std::uint32_t parts = 0;        ///< f1: number of parts, if fewer than groups
+};
+
+/// Returns the thresholds of a predicate without each group of demonstrations.
+LeftOut left_out(const check::Predicate& predicate, const Evidence& evidence,
+                 const episodes::Identities& demonstrations, const episodes::Groups& groups);
+
+/// Returns the shifts of a monitor that is calibrated as a whole without each group. `worst`: the
+/// score of each group that has one.
+LeftOut left_out(const check::MonitorCalibration& calibration,
+                 const std::vector<Evidence::Reach>& worst, std::size_t groups);
 
 }  // namespace etlc::calibrate

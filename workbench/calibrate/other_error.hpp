@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/left_out.hpp"
+#include "calibrate/fit.hpp"
 #include "calibrate/replayer.hpp"
 #include "data/spill/spill.hpp"
 #include "episodes/bootstrap.hpp"

@@ -117,10 +117,7 @@ void add_step(const Watched& watched, const execute::Evaluator& measured,
 
 namespace {
 
-Label label_of(const etlmon::Verdict& verdict) {
-    if (verdict.satisfied()) return Label::yes;
-    return verdict.violated() ? Label::no : Label::unknown;
-}
+using episodes::label_of;
 
 /// Returns the labels of each labelled predicate over the steps of a track.
 std::vector<std::vector<Label>> labels_in(const Watched& watched, const std::string& track) {

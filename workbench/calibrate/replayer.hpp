@@ -12,7 +12,7 @@
 
 #include "check/guarantees/guarantees.hpp"
 #include "compile.hpp"
-#include "episodes/replay.hpp"
+#include "episodes/recording.hpp"
 #include "episodes/truth.hpp"
 #include "episodes/variants/variants.hpp"
 

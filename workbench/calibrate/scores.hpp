@@ -10,7 +10,7 @@
 #include "calibrate/replayer.hpp"
 #include "data/spill/spill.hpp"
 #include "episodes/ranking/auroc.hpp"
-#include "episodes/replay.hpp"
+#include "episodes/recording.hpp"
 
 namespace etlc::calibrate {
 

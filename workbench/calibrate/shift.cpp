@@ -16,10 +16,9 @@
 #include "compile.hpp"
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
-#include "episodes/data_warnings.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
-#include "episodes/replay.hpp"
+#include "episodes/recording.hpp"
 
 namespace etlc::calibrate {
 
@@ -223,8 +222,8 @@ void refuse(const check::Monitor& monitor, const Totals& totals, const episodes:
 thresholds::Entry entry_of_monitor(const check::Model& model, const check::Monitor& monitor,
                                    const Fitted& fitted, const episodes::Identities& episodes,
                                    const check::Labelling& labelling) {
-    thresholds::Entry entry = entry_of(monitor.calibration->threshold, "conformal", fitted,
-                                       check::provenance(model, monitor, labelling));
+    thresholds::Entry entry =
+        entry_of(monitor.calibration->threshold, fitted, check::reads(model, monitor, labelling));
     entry.against = check::word(monitor.calibration->against);
     episodes.for_each([&](std::size_t, const episodes::Recorded& episode) {
         entry.episodes.push_back(episodes::hash_of(episode));
@@ -346,7 +345,6 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     if (sink.has_errors()) return std::nullopt;
 
     Calibration result{std::move(before), {}};
-    result.file.format = thresholds::kFormat;
     result.file.spec = model.name;
     result.file.etlc = request.version;
     episodes::record(recorded, allowance, result.file);

@@ -6,7 +6,6 @@
 #include <thread>
 
 #include "episodes/parallel.hpp"
-#include "episodes/random.hpp"
 
 namespace etlc::episodes {
 

@@ -4,14 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
 #include "artifacts/embedded.hpp"
 #include "check/encoders/encoders.hpp"
+#include "check/points/points.hpp"
 #include "data/text/text.hpp"
 #include "data/traces/trace_formats.hpp"
-#include "episodes/data_warnings.hpp"
+#include "episodes/admission/admission.hpp"
 #include "recordings/datasets/trace.hpp"
 
 namespace etlc::episodes {
@@ -448,6 +450,134 @@ Label Recording::label(Index predicate) const {
     const double value = sample_.values[source.channel][0];
     if (!sample_.present[source.channel] || value != value) return Label::unknown;
     return value != 0 ? Label::yes : Label::no;
+}
+
+// ---- points of the last frames ------------------------------------------------------------------
+
+namespace {
+
+/// Written so that compilers vectorise it.
+bool is_sound(const check::Input& input, const std::vector<float>& values) {
+    bool sound = true;
+    for (const float x : values) sound &= std::abs(x) <= std::numeric_limits<float>::max();
+    if (!sound || !input.has_range) return sound;
+    return std::all_of(values.begin(), values.end(),
+                       [&](float x) { return input.range.contains(x); });
+}
+
+}  // namespace
+
+RecentFrames::RecentFrames(const check::Model& model, const std::vector<Index>& points)
+    : model_(model) {
+    std::set<Index> inputs;
+    for (const Index point : points) {
+        inputs.insert(model.points[point].inputs.begin(), model.points[point].inputs.end());
+        most_ = std::max<std::size_t>(most_, check::longest_delay(model, point));
+    }
+    inputs_.assign(inputs.begin(), inputs.end());
+}
+
+void RecentFrames::push(const std::vector<execute::Sample>& samples) {
+    last_ = &samples;
+    if (most_ == 0) return;
+    std::vector<execute::Sample> frame;
+    if (frames_.size() > most_) {
+        frame = std::move(frames_.back());  // its memory is used again
+        frames_.pop_back();
+    }
+    frame.resize(samples.size());
+    for (const Index input : inputs_) frame[input] = samples[input];
+    frames_.push_front(std::move(frame));
+}
+
+bool RecentFrames::read(Index point, std::vector<float>& values) const {
+    values.clear();
+    return append(point, 0, values);
+}
+
+/// Returns nothing before the first frame.
+const std::vector<execute::Sample>* RecentFrames::at(std::size_t ago) const {
+    if (ago == 0) return last_;
+    return ago < frames_.size() ? &frames_[ago] : nullptr;
+}
+
+bool RecentFrames::append(Index index, std::size_t ago, std::vector<float>& values) const {
+    const check::Point& point = model_.points[index];
+    if (point.is_delayed()) return append(point.inner, ago + point.steps, values);
+    if (point.is_joined())
+        return std::all_of(point.parts.begin(), point.parts.end(),
+                           [&](Index part) { return append(part, ago, values); });
+    const std::vector<execute::Sample>* const frame = at(ago);
+    if (frame == nullptr) return false;
+    for (const Index input : point.inputs) {
+        const execute::Sample& sample = (*frame)[input];
+        if (!sample.present) return false;
+        if (!is_sound(model_.inputs[input], sample.values)) return false;
+        values.insert(values.end(), sample.values.begin(), sample.values.end());
+    }
+    return true;
+}
+
+// ---- monitors beside a recording ----------------------------------------------------------------
+
+Follower::Follower(const plan::Plan& plan, const GroundTruth* truth)
+    : plan_(plan), truth_(truth), places_(plan.model->monitors.size()), evaluator_(plan) {
+    for (std::size_t m = 0; m < plan.monitors.size(); ++m) places_[plan.monitors[m].index] = m;
+    if (truth != nullptr) labelled_ = labelled_predicates(*truth);
+}
+
+void Follower::step(const Frames& recording) {
+    finished_ = false;
+    if (truth_ == nullptr) {
+        verdicts_ = &evaluator_.step(recording.samples());
+        return;
+    }
+    samples_.assign(recording.samples().begin(), recording.samples().end());
+    samples_.resize(truth_->model.inputs.size());
+    for (const Index predicate : labelled_)
+        samples_[truth_->inputs[predicate]] = sample_of(recording.label(predicate));
+    verdicts_ = &evaluator_.step(samples_);
+}
+
+void Follower::finish() {
+    finished_ = true;
+    verdicts_ = &evaluator_.finish();
+}
+
+bool Follower::reports(Index monitor) const {
+    return verdict(monitor).decided() && (!finished_ || plan_.model->monitors[monitor].sliding);
+}
+
+Wanted wanted(const check::Model& model, const std::vector<const plan::Plan*>& plans,
+              std::vector<Index> predicates, const Leaks& leaks) {
+    std::vector<Index> identity = identity_inputs(model);
+    std::set<Index> inputs(identity.begin(), identity.end());
+    for (const plan::Plan* plan : plans)
+        for (const Index input : plan->inputs)
+            if (input < model.inputs.size()) inputs.insert(input);  // the others are labels
+    return {
+        &model, {inputs.begin(), inputs.end()}, std::move(predicates), std::move(identity), &leaks};
+}
+
+diag::Result<bool> replay(Frames& recording, const std::vector<Follower*>& followers,
+                          const AfterStep& frame, const AfterStep& rest) {
+    for (Follower* follower : followers) follower->reset();
+    for (;;) {
+        const auto more = recording.next();
+        if (!more) return more.failure();
+        if (!*more) break;
+        for (Follower* follower : followers) follower->step(recording);
+        if (!frame()) return false;
+    }
+    std::uint32_t left = 0;
+    for (const Follower* follower : followers)
+        for (const plan::Monitor& monitor : follower->plan().monitors)
+            left = std::max(left, monitor.horizon);
+    for (std::uint32_t position = 0; rest && position < left; ++position) {
+        for (Follower* follower : followers) follower->finish();
+        if (!rest()) return false;
+    }
+    return true;
 }
 
 }  // namespace etlc::episodes

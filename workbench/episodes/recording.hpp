@@ -3,7 +3,9 @@
 // NAME`. Memory is that of one frame and of the windows of truths.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -17,6 +19,7 @@
 #include "episodes/labels/labels.hpp"
 #include "episodes/leaks/leaks.hpp"
 #include "episodes/truth.hpp"
+#include "execute/evaluator.hpp"
 #include "execute/inputs.hpp"
 #include "recordings/episodes.hpp"
 #include "recordings/open.hpp"
@@ -198,5 +201,94 @@ private:
     std::optional<Leak> leak_;
     std::vector<NearLeak> near_;
 };
+
+// ---- points of the last frames ------------------------------------------------------------------
+// Points of the frames of an episode, as they were recorded: of the last frame, and of those before
+// it that points of earlier steps need.
+
+using check::Index;
+
+class RecentFrames {
+public:
+    /// `points`: those that will be read, without projections inside of what is put together.
+    RecentFrames(const check::Model& model, const std::vector<Index>& points);
+
+    /// Begins another episode.
+    void reset() {
+        last_ = nullptr;
+        frames_.clear();
+    }
+    /// Adds a frame; per input of the model its sample. The samples of the last frame outlive the
+    /// calls of `read`: they are copied only where points of earlier steps need them.
+    void push(const std::vector<execute::Sample>& samples);
+    /// Reads a point at the last frame; returns false where a sample is missing, or not finite or
+    /// in range.
+    bool read(Index point, std::vector<float>& values) const;
+
+private:
+    bool append(Index point, std::size_t ago, std::vector<float>& values) const;
+
+    const std::vector<execute::Sample>* at(std::size_t ago) const;
+
+    const check::Model& model_;
+    std::vector<Index> inputs_;
+    std::size_t most_ = 0;  ///< frames before the last that some point needs
+    const std::vector<execute::Sample>* last_ = nullptr;
+    std::deque<std::vector<execute::Sample>> frames_;  ///< if most_ > 0; the last one first
+};
+
+// ---- monitors beside a recording ----------------------------------------------------------------
+// Runs a recorded episode through monitors, of a spec or of its ground truth, step by step. Every
+// plan gets the samples that its generated class would get; after the last frame sliding monitors
+// report the remaining positions.
+
+/// Steps a plan through episodes. The arguments outlive it.
+class Follower {
+public:
+    /// `truth`: set for a plan of the ground truth, whose inputs include the labels.
+    explicit Follower(const plan::Plan& plan, const GroundTruth* truth = nullptr);
+
+    execute::Evaluator& evaluator() { return evaluator_; }
+    const execute::Evaluator& evaluator() const { return evaluator_; }
+    const plan::Plan& plan() const { return plan_; }
+
+    /// Returns the verdicts of the last step, by index of the plan's monitors.
+    const std::vector<etlmon::Verdict>& verdicts() const { return *verdicts_; }
+    /// Returns the verdict of the last step, by index of the model's monitors.
+    const etlmon::Verdict& verdict(Index monitor) const { return verdicts()[places_[monitor]]; }
+    /// Returns whether that verdict is decided and new: after the last frame, a prefix monitor
+    /// repeats its last one.
+    bool reports(Index monitor) const;
+
+    void reset() { evaluator_.reset(); }
+    /// Restarts a monitor of the model with the next step.
+    void restart(Index monitor) { evaluator_.restart(places_[monitor]); }
+    void step(const Frames& recording);
+    /// Reports the next position after the last frame.
+    void finish();
+
+private:
+    const plan::Plan& plan_;
+    const GroundTruth* truth_;
+    std::vector<Index> labelled_;      ///< predicates with labels in the ground truth
+    std::vector<std::size_t> places_;  ///< per monitor of the model, its index in the plan
+    execute::Evaluator evaluator_;
+    std::vector<execute::Sample> samples_;  ///< samples with the labels
+    const std::vector<etlmon::Verdict>* verdicts_ = nullptr;
+    bool finished_ = false;
+};
+
+/// Returns what to read of an episode for these plans of the model or of its ground truth: their
+/// inputs, those of the hash, and the labels of `predicates`.
+Wanted wanted(const check::Model& model, const std::vector<const plan::Plan*>& plans,
+              std::vector<Index> predicates, const Leaks& leaks);
+
+/// Called after each step of all followers; returns false to stop.
+using AfterStep = std::function<bool()>;
+
+/// Steps followers through all frames, with `frame` after each; then, if given `rest`, through the
+/// positions that the end leaves open, with `rest` after each. Returns whether it reached the end.
+diag::Result<bool> replay(Frames& recording, const std::vector<Follower*>& followers,
+                          const AfterStep& frame, const AfterStep& rest = nullptr);
 
 }  // namespace etlc::episodes

@@ -1,16 +1,214 @@
 #include "episodes/truth.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <utility>
 
 #include "check/points/points.hpp"
-#include "episodes/exact_distance.hpp"
-#include "episodes/recent_frames.hpp"
 
 namespace etlc::episodes {
+
+// ---- distances in double ------------------------------------------------------------------------
+
+namespace {
+
+using check::Metric;
+
+double length(const double* v, std::size_t n) {
+    double square = 0;
+    for (std::size_t i = 0; i < n; ++i) square += v[i] * v[i];
+    return std::sqrt(square);
+}
+
+/// |u - v|^2 and |u + v|^2 of the unit vectors along z and g.
+struct Directions {
+    double apart = 0;
+    double along = 0;
+};
+
+template <class Number>
+Directions directions(const std::vector<double>& z, double z_length, const Number* g) {
+    const std::vector<double> row(g, g + z.size());
+    const double g_length = length(row.data(), row.size());
+    Directions result;
+    for (std::size_t i = 0; i < z.size(); ++i) {
+        const double u = z[i] / z_length;
+        const double v = row[i] / g_length;
+        result.apart += (u - v) * (u - v);
+        result.along += (u + v) * (u + v);
+    }
+    return result;
+}
+
+/// (z - g)^T W (z - g)
+template <class Number>
+double quadratic_form(const check::Distance& distance, const std::vector<double>& z,
+                      const Number* g) {
+    const std::size_t n = z.size();
+    double sum = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double difference = z[i] - g[i];
+        if (distance.weights_diagonal) {
+            sum += distance.weights[i] * difference * difference;
+            continue;
+        }
+        double row = 0;
+        for (std::size_t j = 0; j < n; ++j) row += distance.weights[i * n + j] * (z[j] - g[j]);
+        sum += difference * row;
+    }
+    return std::max(sum, 0.0);  // W is positive definite
+}
+
+template <class Number>
+double to_row(const check::Distance& distance, const std::vector<double>& z, double z_length,
+              const Number* g) {
+    double sum = 0;
+    double squares = 0;
+    double greatest = 0;
+    for (std::size_t i = 0; i < z.size(); ++i) {
+        const double difference = std::abs(z[i] - g[i]);
+        sum += difference;
+        squares += difference * difference;
+        greatest = std::max(greatest, difference);
+    }
+    switch (distance.metric) {
+        case Metric::l1: return sum;
+        case Metric::l2: return std::sqrt(squares);
+        case Metric::l2sq: return squares;
+        case Metric::linf: return greatest;
+        case Metric::cosine:
+            return std::min(2.0, directions(z, z_length, g).apart / 2);  // 1 - u.v = |u - v|^2 / 2
+        case Metric::angular: {
+            const Directions d = directions(z, z_length, g);
+            return 2 * std::atan2(std::sqrt(d.apart), std::sqrt(d.along));
+        }
+        case Metric::mahalanobis: return std::sqrt(quadratic_form(distance, z, g));
+    }
+    return std::nan("");
+}
+
+}  // namespace
+
+double aggregate(const check::Distance& distance, std::vector<double> rows) {
+    switch (distance.aggregation) {
+        case check::Aggregation::min: return *std::min_element(rows.begin(), rows.end());
+        case check::Aggregation::max: return *std::max_element(rows.begin(), rows.end());
+        case check::Aggregation::mean:
+            return std::accumulate(rows.begin(), rows.end(), 0.0) /
+                   static_cast<double>(rows.size());
+        case check::Aggregation::kth: break;
+    }
+    std::nth_element(rows.begin(), rows.begin() + (distance.kth - 1), rows.end());
+    return rows[distance.kth - 1];
+}
+
+std::optional<double> exact_distance(const check::Model& model, const check::Distance& distance,
+                                     const std::vector<double>& point) {
+    const check::Target& target = model.targets[distance.target];
+    const double z_length =
+        check::is_of_directions(distance.metric) ? length(point.data(), point.size()) : 1;
+    if (z_length == 0) return std::nullopt;
+    std::vector<double> rows;
+    for (std::size_t k = 0; k < target.rows; ++k)
+        rows.push_back(
+            to_row(distance, point, z_length, target.values.data() + k * target.dimension));
+    return aggregate(distance, std::move(rows));
+}
+
+std::optional<double> exact_distance(const check::Distance& distance,
+                                     const std::vector<double>& point,
+                                     const std::vector<double>& other) {
+    const bool directed = check::is_of_directions(distance.metric);
+    const double z_length = directed ? length(point.data(), point.size()) : 1;
+    if (z_length == 0 || (directed && length(other.data(), other.size()) == 0)) return std::nullopt;
+    return to_row(distance, point, z_length, other.data());
+}
+
+// ---- numbers that earlier steps have a part in --------------------------------------------------
+
+namespace {
+
+using Kind = check::Past::Kind;
+
+constexpr double kUnknownPast = std::numeric_limits<double>::quiet_NaN();
+
+/// Adds to a sum without rounding: it is kept in parts whose bits do not overlap (Shewchuk 1997).
+void add_exactly(std::vector<double>& parts, double x) {
+    std::size_t kept = 0;
+    for (const double part : parts) {
+        const double sum = x + part;
+        const double of_part = sum - x;
+        const double rest = (x - (sum - of_part)) + (part - of_part);
+        if (rest != 0) parts[kept++] = rest;
+        x = sum;
+    }
+    parts.resize(kept);
+    if (x != 0) parts.push_back(x);
+}
+
+}  // namespace
+
+void PastValues::reset() {
+    values_.clear();
+    candidates_.clear();
+    sum_.clear();
+    frame_ = 0;
+    above_ = 0;
+    below_ = 0;
+}
+
+double PastValues::push(double value) {
+    if (past_->kind == Kind::ago) {
+        values_.push_back(value);
+        if (values_.size() <= past_->steps) return kUnknownPast;
+        const double ago = values_.front();
+        values_.pop_front();
+        return ago;
+    }
+    if (std::isnan(value)) {
+        reset();
+        return kUnknownPast;
+    }
+    if (past_->kind != Kind::mean) return extreme(value);
+    values_.push_back(value);
+    add(value, 1);
+    if (values_.size() > past_->steps) {
+        add(values_.front(), -1);
+        values_.pop_front();
+    }
+    return values_.size() == past_->steps ? mean() : kUnknownPast;
+}
+
+void PastValues::add(double value, double sign) {
+    if (!std::isinf(value)) return add_exactly(sum_, sign * value);
+    std::size_t& count = value > 0 ? above_ : below_;
+    count = sign > 0 ? count + 1 : count - 1;
+}
+
+double PastValues::mean() const {
+    const double infinity = std::numeric_limits<double>::infinity();
+    if (above_ > 0 && below_ > 0) return kUnknownPast;
+    if (above_ > 0 || below_ > 0) return above_ > 0 ? infinity : -infinity;
+    return std::accumulate(sum_.begin(), sum_.end(), 0.0) / past_->steps;
+}
+
+double PastValues::extreme(double value) {
+    const auto outdone = [&](double other) {
+        return past_->kind == Kind::min ? value <= other : value >= other;
+    };
+    while (!candidates_.empty() && outdone(candidates_.back().second)) candidates_.pop_back();
+    candidates_.emplace_back(frame_, value);
+    if (candidates_.front().first + past_->steps <= frame_) candidates_.pop_front();
+    ++frame_;
+    return frame_ >= past_->steps ? candidates_.front().second : kUnknownPast;
+}
+
+// ---- truths -------------------------------------------------------------------------------------
 
 namespace {
 
@@ -19,11 +217,6 @@ using check::Formula;
 using check::Input;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
-Label negate(Label label) {
-    if (label == Label::unknown) return label;
-    return label == Label::yes ? Label::no : Label::yes;
-}
 
 Label label_of(bool value) {
     return value ? Label::yes : Label::no;
@@ -51,33 +244,64 @@ bool is_fresh(const Input& input, const std::vector<double>& sample,
     return !comparable || freshness.accepts(input, narrowed->values);
 }
 
+bool is_atom(const Formula& formula) {
+    return formula.kind == Formula::Kind::predicate || formula.kind == Formula::Kind::boolean_input;
+}
+
+/// Compiles a sliding monitor for each formula, over a bool input for each formula that is an atom.
+/// A host has room for any of them.
+Compiled over_atoms(const check::Model& model, const std::vector<Index>& formulas) {
+    check::Model result;
+    result.formulas = model.formulas;
+    for (Index f = 0; f < result.formulas.size(); ++f) {
+        Input& input = result.inputs.emplace_back();
+        input.name = fmt::format("atom_{}", f);
+        input.type = check::InputType::boolean;
+        Formula& formula = result.formulas[f];
+        if (!is_atom(formula)) continue;
+        formula.kind = Formula::Kind::boolean_input;
+        formula.index = f;
+    }
+    for (const Index formula : formulas) {
+        check::Monitor& monitor = result.monitors.emplace_back();
+        monitor.name = fmt::format("truth_{}", formula);
+        monitor.formula = formula;
+        monitor.sliding = true;
+    }
+    constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+    diag::Sink sink;
+    return *compile(std::move(result), {{kMost, kMost, kMost, kMost}, check::Values::boolean},
+                    sink);
+}
+
 }  // namespace
 
 TruthEvaluator::TruthEvaluator(const check::Model& model, const std::vector<Index>& formulas)
-    : model_(model) {
-    std::vector<bool> wanted(model.formulas.size());
-    for (const Index formula : formulas) wanted[formula] = true;
+    : model_(model), formulas_(formulas) {
+    std::set<Index> atoms;
     std::set<Index> inputs;
     std::set<Index> pasts;
-    for (Index i = static_cast<Index>(wanted.size()); i-- > 0;) {
-        if (!wanted[i]) continue;
-        const Formula& formula = model.formulas[i];
-        for (const Index operand : formula.operands) wanted[operand] = true;
-        order_.push_back(i);
-        if (formula.kind == Formula::Kind::boolean_input) inputs.insert(formula.index);
-        if (formula.kind != Formula::Kind::predicate) continue;
-        const std::vector<Index>& read = model.predicates[formula.index].inputs;
-        inputs.insert(read.begin(), read.end());
-        check::for_each(model.predicates[formula.index].expression, [&](const Expr& e) {
+    for (const Index formula : formulas)
+        for (const Index part : check::parts_of(model, formula))
+            if (is_atom(model.formulas[part])) atoms.insert(part);
+    for (const Index atom : atoms) {
+        const Formula& formula = model.formulas[atom];
+        if (formula.kind == Formula::Kind::boolean_input) {
+            inputs.insert(formula.index);
+            continue;
+        }
+        const check::Predicate& predicate = model.predicates[formula.index];
+        inputs.insert(predicate.inputs.begin(), predicate.inputs.end());
+        check::for_each(predicate.expression, [&](const Expr& e) {
             if (e.kind == Expr::Kind::past) pasts.insert(e.index);
         });
-        check::for_each_distance(model.predicates[formula.index].expression, [&](Index d) {
+        check::for_each_distance(predicate.expression, [&](Index d) {
             for (const Index point : {model.distances[d].point, model.distances[d].other})
                 if (point != check::kNone)
                     longest_delay_ = std::max(longest_delay_, check::longest_delay(model, point));
         });
     }
-    std::reverse(order_.begin(), order_.end());
+    atoms_.assign(atoms.begin(), atoms.end());
     inputs_.assign(inputs.begin(), inputs.end());
     read_pasts_.assign(pasts.begin(), pasts.end());
     for (const Index past : read_pasts_) past_values_.emplace_back(model.pasts[past]);
@@ -85,9 +309,9 @@ TruthEvaluator::TruthEvaluator(const check::Model& model, const std::vector<Inde
 }
 
 void TruthEvaluator::reset() {
-    frame_ = 0;
+    has_begun_ = false;
+    if (evaluator_) evaluator_->reset();
     labels_.assign(model_.formulas.size(), Label::unknown);
-    memories_.assign(model_.formulas.size(), {});
     values_.assign(model_.inputs.size(), {});
     earlier_.clear();
     held_.assign(model_.inputs.size(), {});
@@ -98,14 +322,35 @@ void TruthEvaluator::reset() {
 }
 
 void TruthEvaluator::step(const Frame& frame) {
-    ++frame_;
-    if (longest_delay_ > 0 && frame_ > 1) {
+    if (!evaluator_ && !formulas_.empty()) {
+        temporal_ = over_atoms(model_, formulas_);
+        evaluator_ = std::make_unique<execute::Evaluator>(temporal_.plan);
+        samples_.resize(model_.formulas.size());
+    }
+    if (longest_delay_ > 0 && has_begun_) {
         earlier_.push_front(values_);
         if (earlier_.size() > longest_delay_) earlier_.pop_back();
     }
+    has_begun_ = true;
     take_inputs(frame);
     take_pasts();
-    for (const Index index : order_) labels_[index] = value(index);
+    take_atoms();
+}
+
+void TruthEvaluator::take_atoms() {
+    if (!evaluator_) return;
+    for (const Index atom : atoms_) {
+        const Formula& formula = model_.formulas[atom];
+        Label label = Label::unknown;
+        if (formula.kind == Formula::Kind::predicate)
+            label = compare(model_.predicates[formula.index]);
+        else if (!values_[formula.index].empty())
+            label = label_of(values_[formula.index][0] != 0);
+        samples_[atom] = sample_of(label);
+    }
+    const std::vector<etlmon::Verdict>& verdicts = evaluator_->step(samples_);
+    for (std::size_t m = 0; m < verdicts.size(); ++m)
+        labels_[formulas_[temporal_.plan.monitors[m].index]] = label_of(verdicts[m]);
 }
 
 void TruthEvaluator::take_inputs(const Frame& frame) {
@@ -130,89 +375,6 @@ void TruthEvaluator::take_pasts() {
         const Index past = read_pasts_[i];
         pasts_[past] = past_values_[i].push(expression(model_.pasts[past].expression));
     }
-}
-
-Label TruthEvaluator::value(Index index) {
-    using enum Formula::Kind;
-    const Formula& formula = model_.formulas[index];
-    const auto at = [&](std::size_t i) { return labels_[formula.operands[i]]; };
-    const auto fold = [&](auto combine) {
-        Label result = at(0);
-        for (std::size_t i = 1; i < formula.operands.size(); ++i) result = combine(result, at(i));
-        return result;
-    };
-    const auto both = [](Label a, Label b) { return std::min(a, b); };
-    const auto either = [](Label a, Label b) { return std::max(a, b); };
-    switch (formula.kind) {
-        case constant_true: return Label::yes;
-        case constant_false: return Label::no;
-        case predicate: return compare(model_.predicates[formula.index]);
-        case boolean_input: {
-            const std::vector<double>& sample = values_[formula.index];
-            return sample.empty() ? Label::unknown : label_of(sample[0] != 0);
-        }
-        case negation: return negate(at(0));
-        case conjunction: return fold(both);
-        case disjunction: return fold(either);
-        case implication: return either(negate(at(0)), at(1));
-        case equivalence: return both(either(negate(at(0)), at(1)), either(negate(at(1)), at(0)));
-        case previous:
-        case once: return in_the_past(formula, memories_[index], Label::yes, at(0));
-        case historically:
-            return negate(in_the_past(formula, memories_[index], Label::yes, negate(at(0))));
-        case since: return in_the_past(formula, memories_[index], at(0), at(1));
-        case rise:
-            return both(at(0), in_the_past(formula, memories_[index], Label::yes, negate(at(0))));
-        case fall:
-            return both(negate(at(0)), in_the_past(formula, memories_[index], Label::yes, at(0)));
-        case held: {
-            const Label broken = in_the_past(formula, memories_[index], Label::yes, negate(at(0)));
-            return both(negate(broken), label_of(frame_ > formula.high));
-        }
-        case count: return count_of(formula, memories_[index], at(0));
-        case next:
-        case eventually:
-        case always:
-        case until:
-        case weak_until:
-        case release: break;  // truths have no future operators
-    }
-    return Label::unknown;
-}
-
-/// "count(f, D) >= n": yes where f surely began to hold at n of the last frames, no where it did at
-/// fewer, however often it may have.
-Label TruthEvaluator::count_of(const Formula& formula, Memory& memory, Label f) {
-    const auto add = [&](Label began, int sign) {
-        if (began == Label::yes) memory.yes += sign;
-        if (began != Label::no) memory.possible += sign;
-    };
-    memory.begins.push_back(std::min(f, negate(std::exchange(memory.before, f))));
-    add(memory.begins.back(), 1);
-    if (memory.begins.size() > formula.high + std::size_t{1}) {
-        add(memory.begins.front(), -1);
-        memory.begins.pop_front();
-    }
-    if (memory.yes >= formula.index) return Label::yes;
-    return memory.possible >= formula.index ? Label::unknown : Label::no;
-}
-
-/// "f S[a,b] g: max over j in [max(0, k-b), k-a] of min(rho(g, j), min of rho(f, m) over m in (j,
-/// k])": yes where g was yes at such a j and f has been yes since, possible where neither was no.
-Label TruthEvaluator::in_the_past(const Formula& formula, Memory& memory, Label f, Label g) const {
-    memory.delayed.push_back(g);
-    if (memory.delayed.size() > formula.low) {
-        const std::uint64_t at = frame_ - formula.low;
-        if (memory.delayed.front() == Label::yes) memory.last_yes = at;
-        if (memory.delayed.front() != Label::no) memory.last_possible = at;
-        memory.delayed.pop_front();
-    }
-    if (f != Label::yes) memory.f_not_yes = frame_;
-    if (f == Label::no) memory.f_no = frame_;
-    const bool bounded = formula.high != check::kUnbounded && formula.high < frame_;
-    const std::uint64_t first = bounded ? frame_ - formula.high : 1;
-    if (memory.last_yes >= std::max(first, memory.f_not_yes)) return Label::yes;
-    return memory.last_possible >= std::max(first, memory.f_no) ? Label::unknown : Label::no;
 }
 
 Label TruthEvaluator::compare(const check::Predicate& predicate) const {
@@ -326,6 +488,11 @@ std::vector<Index> labelled_predicates(const GroundTruth& truth) {
     for (Index predicate = 0; predicate < truth.inputs.size(); ++predicate)
         if (truth.inputs[predicate] != check::kNone) found.push_back(predicate);
     return found;
+}
+
+Label label_of(const etlmon::Verdict& verdict) {
+    if (verdict.satisfied()) return Label::yes;
+    return verdict.violated() ? Label::no : Label::unknown;
 }
 
 execute::Sample sample_of(Label label) {

@@ -1,20 +1,72 @@
 // Evaluates truths: formulas over the present and past of recorded inputs, frame by frame, as
 // docs/language.md defines them, read as Boolean. A missing sample may leave a truth unknown.
-// Everything is computed in double with exact comparisons and literals as written; `hold`,
-// `stale after` and ranges apply as in the monitor. The work of a step does not depend on the
-// length of a window.
+// Numbers are computed in double with exact comparisons and literals as written; `hold`,
+// `stale after` and ranges apply as in the monitor. Operators are those of the monitor, in a plan
+// of truth values. The work of a step does not depend on the length of a window.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "episodes/labels/label.hpp"
-#include "episodes/past_values.hpp"
-#include "execute/inputs.hpp"
+#include "compile.hpp"
+#include "episodes/labels/table.hpp"
+#include "execute/evaluator.hpp"
 
 namespace etlc::episodes {
+
+// ---- distances in double ------------------------------------------------------------------------
+// Distances in double, for truths; monitors compute in float32. The target set and the weights are
+// the monitor's float32 numbers, everything computed from them is double.
+
+/// Returns d(point, target) aggregated over the target set; `point` has as many elements as the
+/// target has columns. Returns nothing for the zero vector under cosine and angular, because it has
+/// no direction.
+std::optional<double> exact_distance(const check::Model& model, const check::Distance& distance,
+                                     const std::vector<double>& point);
+
+/// Returns d(point, other) likewise.
+std::optional<double> exact_distance(const check::Distance& distance,
+                                     const std::vector<double>& point,
+                                     const std::vector<double>& other);
+
+/// Aggregates the distances of the rows, of which there is at least one.
+double aggregate(const check::Distance& distance, std::vector<double> rows);
+
+// ---- numbers that earlier steps have a part in --------------------------------------------------
+// Numbers that earlier steps have a part in, in double, for truths. The work of a step does not
+// depend on the length of a window.
+
+class PastValues {
+public:
+    explicit PastValues(const check::Past& past) : past_(&past) {}
+
+    void reset();
+    /// Takes the value of its expression at this frame, NaN where it is missing. Returns the
+    /// number, NaN while a value that it is made of is missing.
+    double push(double value);
+
+private:
+    void add(double value, double sign);
+    double mean() const;
+    double extreme(double value);
+
+    const check::Past* past_;
+    std::deque<double> values_;  ///< the last ones, none of which a window lacks
+    std::size_t frame_ = 0;
+    /// For a min or max: the values that may still be it, with their frames; the first is it now.
+    std::deque<std::pair<std::size_t, double>> candidates_;
+    std::vector<double> sum_;  ///< of a mean: its exact parts, small ones first, without infinities
+    std::size_t above_ = 0;    ///< infinities in the window
+    std::size_t below_ = 0;
+};
+
+// ---- truths -------------------------------------------------------------------------------------
 
 using check::Index;
 
@@ -35,37 +87,24 @@ public:
     const std::vector<Index>& inputs() const { return inputs_; }
 
 private:
-    /// The memory of `f S[a,b] g`, and of O, H and Y, which it defines: the last frames that
-    /// decide. Frames count from 1.
-    struct Memory {
-        std::deque<Label> delayed;        ///< g in the last a frames
-        std::uint64_t last_yes = 0;       ///< last frame, at least a ago, at which g was yes
-        std::uint64_t last_possible = 0;  ///< the same for yes or unknown
-        std::uint64_t f_not_yes = 0;      ///< last frame at which f was no or unknown
-        std::uint64_t f_no = 0;
-        // Of a count:
-        Label before = Label::yes;  ///< f at the last frame; before the first nothing begins
-        std::deque<Label> begins;   ///< where f began to hold, in the last frames
-        std::int64_t yes = 0;       ///< how many of these are yes,
-        std::int64_t possible = 0;  ///< and yes or unknown
-    };
-
     void take_inputs(const Frame& frame);
-    Label value(Index index);
+    void take_atoms();
     Label compare(const check::Predicate& predicate) const;
     double expression(const check::Expr& e) const;
     double measure(const check::Distance& distance) const;
     std::vector<double> elements(Index point, std::size_t ago) const;
     void take_pasts();
-    static Label count_of(const check::Formula& formula, Memory& memory, Label f);
-    Label in_the_past(const check::Formula& formula, Memory& memory, Label f, Label g) const;
 
     const check::Model& model_;
-    std::vector<Index> order_;  ///< formulas to evaluate, operands first
+    std::vector<Index> formulas_;
+    std::vector<Index> atoms_;  ///< the formulas of bool inputs and predicates below
     std::vector<Index> inputs_;
-    std::vector<Label> labels_;
-    std::vector<Memory> memories_;  ///< per formula
-    Frame values_;                  ///< per input, after `hold`
+    /// A plan of the formulas over bool inputs, one for each formula of the model that is an atom.
+    Compiled temporal_;
+    std::unique_ptr<execute::Evaluator> evaluator_;
+    std::vector<execute::Sample> samples_;  ///< of these
+    std::vector<Label> labels_;             ///< per formula
+    Frame values_;                          ///< per input, after `hold`
     std::uint32_t longest_delay_ = 0;
     std::deque<Frame> earlier_;  ///< values of the frames before, the last one first
     Frame held_;
@@ -74,7 +113,7 @@ private:
     std::vector<Index> read_pasts_;              ///< past numbers of the model that formulas read
     std::vector<PastValues> past_values_;        ///< of these
     std::vector<double> pasts_;                  ///< per past number: at this frame
-    std::uint64_t frame_ = 0;                    ///< from 1; 0 before the first
+    bool has_begun_ = false;
 };
 
 /// The ground-truth monitor: the same formulas, in which bool inputs with the labels replace the
@@ -94,5 +133,7 @@ std::vector<Index> labelled_predicates(const GroundTruth& truth);
 
 /// Returns the label as a sample of such an input; unknown becomes missing.
 execute::Sample sample_of(Label label);
+/// Returns the label that a decided verdict states.
+Label label_of(const etlmon::Verdict& verdict);
 
 }  // namespace etlc::episodes

@@ -8,7 +8,6 @@
 
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
-#include "episodes/data_warnings.hpp"
 
 namespace etlc::evaluate {
 

@@ -22,7 +22,6 @@
 #include "episodes/ranking/auroc.hpp"
 #include "episodes/shared/sharing.hpp"
 #include "evaluate/episode_scores.hpp"
-#include "evaluate/subject.hpp"
 
 namespace etlc::evaluate {
 
@@ -103,7 +102,7 @@ struct Judgement {
 struct Score : ByRate<Figure> {
     Counts counts;
     Figure gain;                     ///< F1 less the F1 of always claiming true
-    std::optional<Counts> duration;  ///< the duration baseline, evaluate/duration.hpp
+    std::optional<Counts> duration;  ///< the duration baseline (evaluate/figures.hpp)
     bool of_variants = false;        ///< whose length follows from their kind: no such baseline
 };
 

@@ -14,7 +14,7 @@
 #include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
-#include "episodes/recent_frames.hpp"
+#include "episodes/recording.hpp"
 #include "episodes/truth.hpp"
 
 namespace etlc::fit {

@@ -8,7 +8,6 @@
 #include "check/guarantees/provenance.hpp"
 #include "data/text/text.hpp"
 #include "episodes/admission/admission.hpp"
-#include "episodes/data_warnings.hpp"
 #include "fit/algebra/moments.hpp"
 
 namespace etlc::fit {
@@ -86,14 +85,10 @@ bool report(const Filled& all, diag::Sink& sink) {
 
 fitted::Entry entry_of(const check::Model& model, const Fitted& fitted, const Solution& solution,
                        const Collection& collection) {
-    check::FittedProvenance provenance =
-        check::provenance(model, fitted, collection.readings.labelling());
     fitted::Entry entry;
     entry.name = fitted.name;
     entry.declaration = fitted.declaration;
-    entry.of = std::move(provenance.of);
-    entry.truth = std::move(provenance.truth);
-    entry.reads = std::move(provenance.reads);
+    entry.reads = check::reads(model, fitted, collection.readings.labelling());
     entry.rows = fitted.rows;
     entry.columns = fitted.columns;
     entry.matrix = solution.filling.matrix;

@@ -10,8 +10,7 @@
 #include <set>
 
 #include "episodes/parallel.hpp"
-#include "episodes/recent_frames.hpp"
-#include "episodes/replay.hpp"
+#include "episodes/recording.hpp"
 #include "plan/plan.hpp"
 
 namespace etlc::fit {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "episodes/data_warnings.hpp"
+#include "episodes/admission/admission.hpp"
 #include "episodes/ranking/auroc.hpp"
 #include "fit/collect.hpp"
 #include "fit/solve.hpp"

@@ -10,7 +10,7 @@
 
 #include "data/files/file.hpp"
 #include "data/text/text.hpp"
-#include "episodes/labels/episode_names.hpp"
+#include "episodes/labels/labels.hpp"
 #include "execute/inputs.hpp"
 #include "recordings/episodes.hpp"
 #include "recordings/open.hpp"

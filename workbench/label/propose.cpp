@@ -12,7 +12,7 @@
 #include "data/text/text.hpp"
 #include "episodes/leaks/leaks.hpp"
 #include "episodes/ranking/auroc.hpp"
-#include "episodes/replay.hpp"
+#include "episodes/recording.hpp"
 #include "plan/plan.hpp"
 #include "recordings/open.hpp"
 

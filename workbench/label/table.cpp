@@ -13,7 +13,7 @@
 
 #include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
-#include "episodes/labels/episode_names.hpp"
+#include "episodes/labels/labels.hpp"
 
 namespace etlc::label {
 

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "diag/diag.hpp"
-#include "episodes/labels/label.hpp"
 #include "episodes/labels/table.hpp"
 
 namespace etlc::label {

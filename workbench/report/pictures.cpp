@@ -14,7 +14,7 @@
 #include "check/encoders/encoded.hpp"
 #include "data/files/file.hpp"
 #include "data/text/text.hpp"
-#include "episodes/replay.hpp"
+#include "episodes/recording.hpp"
 #include "fit/algebra/dense.hpp"
 #include "plan/plan.hpp"
 #include "recordings/datasets/dataset.hpp"

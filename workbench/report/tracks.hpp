@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "episodes/replay.hpp"
-#include "evaluate/subject.hpp"
+#include "episodes/recording.hpp"
+#include "evaluate/episode_scores.hpp"
 #include "explain/report.hpp"
 #include "ir/lower.hpp"
 #include "report/pictures.hpp"

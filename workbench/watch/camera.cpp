@@ -294,9 +294,10 @@ bool Encoders::compare(Index input, const Stop& stop) {
         }
         if (expected.size() != embedded::kReferenceFrames * row.size())
             return fail(input, {Code::other_encoder,
-                                fmt::format("what '{}' made of the reference frames is not known: "
-                                            "run etlc embed again",
-                                            of.name)});
+                                fmt::format("'{}' makes {} of a frame, not the {} that it made for "
+                                            "etlc embed",
+                                            of.name, diag::counted(row.size(), "number"),
+                                            expected.size() / embedded::kReferenceFrames)});
         const double difference =
             embedded::relative_difference(row.data(), &expected[frame * row.size()], row.size());
         if (difference > embedded::kSameEncoder)

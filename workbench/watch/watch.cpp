@@ -14,8 +14,8 @@
 
 #include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
-#include "episodes/data_warnings.hpp"
-#include "episodes/replay.hpp"
+#include "episodes/admission/admission.hpp"
+#include "episodes/recording.hpp"
 #include "recordings/frames/frames.hpp"
 #include "source/text.hpp"
 #include "watch/camera.hpp"

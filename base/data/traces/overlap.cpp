@@ -71,11 +71,6 @@ Verdict verdict(const InputContent& a, const InputContent& b) {
     return by_units(a.changes, b.changes);
 }
 
-/// Files of earlier versions do not say what an input is.
-bool are_of_embedding(const InputContent& a, const InputContent& b) {
-    return a.samples != Samples::runs || b.samples != Samples::runs;
-}
-
 /// Calls `visit(a, b)` with the contents of each input that both have.
 template <class Visit>
 void for_each_common(const EpisodeContent& a, const EpisodeContent& b, const Visit& visit) {
@@ -90,7 +85,7 @@ bool equal_in_common(const EpisodeContent& a, const EpisodeContent& b) {
     bool embedding_tells = false;
     for_each_common(a, b, [&](const InputContent& one, const InputContent& other) {
         const bool equal = one.hash == other.hash;
-        const bool of_embedding = are_of_embedding(one, other);
+        const bool of_embedding = one.samples != Samples::runs;
         any = true;
         all_equal &= equal;
         embeddings_equal &= equal || !of_embedding;
@@ -105,7 +100,7 @@ std::optional<double> share_in_common(const EpisodeContent& a, const EpisodeCont
     std::optional<double> of_scalars;     // the least
     bool differ = false;
     for_each_common(a, b, [&](const InputContent& one, const InputContent& other) {
-        if (!are_of_embedding(one, other)) {
+        if (one.samples == Samples::runs) {
             if (const auto here = share(one.sketch, other.sketch))
                 of_scalars = std::min(of_scalars.value_or(1), *here);
             return;

@@ -48,10 +48,6 @@ std::vector<std::string> changes(Context& c, Encoder encoder, const embedded::En
     if (encoder.dimension != 0 && then.dimension != encoder.dimension)
         found.push_back(changed("the dimension", std::to_string(then.dimension),
                                 std::to_string(encoder.dimension)));
-    if (then.kind != embedded::kCommand && !then.kind.starts_with(embedded::kOnnxRuntime))
-        found.emplace_back(
-            "an earlier etlc ran it with OpenCV, whose results may differ, or with an unknown "
-            "version of ONNX Runtime");
     const std::string path = beside_spec(c, encoder.model);
     if (!found.empty() || !exists(path)) return found;
     c.dependencies.insert(path);

@@ -17,11 +17,6 @@ std::optional<Threshold> check_calibrated(Context& context, const ast::Calibrate
 std::optional<MonitorCalibration> check_monitor_calibrated(Context& context,
                                                            const ast::Calibrated& written);
 
-/// Returns whether the method takes one score of each group of episodes, not of each frame.
-constexpr bool takes_groups(ThresholdOrigin origin) {
-    return origin == ThresholdOrigin::conformal || origin == ThresholdOrigin::adaptive;
-}
-
 /// Says what to write in place of an alpha above 0.5.
 std::string large_alpha_note(const std::string& alpha);
 
@@ -30,5 +25,12 @@ std::string large_alpha_note(const std::string& alpha);
 std::string_view method_name(ThresholdOrigin origin);
 
 std::string_view word(Against against);  ///< "missed_alarm"
+
+/// Returns the multiple of the grid next to `epsilon` on the side of more detections; nothing if
+/// epsilon is out of range.
+std::optional<float> start(const Adaptation& adaptation, float epsilon, bool upper_bound);
+
+/// Returns the error message for an epsilon out of range.
+std::string outside(const Predicate& predicate, float epsilon);
 
 }  // namespace etlc::check

@@ -1,14 +1,23 @@
-// Thresholds from scores, for calibration and for checking thresholds that are read back: the rank
-// k, and epsilon beyond or between scores. Alpha is never rounded to binary, which would give a
-// wrong k for some alpha and n.
+// Thresholds from scores: the rank k, and epsilon beyond or between scores. Alpha is never rounded
+// to binary, which would give a wrong k for some alpha and n. Whoever reads a thresholds file
+// computes both again, so a number that was changed alone is detected.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "artifacts/thresholds.hpp"
+
 namespace etlc::check {
+
+/// Whether the method takes one score of each group of episodes, and keeps them all. The others
+/// pool frames, and keep the chosen score, f1 also the next.
+constexpr bool takes_groups(std::string_view method) {
+    return method == "conformal" || method == "adaptive";
+}
 
 /// Limit up to which ranks are exact; more scores fit in no memory.
 inline constexpr std::uint64_t kMaxScores = std::uint64_t{1} << 59U;
@@ -36,5 +45,20 @@ std::optional<float> halfway(float low, float high);
 constexpr std::uint64_t at_rank(std::uint64_t k, std::uint64_t n, bool upper_bound) {
     return upper_bound ? k - 1 : n - k;
 }
+
+/// The first inconsistent number: "'predicates.at_a.k' is 1, expected 37: the rank of alpha = 0.1
+/// among 40 scores".
+struct Contradiction {
+    std::string message;
+    bool by_hand = false;  ///< the threshold itself, which somebody may have edited
+};
+
+/// `place` is the key of the entry, "predicates.at_a". `upper_bound`: the threshold is above the
+/// accepted scores, as for <= and < and for a shift against missed alarms. `episodes` were used for
+/// calibration.
+std::optional<Contradiction> contradiction(const thresholds::Entry& entry, const std::string& place,
+                                           bool upper_bound,
+                                           const std::vector<std::uint64_t>& episodes,
+                                           const thresholds::GroupNames& groups);
 
 }  // namespace etlc::check

@@ -4,17 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "artifacts/thresholds.hpp"
 #include "check/context/context.hpp"
 #include "check/context/options.hpp"
-#include "check/guarantees/adaptation.hpp"
 #include "check/guarantees/calibrated.hpp"
-#include "check/guarantees/consistency.hpp"
+#include "check/guarantees/conformal.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "check/numbers/decimal.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
+#include "data/traces/overlap.hpp"
 
 namespace etlc::check {
 
@@ -65,127 +66,28 @@ bool same_number(const std::string& a, const std::string& b) {
     return a.empty() || b.empty() ? a == b : Decimal::parse(a) == Decimal::parse(b);
 }
 
-/// Lists the differences between the spec and what an entry was calibrated for.
-class Differences {
-public:
-    /// `what` is "predicate" or "formula".
-    Differences(const Model& model, const std::string& name, const Threshold& threshold,
-                std::string_view what, Provenance now, const thresholds::Entry& entry)
-        : model_(model),
-          name_(name),
-          threshold_(threshold),
-          what_(what),
-          entry_(entry),
-          now_(std::move(now)) {}
-
-    std::vector<std::string> find() && {
-        const std::string_view method = method_name(threshold_.origin);
-        if (entry_.method != method)
-            add("method", entry_.method, method);
-        else if (!same_number(entry_.alpha, threshold_.alpha))
-            add("alpha", entry_.alpha, threshold_.alpha);
-        if (entry_.predicate != now_.predicate) add(what_, entry_.predicate, now_.predicate);
-        add_changed(now_.targets);
-        if (stated(entry_.truth) == now_.truth)
-            add_changed(now_.truth_targets);
-        else
-            add_labels();
-        add_gone();
-        if (found_.empty()) add_read();
-        return std::move(found_);
-    }
-
-private:
-    void add(std::string_view what, std::string_view then, std::string_view now) {
-        found_.push_back(changed(fmt::format("the {}", what), trimmed(then), trimmed(now)));
-    }
-
-    static std::string_view trimmed(std::string_view text) {
-        while (text.ends_with(' ')) text.remove_suffix(1);
-        return text;
-    }
-
-    /// Adds a change of the truth, or between a truth and an array.
-    void add_labels() {
-        const std::string then = stated(entry_.truth);
-        if (then == entry_.truth && !now_.truth.empty()) return add("truth", then, now_.truth);
-        const auto labels = [&](std::string_view truth) {
-            return truth.empty() ? fmt::format("an array truth.{} or a table", name_)
-                                 : std::string(truth);
-        };
-        found_.push_back(fmt::format("the labels were: {}; they are: {}",
-                                     labels(entry_.truth == "array" ? then : entry_.truth),
-                                     labels(now_.truth)));
-    }
-
-    /// Adds differences that have no words of their own.
-    void add_read() {
-        if (!entry_.reads.empty())
-            found_ = differences(entry_.reads, now_.reads);
-        else if (what_ == "formula")
-            found_.emplace_back(
-                "the entry is of an earlier version, which does not record everything that it "
-                "depends on");
-    }
-
-    void add_changed(const std::map<std::string, std::string>& hashes) {
-        for (const auto& [name, hash] : hashes) {
-            const auto then = entry_.targets.find(name);
-            // An unknown target belongs to a changed predicate, which has been reported.
-            if (then == entry_.targets.end() && found_.empty())
-                found_.push_back(is_input(name)
-                                     ? fmt::format("the declaration of '{}' changed", name)
-                                     : fmt::format("it does not record the {} of '{}'",
-                                                   what_is_hashed(name), name));
-            if (then != entry_.targets.end() && then->second != hash)
-                found_.push_back(fmt::format("the {} of '{}' changed", what_is_hashed(name), name));
-        }
-    }
-
-    /// Adds what the entry was calibrated with but the spec no longer uses.
-    void add_gone() {
-        if (!found_.empty()) return;  // already explained
-        for (const auto& [name, hash] : entry_.targets)
-            if (!now_.targets.contains(name) && !now_.truth_targets.contains(name))
-                found_.push_back(
-                    is_input(name)
-                        ? fmt::format("the declaration of '{}' changed", name)
-                        : fmt::format("it was calibrated with '{}', which is no longer used",
-                                      name));
-    }
-
-    template <class Thing>
-    static bool has(const std::vector<Thing>& things, const std::string& name) {
-        return std::any_of(things.begin(), things.end(),
-                           [&](const Thing& thing) { return thing.name == name; });
-    }
-
-    bool is_input(const std::string& name) const { return has(model_.inputs, name); }
-
-    std::string_view what_is_hashed(const std::string& name) const {
-        if (has(model_.encoders, name)) return "model or settings";
-        if (has(model_.targets, name) || has(model_.projections, name)) return "values";
-        return is_input(name) ? "declaration" : "weights";
-    }
-
-    const Model& model_;
-    const std::string& name_;
-    const Threshold& threshold_;
-    std::string_view what_;
-    const thresholds::Entry& entry_;
-    Provenance now_;
-    std::vector<std::string> found_;
-};
+/// Returns the differences between what an entry was calibrated for and `now`.
+std::vector<std::string> changes(const Threshold& threshold, const thresholds::Entry& entry,
+                                 const Reads& now) {
+    std::vector<std::string> found;
+    const std::string_view method = method_name(threshold.origin);
+    if (entry.method != method)
+        found.push_back(changed("the method", entry.method, method));
+    else if (!same_number(entry.alpha, threshold.alpha))
+        found.push_back(changed("the alpha", entry.alpha, threshold.alpha));
+    const std::vector<std::string> read = differences(entry.reads, now);
+    found.insert(found.end(), read.begin(), read.end());
+    return found;
+}
 
 constexpr std::string_view kAgain = "calibrate again with 'etlc calibrate'";
 
-/// Returns the entry of that name; null after an error, if it is missing or `differences` finds
-/// some.
-template <class Compare>
+/// Returns the entry of that name; null after an error, if it is missing or was calibrated for
+/// something else.
 const thresholds::Entry* find_entry(Context& c, const std::string& name, const Threshold& threshold,
                                     const std::string& path,
                                     const std::map<std::string, thresholds::Entry>& entries,
-                                    Compare differences) {
+                                    const Reads& now, std::string_view against = "") {
     const auto found = entries.find(name);
     if (found == entries.end()) {
         report_missing(c, Code::threshold_missing, threshold.span,
@@ -193,20 +95,21 @@ const thresholds::Entry* find_entry(Context& c, const std::string& name, const T
             .note(std::string(kAgain));
         return nullptr;
     }
+    const thresholds::Entry& entry = found->second;
+    std::vector<std::string> all = changes(threshold, entry, now);
+    if (entry.against != against)
+        all.push_back(fmt::format("it was against: {}; it is: {}", entry.against, against));
     const bool is_current = is_up_to_date(
         c, Code::threshold_stale, threshold.span,
         fmt::format("the threshold of '{}' in {} was calibrated for something else", name, path),
-        differences(found->second), kAgain);
-    return is_current ? &found->second : nullptr;
-}
-
-/// Records, beside the guarantees, that labels differed from the truths in the spec.
-void reserve(Context& c, const std::string& labels, const std::string& name) {
-    if (labels != "array" && labels != stated(labels))
+        all, kAgain);
+    if (!is_current) return nullptr;
+    if (replaces_truths(entry.reads))
         c.model.reservations.push_back(
             fmt::format("'{}' was calibrated on labels from arrays or tables, not from its truth "
                         "in the spec",
                         name));
+    return &entry;
 }
 
 /// Sets epsilon, n and k; reports an inconsistent entry.
@@ -228,21 +131,15 @@ void take(Context& c, const thresholds::Entry& entry, const std::string& place,
     threshold.n = entry.n;
     threshold.k = entry.k;
     threshold.by_group =
-        takes_groups(threshold.origin) && thresholds::count_groups(episodes, file.groups).any_named;
+        takes_groups(entry.method) && thresholds::count_groups(episodes, file.groups).any_named;
 }
 
 void take_threshold(Context& c, Index index, const thresholds::File& file) {
     Predicate& predicate = c.model.predicates[index];
     Threshold& threshold = predicate.threshold;
     const thresholds::Entry* entry =
-        find_entry(c, predicate.name, threshold, file.path, file.predicates,
-                   [&](const thresholds::Entry& found) {
-                       return Differences(c.model, predicate.name, threshold, "predicate",
-                                          provenance(c.model, index), found)
-                           .find();
-                   });
+        find_entry(c, predicate.name, threshold, file.path, file.predicates, reads(c.model, index));
     if (entry == nullptr) return;
-    reserve(c, entry->truth, predicate.name);
     take(c, *entry, "predicates." + predicate.name, threshold, predicate.upper_bound(), file,
          file.episodes);
     if (!threshold.adaptation || std::isnan(threshold.value)) return;
@@ -256,19 +153,53 @@ void take_threshold(Context& c, Index index, const thresholds::File& file) {
     threshold.value64 = static_cast<double>(*begin);
 }
 
+/// Returns one of `episodes` that the file's predicates were calibrated on, or that shares most of
+/// its content or its group with one of those without permission; nothing if there is none.
+std::optional<std::uint64_t> shared_episode(const std::vector<std::uint64_t>& episodes,
+                                            const thresholds::File& file) {
+    const auto sorted = [](std::vector<std::uint64_t> hashes) {
+        std::sort(hashes.begin(), hashes.end());
+        return hashes;
+    };
+    const std::vector<std::uint64_t> known = sorted(file.episodes);
+    const std::vector<std::uint64_t> asked = sorted(episodes);
+    using Content = data::EpisodeContent;
+
+    data::Suspects suspects(false);
+    file.recordings.for_each_of(known,
+                                [&](std::uint64_t, const Content& of) { suspects.know(of); });
+    file.recordings.for_each_of(asked, [&](std::uint64_t, const Content& of) { suspects.ask(of); });
+    const std::vector<bool> is_suspect = suspects.find();
+    auto next = is_suspect.begin();
+    data::Recordings recordings;
+    file.recordings.for_each_of(known, [&](std::uint64_t, const Content& content) {
+        if (*next++) recordings.add(content);
+    });
+    std::vector<std::uint64_t> overlapping;  // ascending
+    file.recordings.for_each_of(asked, [&](std::uint64_t hash, const Content& content) {
+        const auto overlap = *next++ ? recordings.find(content) : std::nullopt;
+        if (overlap && (overlap->equal || file.allowances.empty())) overlapping.push_back(hash);
+    });
+    const auto group_of = [&](std::uint64_t episode) {
+        const auto group = file.groups.find(data::hash_text(episode));
+        return group == file.groups.end() ? std::string() : group->second;
+    };
+    std::set<std::string> groups;
+    for (const std::uint64_t episode : known) groups.insert(group_of(episode));
+    groups.erase("");
+    const auto found = std::find_if(episodes.begin(), episodes.end(), [&](std::uint64_t episode) {
+        return std::binary_search(known.begin(), known.end(), episode) ||
+               std::binary_search(overlapping.begin(), overlapping.end(), episode) ||
+               (file.allowances.empty() && groups.contains(group_of(episode)));
+    });
+    return found != episodes.end() ? std::optional(*found) : std::nullopt;
+}
+
 void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
     MonitorCalibration& calibration = *monitor.calibration;
     Threshold& shift = calibration.threshold;
-    const thresholds::Entry* entry = find_entry(
-        c, monitor.name, shift, file.path, file.monitors, [&](const thresholds::Entry& of) {
-            auto found = Differences(c.model, monitor.name, shift, "formula",
-                                     provenance(c.model, monitor), of)
-                             .find();
-            if (of.against != word(calibration.against))
-                found.push_back(fmt::format("it was against: {}; it is: {}", of.against,
-                                            word(calibration.against)));
-            return found;
-        });
+    const thresholds::Entry* entry = find_entry(c, monitor.name, shift, file.path, file.monitors,
+                                                reads(c.model, monitor), word(calibration.against));
     if (entry == nullptr) return;
     const std::string place = "monitors." + monitor.name;
     if (const auto shared = shared_episode(entry->episodes, file)) {
@@ -286,7 +217,6 @@ void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
                 "were calibrated on");
         return;
     }
-    reserve(c, entry->truth, monitor.name);
     take(c, *entry, place, shift, calibration.against == Against::missed_alarm, file,
          entry->episodes);
 }

@@ -254,14 +254,7 @@ void check_fitted_entries(Context& c) {
     if (!c.fitted_file || c.sink.has_errors()) return;
     for (const Fitted& fitted : c.model.fitted) {
         const fitted::Entry& entry = c.fitted_file->entries.at(fitted.name);
-        const FittedProvenance now = provenance(c.model, fitted);
-        std::vector<std::string> differences;
-        if (entry.of != now.of) differences.push_back(changed("the point", entry.of, now.of));
-        if (stated(entry.truth) != now.truth)
-            differences.push_back(changed("the truth", entry.truth, now.truth));
-        if (differences.empty() && !entry.reads.empty())
-            differences = check::differences(entry.reads, now.reads);
-        is_current(c, fitted, differences);
+        is_current(c, fitted, differences(entry.reads, reads(c.model, fitted)));
     }
     for (const thresholds::Allowance& allowance : c.fitted_file->allowances)
         c.model.reservations.push_back(thresholds::text(allowance));

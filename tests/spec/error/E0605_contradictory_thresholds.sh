@@ -17,9 +17,9 @@ change '8s/0.8000001/0.75/'
 change '9s/4/5/'
 change '10s/4/1/'
 change '11s/0.5,/0.65,/'
-change '28s/5.960464e-08/-0.5/'
-change '30s/4/3/'
-change '31s/0.10000008344650269/0/'
+change '25s/5.960464e-08/-0.5/'
+change '27s/4/3/'
+change '28s/0.10000008344650269/0/'
 first=$(sed -n 's/^    "\([0-9a-f]*\)".*/\1/p' good.json | head -1)
 second=$(sed -n 's/^    "\([0-9a-f]*\)".*/\1/p' good.json | sed -n 2p)
 change "/{\$/! s/$second/$first/"

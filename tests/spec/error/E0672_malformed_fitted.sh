@@ -10,5 +10,5 @@ printf 'z[0],z[1]\n1,2\n2,4\n' > 1.csv
 printf 'PK\5\6%018d' 0 | tr 0 '\0' > t.fitted.npz
 "$ETLC" t.etl --check
 "$ETLC" fit t.etl --data 1.csv > report.txt
-sed 's/"format": 2,/"format": 2 /' t.fitted.npz > damaged.npz
+sed 's/"format": 3,/"format": 3 /' t.fitted.npz > damaged.npz
 "$ETLC" t.etl --check --fitted damaged.npz

@@ -8,8 +8,8 @@
 #include "data/text/text.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/process/process.hpp"
-#include "episodes/data_warnings.hpp"
-#include "episodes/replay.hpp"
+#include "episodes/admission/admission.hpp"
+#include "episodes/recording.hpp"
 #include "explain/report.hpp"
 #include "source/text.hpp"
 

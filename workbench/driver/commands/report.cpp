@@ -3,7 +3,7 @@
 
 #include "driver/commands/commands.hpp"
 #include "driver/process/process.hpp"
-#include "episodes/data_warnings.hpp"
+#include "episodes/admission/admission.hpp"
 #include "recordings/episodes.hpp"
 
 namespace etlc::driver {

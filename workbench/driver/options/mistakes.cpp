@@ -17,7 +17,7 @@
 #include "diag/diag.hpp"
 #include "driver/options/call.hpp"
 #include "driver/process/process.hpp"
-#include "episodes/shared/part.hpp"
+#include "episodes/shared/sharing.hpp"
 #include "library/settings.hpp"
 #include "recordings/open.hpp"
 

@@ -7,13 +7,74 @@
 #include <cstdint>
 #include <set>
 
+#include "check/encoders/encoders.hpp"
 #include "check/points/points.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/text/text.hpp"
-#include "episodes/admission/overlaps.hpp"
+#include "data/traces/overlap.hpp"
 
 namespace etlc::episodes {
+
+// ---- recordings that share content --------------------------------------------------------------
+
+OverlapSearch::OverlapSearch(const Identities& episodes, std::vector<Source> sources,
+                             bool each_other) {
+    bool compares = each_other;
+    for (Source& source : sources) {
+        std::sort(source.hashes.begin(), source.hashes.end());
+        compares = compares || !source.contents.empty();
+    }
+    using Content = data::EpisodeContent;
+    if (compares) {
+        data::Suspects suspects(each_other);
+        episodes.for_each([&](std::size_t, const Recorded& one) { suspects.ask(one.content); });
+        for (const Source& source : sources)
+            source.contents.for_each_of(
+                source.hashes, [&](std::uint64_t, const Content& of) { suspects.know(of); });
+        is_suspect_ = suspects.find();
+    } else {
+        is_suspect_.resize(episodes.size());
+    }
+    std::size_t next = episodes.size();
+    for (Source& source : sources) {
+        Seen& seen = seen_.emplace_back();
+        source.contents.for_each_of(source.hashes, [&](std::uint64_t, const Content& content) {
+            if (is_suspect_[next++]) seen.suspects.add(content);
+        });
+        seen.hashes = std::move(source.hashes);
+    }
+}
+
+std::optional<data::Overlap> OverlapSearch::find(std::size_t source, std::size_t e,
+                                                 const Recorded& episode) const {
+    const Seen& seen = seen_[source];
+    if (std::binary_search(seen.hashes.begin(), seen.hashes.end(), hash_of(episode)))
+        return data::Overlap{0, 1, true};
+    return is_suspect_[e] ? seen.suspects.find(episode.content) : std::nullopt;
+}
+
+std::optional<data::Overlap> OverlapSearch::find_earlier(std::size_t e, const Recorded& episode) {
+    if (!is_suspect_[e]) return std::nullopt;
+    auto found = earlier_.find(episode.content);
+    if (found) found->other = numbers_[found->other];
+    earlier_.add(episode.content);
+    numbers_.push_back(e);
+    return found;
+}
+
+Overlaps overlaps(const Identities& episodes) {
+    OverlapSearch search(episodes, {}, true);
+    Overlaps result;
+    episodes.for_each([&](std::size_t e, const Recorded& episode) {
+        const auto overlap = search.find_earlier(e, episode);
+        result.repeated += overlap && overlap->equal ? 1 : 0;
+        result.overlapping += overlap && !overlap->equal ? 1 : 0;
+    });
+    return result;
+}
+
+// ---- what is admitted ---------------------------------------------------------------------------
 
 namespace {
 
@@ -205,29 +266,6 @@ Unseen not_fitted_on(const OverlapSearch& search, const fitted::File& file, bool
             allowing};
 }
 
-/// Refuses a file of an old format, whose hashes of episodes are not comparable.
-void refuse_old(std::uint32_t format, bool has_episodes, const std::string& path,
-                std::string_view again, diag::Sink& sink) {
-    if (format == thresholds::kFormat || !has_episodes) return;
-    sink.report(data::in_file(
-                    {Code::incomparable_episodes,
-                     fmt::format("is of format {}, whose episodes cannot be compared with those "
-                                 "given here",
-                                 format)},
-                    path))
-        .note(
-            "an earlier version of etlc told episodes apart by the numbers stored in their "
-            "files, not by what the monitor sees")
-        .note(std::string(again));
-}
-
-void refuse_old(const thresholds::File& thresholds, const fitted::File& fitted, diag::Sink& sink) {
-    refuse_old(fitted.format, !fitted.episodes.empty(), fitted.path, "fit again with 'etlc fit'",
-               sink);
-    refuse_old(thresholds.format, !thresholds::all_episodes(thresholds).empty(), thresholds.path,
-               "calibrate again with 'etlc calibrate'", sink);
-}
-
 /// Examines the episodes in order.
 class Admission {
 public:
@@ -328,7 +366,6 @@ std::string text(const check::Model& model, const Leak& leak) {
 thresholds::Allowance admit(const check::Model& model, const Identities& episodes,
                             const thresholds::File& before, const fitted::File& fitted,
                             const std::string& reason, diag::Sink& sink) {
-    refuse_old(before, fitted, sink);
     Admission admission(model, episodes, before, fitted, reason);
     episodes.for_each(
         [&](std::size_t e, const Recorded& episode) { admission.look_at(e, episode); });
@@ -341,7 +378,6 @@ thresholds::Allowance admit_unseen(const Identities& episodes, const thresholds:
     constexpr std::string_view kAllowing =
         "if they are different recordings after all, say why with --allow-overlap REASON: the "
         "reason is shown with the figures";
-    refuse_old(thresholds, fitted, sink);
     thresholds::Allowance passed_over{reason};
     const OverlapSearch among =
         search(episodes, fitted, thresholds, thresholds::all_episodes(thresholds), false);
@@ -376,6 +412,102 @@ void record(const Identities& episodes, const thresholds::Allowance& allowance,
 std::string remark_on(const thresholds::Allowance& allowance) {
     const bool idle = !allowance.reason.empty() && allowance.overlapping + allowance.leaked == 0;
     return idle ? "\n--allow-overlap was not needed: nothing overlaps\n" : "";
+}
+
+// ---- warnings about the data --------------------------------------------------------------------
+
+namespace {
+
+/// Counts the unmarked episodes of a call.
+class Unmarked {
+public:
+    void add(const std::string& path, bool is_unmarked) {
+        ++episodes_;
+        if (!is_unmarked) return;
+        if (++count_ == 1) first_ = path;
+    }
+
+    void report(diag::Sink& sink) const {
+        if (count_ == 0) return;
+        diag::Diagnostic& warning = sink.report(recordings::in_trace(
+            {diag::Code::unmarked_episode, "does not say which encoder made its embeddings"},
+            first_));
+        if (episodes_ > 1)
+            warning.note(fmt::format("this applies to {} of {} episodes", count_, episodes_));
+        check::explain_unmarked(warning);
+    }
+
+private:
+    std::string first_;
+    std::size_t count_ = 0;
+    std::size_t episodes_ = 0;
+};
+
+}  // namespace
+
+bool is_unmarked(const check::Model& model, const std::vector<Index>& inputs,
+                 const recordings::NamesInFile& names, const embedded::Marks& marks) {
+    return std::any_of(inputs.begin(), inputs.end(), [&](Index index) {
+        const check::Input& input = model.inputs[index];
+        return check::is_unmarked(input, recordings::name_in_file(input.name, names), marks);
+    });
+}
+
+void warn_of_unmarked(const Identities& episodes, diag::Sink& sink) {
+    Unmarked unmarked;
+    episodes.for_each([&](std::size_t, const Recorded& episode) {
+        unmarked.add(episode.path, episode.is_unmarked);
+    });
+    unmarked.report(sink);
+}
+
+void warn_of_unmarked(const check::Model& model, const std::vector<Index>& inputs,
+                      const std::vector<std::string>& paths, const recordings::NamesInFile& names,
+                      diag::Sink& sink) {
+    if (model.encoders.empty()) return;
+    Unmarked unmarked;
+    for (const std::string& path : paths) {
+        const auto marks = embedded::read_marks(path);
+        unmarked.add(path, marks && is_unmarked(model, inputs, names, *marks));
+    }
+    unmarked.report(sink);
+}
+
+diag::Diagnostic& warn_of_data(diag::Code code, std::string message, source::Span about,
+                               diag::Sink& sink) {
+    diag::Diagnostic found = data::in_file({code, std::move(message)}, "--data");
+    found.span = about;
+    return sink.report(std::move(found));
+}
+
+bool warn_of_labels(const check::Predicate& predicate, Labels labels,
+                    const std::optional<Auroc>& auroc, diag::Sink& sink) {
+    const std::uint64_t all = labels.positives + labels.negatives;
+    const source::Span span = predicate.threshold.span;
+    if (all > 0 && (labels.positives == 0 || labels.negatives == 0)) {
+        const bool holds = labels.negatives == 0;
+        warn_of_data(diag::Code::one_sided_labels,
+                     fmt::format("'{}' is {} at all {}", predicate.name, holds ? "true" : "false",
+                                 diag::counted(all, "labelled frame")),
+                     span, sink)
+            .note(fmt::format("there are no labels of frames at which it is {}: look at its truth "
+                              "or its labels truth.{}, or record such frames too",
+                              holds ? "false" : "true", predicate.name));
+        return true;
+    }
+    if (!auroc || !auroc->interval || auroc->interval->high >= 0.5) return false;
+    warn_of_data(
+        diag::Code::inverted_labels,
+        fmt::format("the labels of '{}' are the wrong way round for what it measures: the "
+                    "area under the ROC curve is {:.2f}, with a 95 % interval from {:.2f} "
+                    "to {:.2f}",
+                    predicate.name, auroc->value, auroc->interval->low, auroc->interval->high),
+        span, sink)
+        .note(
+            fmt::format("below 0.5, {} numbers are labelled true: look at its truth or its labels "
+                        "truth.{}, and at the comparison",
+                        predicate.upper_bound() ? "the greater" : "the smaller", predicate.name));
+    return true;
 }
 
 }  // namespace etlc::episodes

@@ -9,16 +9,63 @@
 #include <string>
 #include <vector>
 
+#include "artifacts/embedded.hpp"
 #include "artifacts/fitted.hpp"
 #include "artifacts/thresholds.hpp"
+#include "check/model/model.hpp"
+#include "data/traces/overlap.hpp"
 #include "diag/diag.hpp"
+#include "episodes/ranking/auroc.hpp"
 #include "episodes/recording.hpp"
 
 namespace etlc::episodes {
 
+// ---- recordings that share content --------------------------------------------------------------
+// Finds episodes of a call that overlap each other, or episodes that something was made from. Finds
+// what data::Recordings would find among all, and keeps in memory only the candidates
+// (data/traces/overlap.hpp).
+
+/// Episodes that something in a file was made from.
+struct Source {
+    data::KnownEpisodes contents;       ///< contents of these and of others
+    std::vector<std::uint64_t> hashes;  ///< hashes of all of these
+};
+
+class OverlapSearch {
+public:
+    /// `each_other`: whether find_earlier will be called.
+    OverlapSearch(const Identities& episodes, std::vector<Source> sources, bool each_other);
+
+    /// Returns the overlap of `episode`, number `e` of the call, with source number `source`.
+    std::optional<data::Overlap> find(std::size_t source, std::size_t e,
+                                      const Recorded& episode) const;
+    /// Returns the overlap with an earlier episode passed to this; `other` is its number in the
+    /// call.
+    std::optional<data::Overlap> find_earlier(std::size_t e, const Recorded& episode);
+
+private:
+    struct Seen {
+        std::vector<std::uint64_t> hashes;  ///< sorted
+        data::Recordings suspects;
+    };
+    std::vector<bool> is_suspect_;  ///< by number of the episode
+    std::vector<Seen> seen_;        ///< by number of the source
+    data::Recordings earlier_;
+    std::vector<std::size_t> numbers_;  ///< numbers of these in the call
+};
+
+/// Counts of episodes that overlap an earlier one.
+struct Overlaps {
+    std::uint64_t repeated = 0;  ///< equal to an earlier one
+    std::uint64_t overlapping = 0;
+};
+Overlaps overlaps(const Identities& episodes);
+
+// ---- what is admitted ---------------------------------------------------------------------------
+
 /// Decides whether rows of a target set were taken from frames of the episodes. A frame equal to a
 /// row is a leak. A frame within rounding of a row is one if so many episodes would not have such
-/// frames by chance, given how many lie near rows (episodes/leaks/rounded_rows.hpp).
+/// frames by chance, given how many lie near rows (episodes/leaks/leaks.hpp).
 class LeakEvidence {
 public:
     explicit LeakEvidence(const Identities& episodes);
@@ -51,5 +98,35 @@ void record(const Identities& episodes, const thresholds::Allowance& allowance,
 
 /// Remarks that --allow-overlap was not needed.
 std::string remark_on(const thresholds::Allowance& allowance);
+
+// ---- warnings about the data --------------------------------------------------------------------
+// Warnings about episodes and their labels, shared by all commands that read these. Episodes that
+// do not name the encoder of their embeddings cause one warning a call (W1001), and none without an
+// encoder in the spec. Labels count as inverted only where the whole interval of the AUROC lies
+// below 0.5.
+
+/// Returns whether an input needs an encoder that the episode's marks do not name.
+bool is_unmarked(const check::Model& model, const std::vector<Index>& inputs,
+                 const recordings::NamesInFile& names, const embedded::Marks& marks);
+
+void warn_of_unmarked(const Identities& episodes, diag::Sink& sink);
+/// Reads the marks of the episodes. `inputs`: those that the command reads.
+void warn_of_unmarked(const check::Model& model, const std::vector<Index>& inputs,
+                      const std::vector<std::string>& paths, const recordings::NamesInFile& names,
+                      diag::Sink& sink);
+
+/// The numbers of frames labelled true and false.
+struct Labels {
+    std::uint64_t positives = 0;
+    std::uint64_t negatives = 0;
+};
+
+/// Warns of one-sided or inverted labels; returns whether it did.
+bool warn_of_labels(const check::Predicate& predicate, Labels labels,
+                    const std::optional<Auroc>& auroc, diag::Sink& sink);
+
+/// Reports a warning about the data that points into the spec.
+diag::Diagnostic& warn_of_data(diag::Code code, std::string message, source::Span about,
+                               diag::Sink& sink);
 
 }  // namespace etlc::episodes

@@ -3,12 +3,208 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <limits>
+#include <optional>
+#include <set>
+#include <string_view>
 #include <utility>
 
+#include "data/files/file.hpp"
 #include "data/text/text.hpp"
+#include "episodes/labels/table.hpp"
+#include "recordings/datasets/dataset.hpp"
+#include "recordings/episodes.hpp"
+#include "recordings/hdf5/hdf5.hpp"
+#include "recordings/open.hpp"
 
 namespace etlc::episodes {
+
+// ---- names of episodes in tables ----------------------------------------------------------------
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The parts of the path of an episode.
+struct EpisodePath {
+    std::string file;   ///< the file, or the folder of the data set
+    std::string group;  ///< of the file, or the number in the data set; empty: none
+    bool is_number = false;
+};
+
+EpisodePath parts_of(const std::string& episode) {
+    EpisodePath parts;
+    const std::string file = data::trace_file(episode);
+    parts.is_number = data::dataset_path(episode).has_value();
+    parts.file = fs::path(file).lexically_normal().string();
+    if (parts.is_number && parts.file.ends_with('/')) parts.file.pop_back();
+    if (file.size() < episode.size()) parts.group = episode.substr(file.size() + 1);
+    return parts;
+}
+
+/// Returns "3" for "000003".
+std::string_view without_zeros(std::string_view number) {
+    const std::size_t first = number.find_first_not_of('0');
+    return first == std::string_view::npos ? "0" : number.substr(first);
+}
+
+/// Returns the whole names of an episode, the path first.
+std::vector<std::string> whole_names(const EpisodePath& parts) {
+    if (parts.group.empty()) {
+        std::vector<std::string> names{parts.file};
+        const fs::path path(parts.file);
+        if (recordings::is_trace(parts.file))
+            names.push_back((path.parent_path() / path.stem()).string());
+        return names;
+    }
+    std::vector<std::string> names{parts.file + ":" + parts.group};
+    if (parts.is_number)
+        names.push_back(parts.file + ":" + std::string(without_zeros(parts.group)));
+    return names;
+}
+
+std::vector<std::string> traces_in(const std::string& folder) {
+    std::vector<std::string> found;
+    std::error_code error;
+    for (fs::directory_iterator it(folder.empty() ? "." : folder, error), end; !error && it != end;
+         it.increment(error))
+        if (recordings::is_trace(it->path().string())) found.push_back(it->path().string());
+    return found;
+}
+
+/// Calls `take(name)` with each end of a whole name that names the episode too.
+template <class Take>
+void for_each_end(const EpisodePath& parts, const std::string& name, const Take& take) {
+    for (std::size_t at = name.find_first_of("/:"); at != std::string::npos;
+         at = name.find_first_of("/:", at + 1))
+        if (name[at] == '/' || at == parts.file.size()) take(name.substr(at + 1));
+}
+
+void add(std::size_t episode, const std::string& name, bool is_whole, std::set<std::string>& whole,
+         Named& names) {
+    const auto found = names.find(name);
+    if (found == names.end()) return;
+    std::vector<std::size_t>& of = found->second;
+    if (is_whole) {
+        if (whole.insert(name).second) of.clear();
+        of.push_back(episode);
+        return;
+    }
+    if (whole.contains(name) || of.size() > 1 || (!of.empty() && of.back() == episode)) return;
+    of.push_back(episode);
+}
+
+}  // namespace
+
+std::string folder_of(const std::string& episode) {
+    const std::string file = data::trace_file(episode);
+    if (data::dataset_path(episode)) return file;
+    return fs::path(file).parent_path().string();
+}
+
+std::vector<std::string> folders_of(const std::string& episode) {
+    const EpisodePath parts = parts_of(episode);
+    std::error_code ignored;
+    const fs::path file = fs::absolute(parts.file, ignored).lexically_normal();
+    std::vector<std::string> folders;
+    const auto add_all = [&](const fs::path& path) {
+        for (const fs::path& part : path)
+            if (!part.empty()) folders.push_back(part.string());
+    };
+    add_all(parts.is_number ? file : file.parent_path());
+    const fs::path groups = fs::path(parts.is_number ? "" : parts.group).parent_path();
+    if (!groups.empty()) folders.push_back(file.filename().string());
+    add_all(groups);
+    return folders;
+}
+
+void find_named(const std::vector<std::string>& episodes, Named& names) {
+    std::set<std::string> whole;
+    for (std::size_t e = 0; e < episodes.size(); ++e) {
+        const EpisodePath parts = parts_of(episodes[e]);
+        bool is_path = true;
+        for (const std::string& name : whole_names(parts)) {
+            add(e, name, is_path, whole, names);
+            is_path = false;
+            for_each_end(parts, name,
+                         [&](const std::string& end) { add(e, end, false, whole, names); });
+        }
+    }
+}
+
+std::vector<std::string> shortest_names(const std::vector<std::string>& episodes) {
+    const auto normal = [](const std::string& path) {
+        return fs::path(path).lexically_normal().string();
+    };
+    const std::size_t count = episodes.size();
+    std::vector<std::string> all = episodes;
+    std::set<std::string> known;
+    for (const std::string& path : episodes) known.insert(normal(path));
+    for (const std::string& path : neighbours_of(episodes))
+        if (known.insert(normal(path)).second) all.push_back(path);
+    Named named;
+    std::vector<std::vector<std::string>> names(count);
+    for (std::size_t e = 0; e < count; ++e) {
+        const EpisodePath parts = parts_of(all[e]);
+        for (const std::string& name : whole_names(parts)) {
+            names[e].push_back(name);
+            for_each_end(parts, name, [&](const std::string& end) { names[e].push_back(end); });
+        }
+        std::stable_sort(names[e].begin(), names[e].end(),
+                         [](const auto& a, const auto& b) { return a.size() < b.size(); });
+        for (const std::string& name : names[e]) named[name];
+    }
+    find_named(all, named);
+    std::vector<std::string> shortest;
+    for (std::size_t e = 0; e < count; ++e) {
+        const auto found = std::find_if(names[e].begin(), names[e].end(), [&](const auto& name) {
+            return named.at(name) == std::vector<std::size_t>{e};
+        });
+        shortest.push_back(found == names[e].end() ? all[e] : *found);
+    }
+    return shortest;
+}
+
+std::vector<std::string> neighbours_of(const std::vector<std::string>& episodes) {
+    std::set<std::string> places;
+    std::vector<std::string> found;
+    for (const std::string& episode : episodes) {
+        const EpisodePath parts = parts_of(episode);
+        if (parts.is_number) {
+            const auto set = recordings::Dataset::known(parts.file);
+            if (!set || !places.insert(parts.file).second) continue;
+            for (const recordings::DatasetEpisode& one : (*set)->episodes())
+                found.push_back(recordings::episode_path(parts.file, one.index));
+            continue;
+        }
+        const std::string folder = folder_of(episode);
+        const std::string pattern =
+            parts.group.empty() ? "" : (fs::path(parts.group).parent_path() / "*").string();
+        if (!places.insert(folder + ":" + pattern).second) continue;
+        for (const std::string& file : traces_in(folder)) {
+            if (pattern.empty()) found.push_back(file);
+            if (pattern.empty() || !data::is_hdf5(file)) continue;
+            const auto groups = recordings::list_hdf5(file, pattern);
+            if (!groups) continue;
+            for (const std::string& group : *groups) found.push_back(file + ":" + group);
+        }
+    }
+    return found;
+}
+
+bool is_episode_in(const std::string& folder, const std::string& name) {
+    const std::string path = (fs::path(folder) / name).string();
+    std::error_code ignored;
+    const auto exists = [&](const std::string& file) { return fs::is_regular_file(file, ignored); };
+    if (exists(data::trace_file(path))) return true;
+    for (const char* ending : {".csv", ".npz", ".h5", ".hdf5"})
+        if (exists(path + ending)) return true;
+    return false;
+}
+
+// ---- labels -------------------------------------------------------------------------------------
 
 namespace {
 
@@ -140,6 +336,322 @@ std::vector<std::string> groups_of(const std::vector<std::string>& episodes,
     for (std::size_t e = 0; e < episodes.size() && options.labels; ++e)
         groups[e] = options.labels->group_of(episodes[e]);
     return groups;
+}
+
+// ---- reading the tables -------------------------------------------------------------------------
+// Looks up the episodes and predicates of tables of labels, and compares the labels with each
+// other.
+
+using diag::Code;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A table and the episodes that it is about.
+struct TableFile {
+    std::string path;
+    std::vector<std::string> episodes;
+};
+
+/// Returns the tables of the call. One that lies beside episodes is about these alone.
+std::vector<TableFile> label_files(const LabelSources& sources,
+                                   const std::vector<std::string>& episodes) {
+    std::vector<TableFile> files;
+    for (const std::string& path : sources.tables) files.push_back({path, episodes});
+    if (!files.empty()) return files;
+    std::map<std::string, std::vector<std::string>> folders;
+    for (const std::string& episode : episodes) folders[folder_of(episode)].push_back(episode);
+    for (auto& [folder, inside] : folders) {
+        const std::string path = (fs::path(folder) / recordings::kLabelsFile).string();
+        std::error_code ignored;
+        if (fs::exists(path, ignored)) files.push_back({path, std::move(inside)});
+    }
+    return files;
+}
+
+std::vector<std::string> predicate_names(const std::vector<const check::Model*>& models) {
+    std::vector<std::string> names;
+    for (const check::Model* model : models)
+        for (const check::Predicate& predicate : model->predicates)
+            if (!predicate.name.empty()) names.push_back(predicate.name);
+    return names;
+}
+
+}  // namespace
+
+std::uint64_t step_at(double seconds, double step_seconds) {
+    // Of a decimal that is exactly a tenth away, as 0.17 s is from step 5 at 30 Hz, the quotient in
+    // double is a little more or less: 5.1000000000000005.
+    constexpr double kRounding = 0.1 + 1e-6;
+    constexpr double kMost = 9e15;
+    return static_cast<std::uint64_t>(
+        std::clamp(std::ceil(seconds / step_seconds - kRounding), 0.0, kMost));
+}
+
+/// Reads the sources of a call one after the other.
+class LabelReader {
+public:
+    LabelReader(const std::vector<const check::Model*>& models,
+                const std::vector<std::string>& episodes, diag::Sink& sink)
+        : models_(models), predicates_(predicate_names(models)), episodes_(episodes), sink_(sink) {}
+
+    void read_table(const TableFile& file, bool has_episodes) {
+        auto source = data::open_file(file.path, data::Streams::taken);
+        if (!source) {
+            sink_.report(
+                data::in_file({Code::unreadable_trace, source.failure().message}, file.path));
+            return;
+        }
+        const auto table = data::within_memory([&] { return parse_labels(std::move(*source)); });
+        if (!table) {
+            sink_.report(data::in_file(table.failure(), file.path));
+            return;
+        }
+        result_->tables_.push_back(file.path);
+        Named names;
+        for (const LabelRow& row : table->rows) names[normal(row.episode)];
+        find_named(file.episodes, names);
+        check_predicates(*table, file.path);
+        if (has_episodes) check_names(*table, file, names);
+        for (const LabelRow& row : table->rows) {
+            const std::vector<std::size_t>& found = names.at(normal(row.episode));
+            if (found.size() == 1) add(row, *table, file.path, file.episodes[found[0]]);
+            if (has_too_many()) return;
+        }
+    }
+
+    /// A folder labels the episodes in it, and in folders below it. One that all episodes lie
+    /// below, and none lies in, tells none from another: it may be anywhere above the recordings.
+    void read_folders() {
+        const std::set<std::string> known(predicates_.begin(), predicates_.end());
+        std::vector<std::vector<std::string>> folders;
+        for (const std::string& episode : episodes_) folders.push_back(folders_of(episode));
+        const std::size_t common = depth_in_common(folders);
+        std::set<std::string> around;
+        for (std::vector<std::string>& of : folders) {
+            of.erase(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(common));
+            around.insert(of.begin(), of.end());
+        }
+        std::set<std::string> labelled;
+        std::set_intersection(around.begin(), around.end(), known.begin(), known.end(),
+                              std::inserter(labelled, labelled.end()));
+        if (labelled.empty()) {
+            sink_.report(data::in_file(
+                {Code::nothing_to_label,
+                 fmt::format("the episodes lie in {}, and none of these is a predicate; there are "
+                             "{}",
+                             data::listed({around.begin(), around.end()}),
+                             data::listed({known.begin(), known.end()}))},
+                "--label-by folder"));
+            return;
+        }
+        for (std::size_t e = 0; e < episodes_.size(); ++e)
+            for (const std::string& predicate : labelled) {
+                const bool is_inside =
+                    std::find(folders[e].begin(), folders[e].end(), predicate) != folders[e].end();
+                result_->of_[episodes_[e]][predicate].push_back({0, LabelledSteps::kToTheEnd,
+                                                                 is_inside ? Label::yes : Label::no,
+                                                                 "--label-by folder"});
+            }
+    }
+
+    /// Returns the labels if none is in error.
+    std::shared_ptr<const LabelSet> finish() {
+        for (auto& [episode, labels] : result_->of_)
+            for (auto& [predicate, intervals] : labels) sort(episode, predicate, intervals);
+        const bool is_empty = result_->tables_.empty() && result_->of_.empty();
+        return sink_.has_errors() || is_empty ? nullptr : std::move(result_);
+    }
+
+private:
+    static constexpr std::size_t kMostErrors = 10;
+
+    /// Returns the number of folders that all episodes lie below, and none lies in.
+    static std::size_t depth_in_common(const std::vector<std::vector<std::string>>& folders) {
+        std::size_t common = folders.empty() ? 0 : folders[0].size();
+        for (const std::vector<std::string>& of : folders) {
+            const auto at =
+                std::mismatch(of.begin(), of.end(), folders[0].begin(), folders[0].end());
+            common = std::min<std::size_t>(common, at.first - of.begin());
+        }
+        const bool is_own = std::any_of(folders.begin(), folders.end(),
+                                        [&](const auto& of) { return of.size() == common; });
+        return is_own && common > 0 ? common - 1 : common;
+    }
+
+    bool has_too_many() const { return sink_.errors() >= kMostErrors; }
+
+    static std::string normal(const std::string& name) {
+        return fs::path(name).lexically_normal().string();
+    }
+
+    diag::Diagnostic& report(Code code, const std::string& path, std::uint32_t line,
+                             std::string message) {
+        return sink_.report(data::in_file({code, std::move(message), line, 1}, path));
+    }
+
+    void check_predicates(const LabelTable& table, const std::string& path) {
+        std::set<std::string> unknown;
+        for (const LabelRow& row : table.rows) {
+            if (has_too_many()) return;
+            const bool is_known = std::find(predicates_.begin(), predicates_.end(),
+                                            row.predicate) != predicates_.end();
+            if (row.predicate.empty() || is_known || !unknown.insert(row.predicate).second)
+                continue;
+            const std::string meant = data::suggestion(row.predicate, predicates_);
+            report(Code::nothing_to_label, path, row.line,
+                   fmt::format("{} predicate {}{}",
+                               models_.size() == 1 ? "the spec has no" : "no spec has a",
+                               data::in_quotes(row.predicate),
+                               meant.empty() ? "; there are " + data::listed(predicates_) : meant));
+        }
+    }
+
+    /// Reports names that no episode has, or several have. An episode outside the call is no
+    /// mistake: calls share a table.
+    void check_names(const LabelTable& table, const TableFile& file, const Named& names) {
+        Named absent;
+        for (const auto& [name, found] : names)
+            if (found.empty()) absent[name];
+        if (!absent.empty()) find_named(neighbours_of(file.episodes), absent);
+        std::set<std::string> told;
+        for (const LabelRow& row : table.rows) {
+            if (has_too_many()) return;
+            const std::string name = normal(row.episode);
+            const std::vector<std::size_t>& found = names.at(name);
+            if (found.size() == 1 || !told.insert(name).second) continue;
+            if (found.size() > 1)
+                report(Code::nothing_to_label, file.path, row.line,
+                       fmt::format("{} names several episodes, {} and {}: write more of the path",
+                                   data::in_quotes(row.episode),
+                                   data::in_quotes(file.episodes[found[0]]),
+                                   data::in_quotes(file.episodes[found[1]])));
+            else if (absent.at(name).empty() &&
+                     !is_episode_in(fs::path(file.path).parent_path().string(), row.episode))
+                report(Code::nothing_to_label, file.path, row.line,
+                       fmt::format("there is no episode {}{}", data::in_quotes(row.episode),
+                                   meant_by(name, file.episodes)));
+        }
+    }
+
+    /// Names an episode that is near, or else some that there are.
+    static std::string meant_by(const std::string& name, const std::vector<std::string>& episodes) {
+        constexpr std::size_t kMost = 1000;  // an edit distance is computed to each
+        std::vector<std::string> names = episodes;
+        names.resize(std::min(names.size(), kMost));
+        names = shortest_names(names);
+        const std::string meant = data::suggestion(fs::path(name).stem().string(), names);
+        return meant.empty() ? "; there are " + data::listed(names) : meant;
+    }
+
+    void add(const LabelRow& row, const LabelTable& table, const std::string& path,
+             const std::string& episode) {
+        const std::string place = fmt::format("{}:{}", path, row.line);
+        if (!row.group.empty()) {
+            const auto [before, is_new] = groups_.emplace(episode, std::pair{row.group, place});
+            if (before->second.first != row.group) {
+                report(Code::contradictory_labels, path, row.line,
+                       fmt::format("puts {} into the group {}", data::in_quotes(row.episode),
+                                   data::in_quotes(row.group)))
+                    .note(fmt::format("{} puts it into {}", before->second.second,
+                                      data::in_quotes(before->second.first)));
+                return;
+            }
+            result_->groups_[episode] = row.group;
+        }
+        if (row.predicate.empty()) return;
+        const auto steps = steps_of(row, table, path, episode);
+        if (steps)
+            result_->of_[episode][row.predicate].push_back(
+                {steps->first, steps->second, row.label, place});
+    }
+
+    std::optional<std::pair<std::uint64_t, std::uint64_t>> steps_of(const LabelRow& row,
+                                                                    const LabelTable& table,
+                                                                    const std::string& path,
+                                                                    const std::string& episode) {
+        double length = 1;
+        if (table.in_seconds) {
+            const auto found = step_length(path, row.line, episode);
+            if (!found) return std::nullopt;
+            length = *found;
+        }
+        const auto step = [&](double bound) {
+            if (std::isinf(bound)) return LabelledSteps::kToTheEnd;
+            return table.in_seconds ? step_at(bound, length) : static_cast<std::uint64_t>(bound);
+        };
+        const std::pair steps{step(row.start), step(row.end)};
+        if (steps.first < steps.second) return steps;
+        report(
+            Code::malformed_labels, path, row.line,
+            fmt::format("no step is from {} s up to but excluding {} s: there is one every {:.6g} "
+                        "s",
+                        row.start, row.end, length));
+        return std::nullopt;
+    }
+
+    /// Returns the seconds from one step to the next, by the specs or by the data set.
+    std::optional<double> step_length(const std::string& path, std::uint32_t line,
+                                      const std::string& episode) {
+        double length = models_.front()->step_seconds;
+        for (const check::Model* model : models_)
+            if (model->step_seconds != length) {
+                if (!std::exchange(has_told_of_time_, true))
+                    report(Code::steps_without_time, path, line,
+                           "labels in seconds, but the specs differ in their rate");
+                return std::nullopt;
+            }
+        if (length > 0) return length;
+        if (const auto which = data::dataset_path(episode))
+            if (const auto set = recordings::Dataset::known(which->folder);
+                set && (*set)->fps() > 0)
+                return 1 / (*set)->fps();
+        if (!std::exchange(has_told_of_time_, true))
+            report(Code::steps_without_time, path, line,
+                   "labels in seconds, but the spec has no rate: declare one, such as 'rate 10 "
+                   "Hz;', or label steps, in the columns start and end");
+        return std::nullopt;
+    }
+
+    /// Sorts intervals, and reports the first two that overlap.
+    void sort(const std::string& episode, const std::string& predicate,
+              std::vector<LabelledSteps>& intervals) {
+        std::stable_sort(intervals.begin(), intervals.end(),
+                         [](const auto& a, const auto& b) { return a.start < b.start; });
+        if (has_too_many()) return;
+        for (std::size_t i = 1; i < intervals.size(); ++i) {
+            const LabelledSteps& before = intervals[i - 1];
+            const LabelledSteps& after = intervals[i];
+            if (after.start >= before.end) continue;
+            sink_.report(
+                data::in_file({Code::contradictory_labels,
+                               fmt::format("{} and {} both label {} at step {}", before.place,
+                                           after.place, data::in_quotes(predicate), after.start)},
+                              episode));
+            return;
+        }
+    }
+
+    const std::vector<const check::Model*>& models_;
+    std::vector<std::string> predicates_;
+    const std::vector<std::string>& episodes_;
+    diag::Sink& sink_;
+    std::shared_ptr<LabelSet> result_ = std::make_shared<LabelSet>();
+    /// Per episode, its group and the place of the row.
+    std::map<std::string, std::pair<std::string, std::string>> groups_;
+    bool has_told_of_time_ = false;
+};
+
+std::shared_ptr<const LabelSet> LabelSet::read(const LabelSources& sources,
+                                               const std::vector<const check::Model*>& models,
+                                               const std::vector<std::string>& episodes,
+                                               diag::Sink& sink) {
+    LabelReader reader(models, episodes, sink);
+    for (const TableFile& file : label_files(sources, episodes))
+        reader.read_table(file, sources.has_episodes);
+    if (sources.by_folder) reader.read_folders();
+    return reader.finish();
 }
 
 }  // namespace etlc::episodes

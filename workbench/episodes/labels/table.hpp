@@ -11,9 +11,11 @@
 
 #include "data/files/file.hpp"
 #include "diag/diag.hpp"
-#include "episodes/labels/label.hpp"
 
 namespace etlc::episodes {
+
+/// Ordered: && is the minimum, || the maximum, unknown in between (Kleene's strong logic).
+enum class Label : std::uint8_t { no, unknown, yes };
 
 /// The predicate has this label from `start` up to but excluding `end`.
 struct LabelRow {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "episodes/random.hpp"
+#include "episodes/bootstrap.hpp"
 #include "fit/algebra/dense.hpp"
 
 namespace etlc::fit {

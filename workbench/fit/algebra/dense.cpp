@@ -12,8 +12,8 @@
 #include <optional>
 #include <vector>
 
+#include "episodes/bootstrap.hpp"
 #include "episodes/parallel.hpp"
-#include "episodes/random.hpp"
 
 namespace etlc::fit {
 

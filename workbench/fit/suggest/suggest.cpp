@@ -14,7 +14,6 @@
 #include "data/text/text.hpp"
 #include "diag/diag.hpp"
 #include "episodes/admission/admission.hpp"
-#include "episodes/data_warnings.hpp"
 #include "fit/separation.hpp"
 #include "plan/budget/budget.hpp"
 

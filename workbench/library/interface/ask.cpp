@@ -145,11 +145,6 @@ etlc_status etlc_encoder_difference(etlc_session session, const char* encoder, u
             return refuse(ETLC_NO_SUCH, "there is no reference frame {}, only {}", frame,
                           embedded::kReferenceFrames);
         const std::size_t dimension = found->references.size() / embedded::kReferenceFrames;
-        if (dimension == 0)
-            return refuse(ETLC_NOT_KEPT,
-                          "what encoder '{}' makes of the reference frames is not known: run etlc "
-                          "embed again",
-                          found->name);
         if (elements != dimension)
             return refuse(ETLC_WRONG_NUMBER, "embedding has {} elements, encoder '{}' makes {}",
                           elements, found->name, dimension);

@@ -1,4 +1,4 @@
-#include "episodes/shared/part.hpp"
+#include "episodes/shared/sharing.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
