@@ -78,6 +78,7 @@ class TruthEvaluator {
 public:
     /// `formulas`: those to evaluate.
     TruthEvaluator(const check::Model& model, const std::vector<Index>& formulas);
+    TruthEvaluator(TruthEvaluator&&) = delete;  // the evaluator refers to the plan
 
     void reset();
     void step(const Frame& frame);
