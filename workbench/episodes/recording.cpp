@@ -8,12 +8,10 @@
 #include <set>
 #include <utility>
 
-#include "artifacts/embedded.hpp"
 #include "check/encoders/encoders.hpp"
 #include "check/points/points.hpp"
 #include "data/text/text.hpp"
 #include "data/traces/trace_formats.hpp"
-#include "episodes/admission/admission.hpp"
 #include "recordings/datasets/trace.hpp"
 
 namespace etlc::episodes {
@@ -306,6 +304,14 @@ std::vector<Index> identity_inputs(const check::Model& model) {
     std::vector<Index> result;
     for (const auto& [name, input] : calibrated.empty() ? all : calibrated) result.push_back(input);
     return result;
+}
+
+bool is_unmarked(const check::Model& model, const std::vector<Index>& inputs,
+                 const recordings::NamesInFile& names, const embedded::Marks& marks) {
+    return std::any_of(inputs.begin(), inputs.end(), [&](Index index) {
+        const check::Input& input = model.inputs[index];
+        return check::is_unmarked(input, recordings::name_in_file(input.name, names), marks);
+    });
 }
 
 diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const std::string& path,

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "artifacts/embedded.hpp"
 #include "check/model/model.hpp"
 #include "data/files/hash.hpp"
 #include "data/spill/spill.hpp"
@@ -87,6 +88,10 @@ struct Wanted {
     const Leaks* leaks = nullptr;   ///< targets that no frame may equal; null: no check
     std::vector<Index> optional{};  ///< inputs to read from episodes that have them
 };
+
+/// Returns whether an input needs an encoder that the episode's marks do not name.
+bool is_unmarked(const check::Model& model, const std::vector<Index>& inputs,
+                 const recordings::NamesInFile& names, const embedded::Marks& marks);
 
 /// The identity of an episode that has been read.
 struct Recorded {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <set>
 
+#include "artifacts/embedded.hpp"
 #include "check/encoders/encoders.hpp"
 #include "check/points/points.hpp"
 #include "data/files/file.hpp"
@@ -444,14 +445,6 @@ private:
 };
 
 }  // namespace
-
-bool is_unmarked(const check::Model& model, const std::vector<Index>& inputs,
-                 const recordings::NamesInFile& names, const embedded::Marks& marks) {
-    return std::any_of(inputs.begin(), inputs.end(), [&](Index index) {
-        const check::Input& input = model.inputs[index];
-        return check::is_unmarked(input, recordings::name_in_file(input.name, names), marks);
-    });
-}
 
 void warn_of_unmarked(const Identities& episodes, diag::Sink& sink) {
     Unmarked unmarked;

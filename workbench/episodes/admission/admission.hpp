@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "artifacts/embedded.hpp"
 #include "artifacts/fitted.hpp"
 #include "artifacts/thresholds.hpp"
 #include "check/model/model.hpp"
@@ -104,10 +103,6 @@ std::string remark_on(const thresholds::Allowance& allowance);
 // do not name the encoder of their embeddings cause one warning a call (W1001), and none without an
 // encoder in the spec. Labels count as inverted only where the whole interval of the AUROC lies
 // below 0.5.
-
-/// Returns whether an input needs an encoder that the episode's marks do not name.
-bool is_unmarked(const check::Model& model, const std::vector<Index>& inputs,
-                 const recordings::NamesInFile& names, const embedded::Marks& marks);
 
 void warn_of_unmarked(const Identities& episodes, diag::Sink& sink);
 /// Reads the marks of the episodes. `inputs`: those that the command reads.
