@@ -1,6 +1,6 @@
 // Reads tables of labels: any bytes give rows, each of an episode, with an interval that is not
 // empty, or an error with a place.
-#include "episodes/labels/table.hpp"
+#include "episodes/labels/labels.hpp"
 #include "fuzz_target.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {

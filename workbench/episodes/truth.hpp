@@ -15,7 +15,7 @@
 
 #include "check/model/model.hpp"
 #include "compile.hpp"
-#include "episodes/labels/table.hpp"
+#include "episodes/labels/labels.hpp"
 #include "execute/evaluator.hpp"
 
 namespace etlc::episodes {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "etlmon/temporal/shift.hpp"
-#include "explain/support.hpp"
+#include "explain/claim.hpp"
 
 namespace etlc::explain {
 

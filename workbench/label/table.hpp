@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "diag/diag.hpp"
-#include "episodes/labels/table.hpp"
+#include "episodes/labels/labels.hpp"
 
 namespace etlc::label {
 

@@ -13,7 +13,6 @@
 
 #include "data/files/file.hpp"
 #include "data/text/text.hpp"
-#include "episodes/labels/table.hpp"
 #include "recordings/datasets/dataset.hpp"
 #include "recordings/episodes.hpp"
 #include "recordings/hdf5/hdf5.hpp"

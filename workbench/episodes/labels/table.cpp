@@ -1,4 +1,4 @@
-#include "episodes/labels/table.hpp"
+#include "episodes/labels/labels.hpp"
 
 #include <fmt/format.h>
 
