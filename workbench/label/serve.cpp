@@ -20,8 +20,9 @@ using diag::Code;
 using diag::Failure;
 using episodes::Label;
 
-/// A page that has not asked for so long is closed.
-constexpr std::chrono::seconds kGone{6};
+/// A page that has not asked for so long is closed. A page in the background asks once a minute,
+/// because browsers slow its timers down; one that is closed says so.
+constexpr std::chrono::seconds kGone{90};
 
 Answer answered(const Json& json, std::uint32_t status = 200) {
     return {status, "application/json", json.dump(-1, ' ', false, Json::error_handler_t::replace)};
