@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "fuzz_target.hpp"
-#include "recordings/parquet/table.hpp"
+#include "recordings/parquet/rows.hpp"
 
 namespace {
 
