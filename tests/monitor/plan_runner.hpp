@@ -27,6 +27,7 @@ public:
     /// Empty if the spec was planned; else the codes of the errors, separated by spaces.
     const std::string& refusal() const { return refusal_; }
     const plan::Cost& cost() const { return plan_->cost; }
+    std::string text() const { return plan::print(*plan_); }
     /// The atoms that the plan computes.
     Dependencies dependencies() const;
     /// Runs from reset to the last call of finish(), with labels before each step. Adaptive

@@ -199,6 +199,17 @@ TEST(Chains, AnswersAndUntilsInTurnCostWhatTheirPhasesCost) {
     EXPECT_LE(operations_of(until, 9), 200);
 }
 
+// The generated class assigned a member to itself, about which clang warns.
+TEST(Chains, WaysThatAreNeverDoneAreNotStored) {
+    const auto model = load(
+        "spec s; input a : bool; input b : bool; input c : bool;\n"
+        "monitor m = (c && a) R (G b);");
+    ASSERT_TRUE(model);
+    PlanRunner runner(*model, {});
+    ASSERT_EQ(runner.refusal(), "");
+    EXPECT_EQ(runner.text().find("is pending"), std::string::npos) << runner.text();
+}
+
 // For sliding monitors the end of the trace matters too.
 TEST(PlanExhaustive, SlidingMonitors) {
     for (std::size_t steps = 1; steps <= 6; ++steps)

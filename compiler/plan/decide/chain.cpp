@@ -263,7 +263,7 @@ private:
 
     /// Stores the ways with nothing pending.
     void settle() {
-        if (done_.empty()) return;
+        if (best(done_) == Term::constant(neutral(is_.max))) return;  // what is done adds nothing
         settled_ = Term::reg(code_.registers.size());
         code_.registers.push_back(
             {.first = neutral(is_.max),
