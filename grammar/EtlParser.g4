@@ -161,8 +161,9 @@ calibrated
     : CALIBRATED LPAREN name (COMMA argument)* RPAREN
     ;
 
+// A unit is for times.
 argument
-    : name ASSIGN number
+    : name ASSIGN number unit?
     ;
 
 // ---- encoders

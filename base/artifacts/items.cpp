@@ -45,8 +45,8 @@ ItemTakers Items::takers() {
                     [this](std::size_t, const std::string& key, const Json& item) {
                         return take_recording(key, item);
                     }};
-        const bool of_entry =
-            path.size() == 3 && (path[0] == "monitors" || path[0] == "predicates");
+        const bool of_entry = (path.size() == 3 || (path.size() == 4 && path[2] == "inner")) &&
+                              (path[0] == "monitors" || path[0] == "predicates");
         if (!is_array || (path.size() != 1 && !of_entry)) return {};
         const std::string place = fmt::format("{}", fmt::join(path, "."));
         const auto take_into = [&](auto& all, auto read) -> ItemTaker {
@@ -61,7 +61,8 @@ ItemTakers Items::takers() {
                 }};
         };
         if (path.back() == "episodes") return take_into(episodes_, hash_of);
-        if (path.back() == "scores" && of_entry) return take_into(scores_, score_of);
+        const bool is_of_scores = path.back() == "scores" || path.back().starts_with("losses");
+        if (is_of_scores && of_entry) return take_into(scores_, score_of);
         return {};
     };
 }

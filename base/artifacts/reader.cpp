@@ -74,7 +74,9 @@ void Reader::operator()(const std::string& key, std::string& text) {
     text = get(key, Json::Kind::string, "a text").text;
 }
 
-void Reader::operator()(const std::string& key, std::string& word, const Words& words) {
+void Reader::operator()(const std::string& key, std::string& word, const Words& words,
+                        Presence presence) {
+    if (find(key, Json::Kind::string, "a text", presence) == nullptr) return;
     (*this)(key, word);
     if (std::find(words.known.begin(), words.known.end(), word) != words.known.end()) return;
     std::vector<std::string> quoted;
@@ -99,12 +101,18 @@ void Reader::operator()(const std::string& key, std::string& number, const Decim
     if (value != nullptr) number = value->text;
 }
 
-void Reader::operator()(const std::string& key, std::uint64_t& count) {
-    if (!is_number(get(key, Json::Kind::number, "a whole number").text, count))
-        refuse(key, "a whole number");
+void Reader::operator()(const std::string& key, std::uint64_t& count, Presence presence) {
+    const Json* value = find(key, Json::Kind::number, "a whole number", presence);
+    if (value != nullptr && !is_number(value->text, count)) refuse(key, "a whole number");
 }
 
-void Reader::operator()(const std::string& key, float& number) {
+void Reader::operator()(const std::string& key, float& number, OrInfinite infinite) {
+    const Json* value = find(key);
+    const bool is_text = value != nullptr && value->kind == Json::Kind::string;
+    if (infinite.allowed && is_text && (value->text == "inf" || value->text == "-inf")) {
+        number = value->text == "inf" ? HUGE_VALF : -HUGE_VALF;
+        return;
+    }
     if (!is_number(get(key, Json::Kind::number, "a finite float32").text, number))
         refuse(key, "a finite float32");
 }
@@ -125,9 +133,9 @@ void Reader::operator()(const std::string& key, std::map<std::string, std::strin
             hash_of(all->items[i], place(key) + "." + all->keys[i], shared_.kind.invalid));
 }
 
-void Reader::operator()(const std::string& key, std::vector<double>& scores) {
-    get(key, Json::Kind::array, "an array of numbers");
-    scores = shared_.items.scores(place(key));
+void Reader::operator()(const std::string& key, std::vector<double>& scores, Presence presence) {
+    if (find(key, Json::Kind::array, "an array of numbers", presence) != nullptr)
+        scores = shared_.items.scores(place(key));
 }
 
 void Reader::operator()(const std::string& key, std::vector<std::uint64_t>& episodes,

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,10 @@ enum class Presence : std::uint8_t {
 struct Hash {};  ///< a content hash: 16 hex digits
 struct Words {
     std::vector<std::string> known;  ///< the words allowed
+};
+/// A float32 that may be infinite.
+struct OrInfinite {
+    bool allowed = true;
 };
 struct Decimal {  ///< a JSON number as written; left out if empty
     bool required;
@@ -93,17 +98,20 @@ public:
     }
 
     void operator()(const std::string& key, std::string& text);
-    void operator()(const std::string& key, std::string& word, const Words& words);
+    void operator()(const std::string& key, std::string& word, const Words& words,
+                    Presence presence = Presence::always);
     void operator()(const std::string& key, std::string& hash, Hash);
     void operator()(const std::string& key, std::uint64_t& hash, Hash);
     void operator()(const std::string& key, std::string& number, const Decimal& decimal);
-    void operator()(const std::string& key, std::uint64_t& count);
-    void operator()(const std::string& key, float& number);
+    void operator()(const std::string& key, std::uint64_t& count,
+                    Presence presence = Presence::always);
+    void operator()(const std::string& key, float& number, OrInfinite infinite = {false});
     void operator()(const std::string& key, std::map<std::string, std::string>& texts,
                     Presence presence);
     void operator()(const std::string& key, std::map<std::string, std::string>& hashes, Hash,
                     Presence presence = Presence::always);
-    void operator()(const std::string& key, std::vector<double>& scores);
+    void operator()(const std::string& key, std::vector<double>& scores,
+                    Presence presence = Presence::always);
     void operator()(const std::string& key, std::vector<std::uint64_t>& episodes, Presence);
     void operator()(const std::string& key, data::KnownEpisodes& recordings, Presence);
     /// Reads an array of finite float32 without a dimension of 0. Returns its shape.
@@ -121,6 +129,14 @@ public:
             Reader(shared_, all->items[i], place(key) + "." + all->keys[i])
                 .read([&](auto& archive) { members(archive, all->keys[i], value); });
         }
+    }
+    /// Reads an object that may be missing, which `members(archive, value)` describes.
+    template <class T, class Members>
+    void operator()(const std::string& key, std::optional<T>& object, const Members& members) {
+        const Json* one = find(key, Json::Kind::object, "an object", Presence::where_any);
+        if (one == nullptr) return;
+        T& value = object.emplace();
+        Reader(shared_, *one, place(key)).read([&](auto& archive) { members(archive, value); });
     }
     /// Reads an array of objects, each of which `members(archive, value)` describes.
     template <class T, class Members>

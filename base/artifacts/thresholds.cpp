@@ -23,30 +23,63 @@ const artifacts::Kind kKind{"",
                             Code::invalid_thresholds,
                             Code::unreadable_thresholds};
 
+/// Describes alpha or beta.
+template <class Archive>
+void rate_member(Archive& archive, const std::string& key, auto& rate, bool required,
+                 const std::string& expected) {
+    archive(key, rate, artifacts::Decimal{required, expected});
+    if constexpr (Archive::kReads) {
+        const double number = data::parse_number(rate).value_or(0);
+        const bool sound = number > 0 && number < 1 && expected.starts_with("a number");
+        if ((required || !rate.empty()) && !sound) archive.refuse(key, expected);
+    }
+}
+
+/// Describes a threshold and its scores; one of two may be infinite.
+template <class Archive>
+void side_members(Archive& archive, auto& side, const std::string& method, bool of_two) {
+    archive("epsilon", side.epsilon, artifacts::OrInfinite{of_two});
+    archive("n", side.n);
+    archive("k", side.k);
+    if constexpr (Archive::kReads) {
+        const bool ranked = method != "f1" && method != "risk";
+        if (ranked != (side.k > 0))
+            archive.refuse("k", ranked ? "a rank from 1" : "0 for " + method);
+        if (side.k > side.n + (of_two ? 1 : 0))
+            archive.refuse("k", fmt::format("at most n{}, which is {}", of_two ? " + 1" : "",
+                                            side.n + (of_two ? 1 : 0)));
+    }
+    archive("scores", side.scores);
+    archive("losses", side.losses, Presence::where_any);
+    archive("losses_before", side.losses_before, Presence::where_any);
+}
+
 template <class Archive>
 void members(Archive& archive, auto& entry, bool of_monitor) {
     archive("method", entry.method,
-            artifacts::Words{{"f1", "conformal", "class_conditional", "adaptive"}});
-    const bool ranked = entry.method != "f1";
-    const std::string alpha = ranked ? "a number between 0 and 1" : "no such key for f1";
-    archive("alpha", entry.alpha, artifacts::Decimal{ranked, alpha});
-    if constexpr (Archive::kReads) {
-        const double number = data::parse_number(entry.alpha).value_or(0);
-        const bool sound = ranked ? number > 0 && number < 1 : entry.alpha.empty();
-        if (!sound) archive.refuse("alpha", alpha);
-    }
-    archive("epsilon", entry.epsilon);
-    archive("n", entry.n);
-    archive("k", entry.k);
-    if constexpr (Archive::kReads) {
-        if (ranked != (entry.k > 0)) archive.refuse("k", ranked ? "a rank from 1" : "0 for f1");
-        if (entry.k > entry.n) archive.refuse("k", fmt::format("at most n, which is {}", entry.n));
-    }
-    archive("scores", entry.scores);
+            artifacts::Words{{"f1", "conformal", "class_conditional", "adaptive", "risk"}});
+    const bool rated = entry.method != "f1";
+    rate_member(archive, "alpha", entry.alpha, rated,
+                rated ? "a number between 0 and 1" : "no such key for f1");
+    rate_member(archive, "beta", entry.beta, false, "a number between 0 and 1");
+    bool of_two = entry.inner.has_value();
+    if constexpr (Archive::kReads) of_two = archive.find("inner") != nullptr;
+    side_members(archive, entry, entry.method, of_two);
+    archive("inner", entry.inner,
+            [&](auto& one, auto& side) { side_members(one, side, entry.method, true); });
     archive("reads", entry.reads, Presence::always);
-    if (!of_monitor) return;
-    archive("against", entry.against, artifacts::Words{{"missed_alarm", "missed_success"}});
-    archive("episodes", entry.episodes, Presence::always);
+    if (of_monitor)
+        archive("against", entry.against,
+                artifacts::Words{{"missed_alarm", "missed_success", "both"}});
+    else
+        archive("against", entry.against, artifacts::Words{{"false_positives", "both"}},
+                Presence::where_any);
+    archive("within", entry.within, Presence::where_any);
+    if (of_monitor) archive("episodes", entry.episodes, Presence::always);
+    if constexpr (Archive::kReads)
+        if (of_two != (entry.against == "both"))
+            archive.refuse("against", of_two ? "'both', since there is an inner threshold"
+                                             : "an inner threshold");
 }
 
 template <class Archive>

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,17 +29,36 @@ struct Allowance {
 /// The group of each episode that has one, by content hash in 16 hex digits.
 using GroupNames = std::map<std::string, std::string>;
 
-struct Entry {
-    std::string method;  ///< f1, conformal, class_conditional, adaptive
-    std::string alpha;   ///< decimal text exactly as in the spec, a JSON number; empty for f1
-    float epsilon = 0;   ///< finite
-    /// Number of scores: groups of demonstrations (conformal) or frames (class_conditional, f1).
+/// A threshold and its scores.
+struct Side {
+    /// Infinite only if the entry is against both errors and the scores are too few for its rate.
+    float epsilon = 0;
+    /// Number of scores: groups of demonstrations (conformal, risk) or frames (class_conditional,
+    /// f1).
     std::uint64_t n = 0;
-    std::uint64_t k = 0;         ///< rank of the score taken, 1 to n; 0 for f1
+    /// Rank of the score taken, from 1; n + 1 if epsilon is infinite; 0 for f1 and risk.
+    std::uint64_t k = 0;
     std::vector<double> scores;  ///< may be infinite, not NaN
+    /// Risk: the loss of each group at epsilon, and at the next tighter threshold (empty if none is
+    /// tighter): shares in [0, 1].
+    std::vector<double> losses;
+    std::vector<double> losses_before;
+};
+
+/// The threshold of a predicate or the shift of a monitor: the only one, or of two the one beyond
+/// which it is called false or violated.
+struct Entry : Side {
+    std::string method;  ///< f1, conformal, class_conditional, adaptive, risk
+    std::string alpha;   ///< decimal text exactly as in the spec, a JSON number; empty for f1
+    std::string beta;    ///< likewise, if the spec has it
     /// Everything the entry was computed from, by kind and name (check::Reads).
     std::map<std::string, std::string> reads;
-    std::string against;                  ///< monitors: missed_alarm or missed_success
+    /// Predicates: empty (misses), false_positives or both; monitors: missed_alarm, missed_success
+    /// or both.
+    std::string against;
+    std::uint64_t within = 0;  ///< steps around a change of the truth without labels
+    /// Against both: the threshold within which it is called true or satisfied.
+    std::optional<Side> inner;
     std::vector<std::uint64_t> episodes;  ///< monitors: hashes of the calibration episodes
 };
 

@@ -77,7 +77,7 @@ void Writer::operator()(const std::string& key, const std::string& number, const
     if (!number.empty()) write(key, number);
 }
 
-void Writer::operator()(const std::string& key, float number) {
+void Writer::operator()(const std::string& key, float number, OrInfinite /*infinite*/) {
     write(key, text_of(number));
 }
 
@@ -90,7 +90,9 @@ void Writer::operator()(const std::string& key, const std::map<std::string, std:
     all.end();
 }
 
-void Writer::operator()(const std::string& key, const std::vector<double>& scores) {
+void Writer::operator()(const std::string& key, const std::vector<double>& scores,
+                        Presence presence) {
+    if (scores.empty() && presence == Presence::where_any) return;
     write(key, "[");
     for (std::size_t i = 0; i < scores.size(); ++i)
         to_.add((i > 0 ? ", " : "") + text_of(scores[i]));

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -59,24 +60,26 @@ public:
         : to_(to), indent_(indent), arrays_(arrays), in_line_(in_line) {}
 
     void operator()(const std::string& key, const std::string& text);
-    void operator()(const std::string& key, const std::string& word, const Words&) {
-        (*this)(key, word);
+    void operator()(const std::string& key, const std::string& word, const Words&,
+                    Presence presence = Presence::always) {
+        if (presence == Presence::always || !word.empty()) (*this)(key, word);
     }
     void operator()(const std::string& key, const std::string& hash, Hash) { (*this)(key, hash); }
     void operator()(const std::string& key, std::uint64_t hash, Hash);
     void operator()(const std::string& key, const std::string& number, const Decimal&);
     template <std::unsigned_integral Number>
-    void operator()(const std::string& key, Number count) {
-        write(key, std::to_string(count));
+    void operator()(const std::string& key, Number count, Presence presence = Presence::always) {
+        if (presence == Presence::always || count > 0) write(key, std::to_string(count));
     }
-    void operator()(const std::string& key, float number);
+    void operator()(const std::string& key, float number, OrInfinite = {});
     void operator()(const std::string& key, const std::map<std::string, std::string>& texts,
                     Presence presence);
     void operator()(const std::string& key, const std::map<std::string, std::string>& hashes, Hash,
                     Presence presence = Presence::always) {
         (*this)(key, hashes, presence);
     }
-    void operator()(const std::string& key, const std::vector<double>& scores);
+    void operator()(const std::string& key, const std::vector<double>& scores,
+                    Presence presence = Presence::always);
     void operator()(const std::string& key, const std::vector<std::uint64_t>& episodes, Presence);
     void operator()(const std::string& key, const data::KnownEpisodes& recordings, Presence);
     std::vector<std::uint64_t> operator()(const std::string& key, const Array& array,
@@ -95,6 +98,15 @@ public:
             one.end();
         }
         all.end();
+    }
+    template <class T, class Members>
+    void operator()(const std::string& key, const std::optional<T>& object,
+                    const Members& members) {
+        if (!object) return;
+        begin(key);
+        Writer one(to_, indent_ + 2, arrays_);
+        members(one, *object);
+        one.end();
     }
     template <class T, class Members>
     void operator()(const std::string& key, const std::vector<T>& rows, const std::string&,

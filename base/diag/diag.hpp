@@ -1,4 +1,4 @@
-// Collects diagnostics; render.hpp prints them. Each cause is reported once, and nothing is printed
+// Collects diagnostics and prints them. Each cause is reported once, and nothing is printed
 // before a stage has reported everything that it finds.
 #pragma once
 

@@ -294,7 +294,7 @@ struct Target {
 struct Calibrated {
     struct Argument {
         Name key;
-        std::variant<Number, Name> value;
+        std::variant<Bound, Name> value;  ///< a number or a time; a word
     };
     Name method;
     std::vector<Argument> arguments;

@@ -121,7 +121,10 @@ void print_types(Printer& out, const Context& context) {
     const bool has_tables = std::any_of(readings.begin(), readings.end(),
                                         [](const auto& names) { return !names.weak.empty(); });
     std::vector<std::pair<std::string, std::string>> types;
-    types.emplace_back(fmt::format("using Value = {};", words.value), words.value_meaning);
+    types.emplace_back(
+        fmt::format("using Value = {};", words.value),
+        fmt::format("{}{}", words.value_meaning,
+                    context.has_two_thresholds() ? ", or between two thresholds" : ""));
     if (!readings.empty())
         types.emplace_back(fmt::format("using Reading = {};", words.reading),
                            "a value, and its bounds over every continuation");
@@ -278,11 +281,15 @@ void print_interface(Printer& out, const Context& context, const std::vector<Mem
     if (context.plan.has_sliding) print_finish(out, context);
     if (!context.on_demand) declare_halves(out);
     if (!context.names.predicate_member.empty()) {
-        print_doc(
-            out,
-            fmt::format("Telemetry of the last step: the distance or expression of each predicate, "
-                        "NaN if unknown{}, its threshold, and the row of the nearest target.",
-                        context.on_demand ? " or not evaluated" : ""));
+        print_doc(out,
+                  fmt::format(
+                      "Telemetry of the last step: the distance or expression of each predicate, "
+                      "NaN if unknown{}, its threshold, and the row of the nearest target.{}",
+                      context.on_demand ? " or not evaluated" : "",
+                      context.has_two_thresholds()
+                          ? " Of two thresholds, a number within inner_threshold_P() is true, one "
+                            "beyond threshold_P() false, and one between them neither."
+                          : ""));
         print_telemetry(out, context);
         out.line();
     }

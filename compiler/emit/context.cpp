@@ -54,6 +54,12 @@ std::string Context::literal(plan::Key key) const {
     return fmt::format("etlmon::key_of({})", float_literal(etlmon::float_of(key)));
 }
 
+bool Context::has_two_thresholds() const {
+    return std::any_of(plan.predicates.begin(), plan.predicates.end(), [&](check::Index p) {
+        return model.predicates[p].threshold.inner.has_value();
+    });
+}
+
 std::string Context::bound(plan::Key key) const {
     const auto end = ends.find(key);
     return end == ends.end() || end->second.empty() ? literal(key) : end->second;

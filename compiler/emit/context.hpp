@@ -47,7 +47,11 @@ struct Context {
     bool with_references = true;
     /// Returns whether all numbers of the spec are parameters of the monitor.
     bool retargetable() const { return model.retargetable; }
+    /// Whether some predicate has two thresholds.
+    bool has_two_thresholds() const;
     /// Returns code for a parameter: "numbers_ + targets::goal", "numbers_[thresholds::near]".
+    /// Returns a threshold among the parameters: the only one, or the inner or outer one of two.
+    std::string threshold(check::Index predicate, bool inner) const;
     std::string parameter(plan::Parameter::Kind kind, check::Index index) const;
     std::string parameter(const check::Expr& number) const;
     /// Returns whether some target sets are stored outside the header.

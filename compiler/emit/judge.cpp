@@ -6,11 +6,26 @@ namespace etlc::emit {
 
 namespace {
 
+/// Returns ", SHIFT" or ", LEAST, MOST" of a monitor that was calibrated as a whole.
+std::string shifts(const plan::Monitor& monitor) {
+    if (!monitor.shifted) return "";
+    const std::string shift = ", " + float_literal(monitor.shift);
+    return monitor.inner_shift ? ", " + float_literal(*monitor.inner_shift) + shift : shift;
+}
+
 /// Returns the value, shifted with its bounds if the monitor was calibrated as a whole.
 std::string shifted(const plan::Monitor& monitor, const std::string& value) {
-    return monitor.shifted
-               ? fmt::format("etlmon::shifted({}, {})", value, float_literal(monitor.shift))
-               : value;
+    return monitor.shifted ? fmt::format("etlmon::shifted({}{})", value, shifts(monitor)) : value;
+}
+
+/// Returns ", CONDITION" under which the prefix has all that the formula looks ahead, so that even
+/// an unknown verdict is final; nothing if it looks ahead without a limit.
+std::string complete(const Context& context, std::size_t m) {
+    const plan::Monitor& monitor = context.plan.monitors[m];
+    if (monitor.ahead == plan::kUnbounded) return "";
+    if (monitor.ahead == 0) return ", true";
+    const std::uint32_t from = monitor.begins_with(static_cast<std::uint32_t>(m));
+    return fmt::format(", {} >= {}", context.position(from), monitor.ahead);
 }
 
 /// Returns the reading or value without its sample.
@@ -20,9 +35,8 @@ std::string robustness(const Context& context, const std::string& value) {
 
 /// Returns the verdict from values that carry their sample, and keeps the one that decides it.
 std::string deciding(const plan::Monitor& monitor, std::string_view kind, std::size_t m,
-                     const std::string& value) {
-    return fmt::format("deciding_.{}({}, {}{})", kind, m, value,
-                       monitor.shifted ? ", " + float_literal(monitor.shift) : "");
+                     const std::string& value, const std::string& complete = "") {
+    return fmt::format("deciding_.{}({}, {}{}{})", kind, m, value, shifts(monitor), complete);
 }
 
 bool is_deciding(const Context& context) {
@@ -32,9 +46,10 @@ bool is_deciding(const Context& context) {
 std::string prefix_verdict(const Context& context, std::size_t m) {
     const plan::Monitor& monitor = context.plan.monitors[m];
     const std::string& reading = context.names.readings[monitor.reading].local;
-    if (is_deciding(context)) return deciding(monitor, "prefix", m, reading);
-    return fmt::format("etlmon::prefix_verdict({})",
-                       shifted(monitor, robustness(context, reading)));
+    const std::string when = complete(context, m);
+    if (is_deciding(context)) return deciding(monitor, "prefix", m, reading, when);
+    return fmt::format("etlmon::prefix_verdict({}{})",
+                       shifted(monitor, robustness(context, reading)), when);
 }
 
 /// Returns the verdict on the position one horizon ago, if the trace contains it.
@@ -103,9 +118,10 @@ void print_open_verdicts(Printer& out, const Context& context) {
             print_wrapped(
                 out, fmt::format("answers_.{} = {};", monitor.name, sliding_verdict(context, m)));
         else
-            print_wrapped(
-                out, fmt::format("{}answers_.{} = etlmon::prefix_verdict({});", if_open(context, m),
-                                 monitor.name, context.names.readings[monitor.reading].local));
+            print_wrapped(out, fmt::format("{}answers_.{} = etlmon::prefix_verdict({}{});",
+                                           if_open(context, m), monitor.name,
+                                           context.names.readings[monitor.reading].local,
+                                           complete(context, m)));
     }
 }
 
@@ -325,9 +341,17 @@ void print_next_cycle(Printer& out, const Context& context, std::size_t m,
                   fmt::format("after a final verdict, {} restarts with the next step",
                               context.plan.monitors[m].name));
     out.open(fmt::format("if ({}{}.final()) {{", while_open, verdict));
-    out.line("uint32_t& count = {}.alarm() ? {} : {};", verdict, context.names.alarms_member.at(m),
-             context.names.fulfilled_member.at(m));
-    print_wrapped(out, counted("count"));
+    const std::string& alarms = context.names.alarms_member.at(m);
+    const std::string& fulfilled = context.names.fulfilled_member.at(m);
+    if (context.plan.monitors[m].ahead == plan::kUnbounded) {
+        out.line("uint32_t& count = {}.alarm() ? {} : {};", verdict, alarms, fulfilled);
+        print_wrapped(out, counted("count"));
+    } else {  // it may be unknown for good
+        print_wrapped(out,
+                      fmt::format("if ({0}.alarm() && {1} != UINT32_MAX) ++{1};", verdict, alarms));
+        print_wrapped(out, fmt::format("if ({0}.fulfilled() && {1} != UINT32_MAX) ++{1};", verdict,
+                                       fulfilled));
+    }
     out.line("restart_{}();", context.plan.monitors[m].name);
     if (const auto position = context.names.position_member.find(m);
         position != context.names.position_member.end()) {

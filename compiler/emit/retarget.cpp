@@ -38,7 +38,13 @@ std::string words_for(const Context& context, const Parameter& one) {
     const std::string rows = fmt::format("{} of {}", diag::counted(one.count / one.width, "row"),
                                          diag::counted(one.width, "element"));
     switch (one.kind) {
-        case Parameter::Kind::threshold: return "";
+        case Parameter::Kind::threshold: {
+            if (one.count == 1) return "";
+            const bool is_upper = model.predicates[one.index].upper_bound();
+            return fmt::format("and the next: {}",
+                               is_upper ? "true up to the first, false beyond the second"
+                                        : "false below the first, true from the second on");
+        }
         case Parameter::Kind::number:
             return "in the expression of " + model.predicates[one.index].name;
         case Parameter::Kind::in_past: return "in " + model.pasts[one.index].text;
@@ -59,6 +65,7 @@ std::string_view word_for(etlmon::ParamsPart::Rule rule) {
         case etlmon::ParamsPart::positive: return "positive";
         case etlmon::ParamsPart::unit_rows: return "unit_rows";
         case etlmon::ParamsPart::symmetric: return "symmetric";
+        case etlmon::ParamsPart::ascending: return "ascending";
     }
     return "any";
 }
@@ -116,6 +123,15 @@ std::string Context::parameter(Parameter::Kind kind, Index index) const {
                        ? fmt::format("numbers_[{}]", place_of(*this, one))
                        : "numbers_ + " + place_of(*this, one);
     }
+    return "";
+}
+
+std::string Context::threshold(Index predicate, bool inner) const {
+    const bool of_two = model.predicates[predicate].threshold.inner.has_value();
+    const bool is_second = of_two && inner != model.predicates[predicate].upper_bound();
+    for (const Parameter& one : parameters)
+        if (one.kind == Parameter::Kind::threshold && one.index == predicate)
+            return fmt::format("numbers_[{}{}]", place_of(*this, one), is_second ? " + 1" : "");
     return "";
 }
 

@@ -86,8 +86,7 @@ std::vector<Row> threshold_rows(const plan::Plan& plan) {
     for (Index p : plan.predicates) {
         const check::Predicate& predicate = plan.model->predicates[p];
         rows.push_back({predicate.name.empty() ? "-" : predicate.name, predicate.text,
-                        fmt::format("{}", predicate.threshold.value),
-                        check::origin(predicate.threshold)});
+                        check::numbers(predicate.threshold), check::origin(predicate.threshold)});
     }
     return rows;
 }
@@ -141,12 +140,25 @@ bool counts_groups(const plan::Plan& plan) {
     return std::any_of(plan.predicates.begin(), plan.predicates.end(),
                        [&](Index p) { return plan.model->predicates[p].threshold.by_group; }) ||
            std::any_of(plan.monitors.begin(), plan.monitors.end(), [&](const plan::Monitor& m) {
-               return m.shifted && monitors[m.index].calibration->threshold.by_group;
+               return m.shifted && monitors[m.index].calibration->by_group;
            });
 }
 
 std::vector<check::Claim> claims_of(const plan::Plan& plan, const plan::Monitor& monitor) {
     return check::claims(*plan.model, plan.model->monitors[monitor.index], plan.values);
+}
+
+/// Returns whether some guarantee is about missed successes, and whether some tells the two errors
+/// apart.
+std::pair<bool, bool> kinds_of_claims(const plan::Plan& plan) {
+    bool on_successes = false;
+    bool on_both = false;
+    for (const plan::Monitor& monitor : plan.monitors)
+        for (const check::Claim& claim : claims_of(plan, monitor)) {
+            on_successes |= claim.kind == check::Claim::Kind::missed_success;
+            on_both |= claim.kind >= check::Claim::Kind::satisfied_wrongly;
+        }
+    return {on_successes, on_both};
 }
 
 bool sets_zero_aside(const plan::Plan& plan) {
@@ -161,23 +173,20 @@ bool sets_zero_aside(const plan::Plan& plan) {
 /// Returns the guarantees: a row per monitor, or a row per conjunct if the whole has none.
 std::vector<Row> guarantee_rows(const plan::Plan& plan) {
     std::vector<Row> rows{{"monitor", "guarantee"}};
-    for (const plan::Monitor& monitor : plan.monitors)
-        for (const check::Claim& claim : claims_of(plan, monitor)) {
-            const bool whole = claim.part.empty();
-            if (monitor.shifted) {
-                const check::Threshold& shift =
-                    plan.model->monitors[monitor.index].calibration->threshold;
-                rows.push_back({monitor.name,
-                                fmt::format("{}; rho minus {}, score {}, coverage {:.3f} to {:.3f}",
-                                            check::text(claim), shift.value, check::place(shift),
-                                            check::coverage_quantile(shift.n, shift.k, 0.05),
-                                            check::coverage_quantile(shift.n, shift.k, 0.95))});
-                continue;
-            }
-            rows.push_back(
-                {whole ? monitor.name : "",
-                 (whole ? "" : "part " + shortened(claim.part) + ": ") + check::text(claim)});
+    for (const plan::Monitor& monitor : plan.monitors) {
+        const auto& calibration = plan.model->monitors[monitor.index].calibration;
+        const std::vector<check::Claim> claims = claims_of(plan, monitor);
+        for (const check::Claim& claim : claims) {
+            const std::string part =
+                claim.part.empty() ? "" : fmt::format("part {}: ", shortened(claim.part));
+            const bool has_shift = monitor.shifted && claims.size() == 1;
+            rows.push_back({&claim == &claims.front() ? monitor.name : "",
+                            part + check::text(claim) +
+                                (has_shift ? "; " + check::of_shift(*calibration) : "")});
         }
+        if (monitor.shifted && claims.size() > 1)
+            rows.push_back({"", check::of_shift(*calibration)});
+    }
     return rows;
 }
 
@@ -213,19 +222,25 @@ void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan&
     if (of_episodes || zero_aside || !reservations.empty()) out.line(blank(prefix));
     if (zero_aside) print_sentences(out, prefix, check::kZeroAside);
     for (const std::string& reservation : reservations) print_sentences(out, prefix, reservation);
-    if (of_episodes)
-        print_sentences(
-            out, prefix,
-            fmt::format(
-                "Probabilities are over the {} together, which have to be exchangeable{}. "
-                "coverage: 5 % and 95 % quantile of Beta(k, n + 1 - k), of {} given these "
-                "demonstrations, more where scores tie. The bound on successes excludes steps with "
-                "missing samples.",
-                by_group ? "groups of demonstrations and the new group"
-                         : "demonstrations and the new episode",
-                by_group ? "; a group counts once, with the worst of its demonstrations"
-                         : ", per episode as recorded",
-                by_group ? "an episode of a new group" : "a new episode"));
+    if (of_episodes) {
+        std::string text = fmt::format(
+            "Probabilities are over the {} together, which have to be exchangeable{}. coverage: 5 %"
+            " and 95 % quantile of Beta(k, n + 1 - k), of {} given these demonstrations, more where"
+            " scores tie.",
+            by_group ? "groups of demonstrations and the new group"
+                     : "demonstrations and the new episode",
+            by_group ? "; a group counts once, with the worst of its demonstrations"
+                     : ", per episode as recorded",
+            by_group ? "an episode of a new group" : "a new episode");
+        const auto [on_successes, on_both] = kinds_of_claims(plan);
+        if (on_successes || !on_both)
+            text += " The bound on successes excludes steps with missing samples.";
+        if (on_both)
+            text +=
+                " A verdict is satisfied or violated wrongly if its truth is the opposite; one "
+                "that is unknown is neither.";
+        print_sentences(out, prefix, text);
+    }
 }
 
 /// Prints the hashes that the class has as constants.

@@ -345,6 +345,18 @@ Value Evaluator::advance(const Stream& stream, State::OfStream& state) const {
     return kAnything;
 }
 
+namespace {
+
+/// Returns a value or reading less the shifts of a monitor that is calibrated as a whole.
+template <class Shifted>
+Shifted shifted(const Monitor& monitor, const Shifted& value) {
+    if (!monitor.shifted) return value;
+    return monitor.inner_shift ? etlmon::shifted(value, *monitor.inner_shift, monitor.shift)
+                               : etlmon::shifted(value, monitor.shift);
+}
+
+}  // namespace
+
 void Evaluator::judge() {
     for (std::size_t m = 0; m < plan_.monitors.size(); ++m) {
         const Monitor& monitor = plan_.monitors[m];
@@ -352,12 +364,13 @@ void Evaluator::judge() {
             state_->verdicts[m] = etlmon::Verdict{};
         } else if (monitor.sliding) {
             const Value value = streams_[monitor.stream];
-            state_->verdicts[m] = etlmon::sliding_verdict(
-                monitor.shifted ? etlmon::shifted(value, monitor.shift) : value);
+            state_->verdicts[m] = etlmon::sliding_verdict(shifted(monitor, value));
         } else if (state_->finished == 0) {
-            const etlmon::Reading& reading = readings_[monitor.reading];
-            state_->verdicts[m] = etlmon::prefix_verdict(
-                monitor.shifted ? etlmon::shifted(reading, monitor.shift) : reading);
+            const std::uint64_t position =
+                steps_since(monitor.begins_with(static_cast<std::uint32_t>(m)));
+            const bool complete = monitor.ahead != kUnbounded && position >= monitor.ahead;
+            state_->verdicts[m] =
+                etlmon::prefix_verdict(shifted(monitor, readings_[monitor.reading]), complete);
         }
     }
     for (std::size_t l = 0; state_->finished == 0 && l < plan_.lets.size(); ++l)

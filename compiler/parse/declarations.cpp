@@ -242,11 +242,15 @@ ast::Calibrated Builder::calibrated(Grammar::CalibratedContext& context) const {
     for (Grammar::ArgumentContext* const argument : context.argument()) {
         ast::Calibrated::Argument& added = result.arguments.emplace_back();
         added.key = name(*argument->name());
-        const ast::Number value = number(*argument->number());
-        if (value.text == value.constant)  // a word, or a constant
-            added.value = ast::Name{value.text, value.span};
+        ast::Bound value{number(*argument->number()), "", span_of(*argument->number())};
+        if (argument->unit() != nullptr) {
+            value.unit = unit(*argument->unit());
+            value.span = source::join(value.span, span_of(*argument->unit()));
+        }
+        if (value.unit.empty() && value.number.text == value.number.constant)
+            added.value = ast::Name{value.number.text, value.span};  // a word, or a constant
         else
-            added.value = value;
+            added.value = std::move(value);
     }
     return result;
 }

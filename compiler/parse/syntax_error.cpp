@@ -377,7 +377,7 @@ std::string name_words(const Stuck& stuck) {
             return "load(\"FILE\"), a matrix, a diagonal [...], fitted(...) or the name of a "
                    "target";
         case EtlParser::RuleCalibrated:
-            return "a method of calibration (f1, conformal or class_conditional)";
+            return "a method of calibration (conformal, risk, class_conditional or f1)";
         case EtlParser::RuleFitted:
             return "a method of fitting (mean, medoids, kmeans, pca, whitened_pca, discriminant or "
                    "logpzo)";

@@ -41,9 +41,13 @@ public:
 private:
     void add_scalars(Index p) {
         const check::Predicate& predicate = model_.predicates[p];
+        const bool of_two = predicate.threshold.inner.has_value();
         add({.kind = Kind::threshold,
              .index = p,
-             .rule = predicate.plain_distance() ? ParamsPart::not_negative : ParamsPart::any});
+             .count = of_two ? 2U : 1U,
+             .rule = of_two                       ? ParamsPart::ascending
+                     : predicate.plain_distance() ? ParamsPart::not_negative
+                                                  : ParamsPart::any});
         add_numbers(Kind::number, p, predicate.expression);
     }
 
@@ -107,7 +111,11 @@ private:
 
 std::vector<float> values_of(const check::Model& model, const Parameter& parameter) {
     switch (parameter.kind) {
-        case Kind::threshold: return {model.predicates[parameter.index].threshold.value};
+        case Kind::threshold: {
+            const check::Range range = model.predicates[parameter.index].threshold.range();
+            if (parameter.count == 2) return {range.low, range.high};
+            return {range.high};
+        }
         case Kind::number:
         case Kind::in_past: return {parameter.number->number32};
         case Kind::rows: return prepared_rows(model, model.distances[parameter.index]);

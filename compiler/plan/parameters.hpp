@@ -15,7 +15,7 @@ namespace etlc::plan {
 
 struct Parameter {
     enum class Kind : std::uint8_t {
-        threshold,  ///< threshold of predicate `index`
+        threshold,  ///< threshold of predicate `index`, or its two thresholds, ascending
         number,     ///< `number` in the expression of predicate `index`
         in_past,    ///< `number` in the expression of past number `index`
         rows,       ///< rows of distance `index` and of others to the same target

@@ -115,12 +115,13 @@ public:
                         .sliding = source.sliding,
                         .restarts = source.restarts,
                         .horizon = source.horizon,
+                        .ahead = source.sliding ? kUnbounded : source.ahead,
                         .index = index,
                         .node = program_.monitors[index]};
         if (source.calibration) {
             if (plan_.values == check::Values::boolean) {
                 sink.report(
-                    diag::Code::calibration_not_available, source.calibration->threshold.span,
+                    diag::Code::calibration_not_available, source.calibration->span,
                     fmt::format(
                         "'{}' is calibrated as a whole, which shifts its robustness; with --values "
                         "boolean it has none",
@@ -128,7 +129,8 @@ public:
                 return false;
             }
             monitor.shifted = true;
-            monitor.shift = source.calibration->threshold.value;
+            monitor.shift = source.calibration->value;
+            monitor.inner_shift = source.calibration->inner;
         }
         if (source.sliding) {
             plan_.has_sliding = true;
@@ -204,6 +206,9 @@ private:
             if (asks_position(reading)) count(reading.begins_with);
         for (const Stream& stream : plan_.streams)
             if (stream.op == StreamOp::within) count(stream.begins_with);
+        for (std::uint32_t m = 0; m < plan_.monitors.size(); ++m)
+            if (plan_.monitors[m].ahead > 0 && plan_.monitors[m].ahead != kUnbounded)
+                count(plan_.monitors[m].begins_with(m));
     }
 
     /// Visits every reference to a stream outside the streams.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "reference/atoms.hpp"
@@ -68,14 +69,35 @@ Unseen range_of(const check::Model& model, const Node& atom, Values values) {
     return atom.negated ? negate(range) : range;
 }
 
-/// Returns rho of the atom without its negation: epsilon - delta or delta - epsilon; nothing where
-/// unknown.
-std::optional<double> rho_of(const check::Model& model, const Node& atom, const Samples& samples,
-                             const std::vector<Telemetry>& telemetry, Values values,
-                             const std::vector<double>& thresholds) {
+/// The lowest and highest rho of an atom: one number, except between two thresholds.
+struct Ends {
+    double low = 0;
+    double high = 0;
+};
+
+/// "epsilon - delta or delta - epsilon"; "an infinite threshold: nothing is beyond it".
+double beside(const check::Predicate& predicate, double delta, double epsilon) {
+    if (std::isinf(epsilon)) return predicate.upper_bound() ? epsilon : -epsilon;
+    return predicate.upper_bound() ? epsilon - delta : delta - epsilon;
+}
+
+/// "== and != are +inf or -inf"; with Boolean values the comparison itself decides.
+double compared(const check::Predicate& predicate, double delta, double epsilon, Values values) {
+    if (std::isinf(epsilon)) return beside(predicate, delta, epsilon);
+    if (values == Values::boolean || predicate.equality())
+        return truth(holds(predicate, delta, epsilon));
+    return beside(predicate, delta, epsilon);
+}
+
+/// Returns rho of the atom without its negation; nothing where unknown. "Of two thresholds the low
+/// end is that of the inner one, and the high end that of the outer one."
+std::optional<Ends> rho_of(const check::Model& model, const Node& atom, const Samples& samples,
+                           const std::vector<Telemetry>& telemetry, Values values,
+                           const std::vector<double>& thresholds) {
     if (atom.kind == Node::Kind::boolean) {
         if (samples[atom.index].empty()) return {};
-        return samples[atom.index][0] != 0 ? kInfinity : -kInfinity;
+        const double value = truth(samples[atom.index][0] != 0);
+        return Ends{value, value};
     }
     const check::Predicate& predicate = model.predicates[atom.index];
     const double delta = telemetry[atom.index].delta;
@@ -83,26 +105,27 @@ std::optional<double> rho_of(const check::Model& model, const Node& atom, const 
     const bool moved = predicate.threshold.adaptation && !thresholds.empty();
     const double epsilon = moved ? thresholds[atom.index] : predicate.threshold.value;
     if (delta != delta) return {};
-    // "== and != are +inf or -inf"
-    if (values == Values::boolean || predicate.equality())
-        return truth(holds(predicate, delta, epsilon));
-    return predicate.upper_bound() ? epsilon - delta : delta - epsilon;
+    const double inner =
+        predicate.threshold.inner ? static_cast<double>(*predicate.threshold.inner) : epsilon;
+    return Ends{compared(predicate, delta, inner, values),
+                compared(predicate, delta, epsilon, values)};
 }
 
 /// Returns what the spec's `missing` makes of an unknown atom.
-std::optional<double> rho_of_missing(const check::Model& model, const Node& atom) {
+std::optional<Ends> rho_of_missing(const check::Model& model, const Node& atom) {
     const std::optional<bool> missing = atom.kind == Node::Kind::boolean
                                             ? model.inputs[atom.index].missing
                                             : model.predicates[atom.index].missing;
-    return missing ? std::optional(truth(*missing)) : std::nullopt;
+    return missing ? std::optional(Ends{truth(*missing), truth(*missing)}) : std::nullopt;
 }
 
 /// The literal's four numbers: "with known samples (v, v)"; "its literal contributes (low, low,
 /// high, high) of its range".
-Value literal(std::optional<double> rho, bool negated, const Unseen& range) {
+Value literal(const std::optional<Ends>& rho, bool negated, const Unseen& range) {
     if (!rho) return {range.lowest, range.lowest, range.highest, range.highest};
-    const double v = negated ? -*rho : *rho;
-    return {v, v, v, v};
+    const double low = negated ? -rho->high : rho->low;
+    const double high = negated ? -rho->low : rho->high;
+    return {low, low, high, high};
 }
 
 Verdict verdict(const Value& value) {
@@ -118,6 +141,7 @@ Verdict verdict(const Value& value) {
     return result;
 }
 
+/// "final where lower >= 0 or upper < 0"
 Verdict prefix_verdict(const Value& value) {
     Verdict result = verdict(value);
     result.final = value.lower >= 0 || value.upper < 0;
@@ -143,8 +167,10 @@ public:
           starts_(model.monitors.size(), 0),
           form_(std::move(form)),
           samples_(accept(model, trace)) {
-        for (const check::Monitor& monitor : model.monitors)
-            horizons_.push_back(monitor.sliding ? horizon(model, monitor.formula) : 0);
+        for (const check::Monitor& monitor : model.monitors) {
+            ahead_.push_back(horizon(model, monitor.formula));
+            horizons_.push_back(monitor.sliding ? ahead_.back() : 0);
+        }
     }
 
     Run run() {
@@ -176,6 +202,7 @@ private:
     NormalForm form_;
     std::vector<Samples> samples_;
     std::vector<std::uint64_t> horizons_;
+    std::vector<std::uint64_t> ahead_;  ///< those of prefix monitors too
     Literals literals_;
     Run run_;
 
@@ -221,9 +248,12 @@ private:
     Verdict about_its_start(Prefix& prefix, std::size_t n, std::uint64_t i) {
         std::uint64_t& p = starts_[n];
         if (i < requests_.size() && requests_[i][n]) p = i;
-        const Verdict result = prefix_verdict(prefix.at(form_.roots[n], p));
+        Verdict result = prefix_verdict(prefix.at(form_.roots[n], p));
         run_.positions[i][n] = p;
-        if (result.final && model_.monitors[n].restarts == check::Restarts::when_final) p = i + 1;
+        if (model_.monitors[n].restarts != check::Restarts::when_final) return result;
+        // "that of a repeating monitor also once all that the formula looks ahead has been seen"
+        if (i >= p + ahead_[n]) result.final = true;
+        if (result.final) p = i + 1;
         return result;
     }
 

@@ -30,9 +30,11 @@ struct Less {
     }
 };
 
-/// Returns what a monitor calibrated as a whole subtracts from its values.
-double shift_of(const check::Monitor& monitor) {
-    return monitor.calibration ? static_cast<double>(monitor.calibration->threshold.value) : 0;
+/// Returns what a monitor calibrated as a whole subtracts from the low ends of its values, and from
+/// the high ones.
+std::pair<double, double> shifts_of(const check::Monitor& monitor) {
+    if (!monitor.calibration) return {0, 0};
+    return {monitor.calibration->low(), monitor.calibration->value};
 }
 
 }  // namespace
@@ -48,12 +50,12 @@ Explained::Explained(const check::Model& model, NormalForm form, const Trace& tr
       root_(form_.roots[monitor]),
       position_(position),
       step_(step),
-      shift_(shift_of(model.monitors[monitor])),
+      shifts_(shifts_of(model.monitors[monitor])),
       said_(said_of(value(literals_))) {}
 
 Said Explained::said_of(const Value& value) const {
-    return said_by(
-        {value.lower - shift_, value.rho - shift_, value.rho_high - shift_, value.upper - shift_});
+    const auto [low, high] = shifts_;
+    return said_by({value.lower - low, value.rho - low, value.rho_high - high, value.upper - high});
 }
 
 Value Explained::value(const Literals& literals) const {
@@ -133,7 +135,9 @@ SampleSet Explained::explanation() const {
     for (std::size_t n = 0; n < form_.nodes.size(); ++n)
         for (std::uint64_t step = 0; step <= step_ && form_.nodes[n].is_atom(); ++step) {
             const Value& v = literals_.values[n][step];
-            const bool is_known = v.rho == v.rho_high;
+            const Unseen& range = literals_.ranges[n];
+            const bool is_known =
+                v.rho == v.rho_high || v.rho != range.lowest || v.rho_high != range.highest;
             const bool supports = low ? v.rho >= least : v.rho_high <= least;
             if (is_known && supports) kept.insert(sample(form_.nodes[n], step));
         }

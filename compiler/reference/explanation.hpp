@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "check/model/model.hpp"
@@ -80,7 +81,7 @@ private:
     Index root_;
     std::uint64_t position_;
     std::uint64_t step_;
-    double shift_;
+    std::pair<double, double> shifts_;
     Said said_;
 };
 

@@ -15,7 +15,7 @@ from .errors import BusyError, ClosedError, Error, InputError, NotKeptError, Spe
 from .errors import UndecidedError, diagnostics_of
 from .names import is_text
 
-API_VERSION = 4
+API_VERSION = 5
 
 F32, BOOL, F16, I8 = range(4)
 INPUTS, MONITORS, PREDICATES, LETS = range(4)
@@ -127,6 +127,7 @@ _ARGUMENTS: dict[str, list[Any] | None] = {
     "etlc_steps": [c_uint64, POINTER(c_uint64)],
     "etlc_position": [c_uint64, c_uint32, POINTER(c_uint64)],
     "etlc_measure": [c_uint64, c_uint32, POINTER(Measured)],
+    "etlc_inner_threshold": [c_uint64, c_uint32, POINTER(c_float)],
     "etlc_let": [c_uint64, c_uint32, c_void_p],
     "etlc_encoder_difference": [
         c_uint64, c_char_p, c_uint32, POINTER(c_float), c_size_t, POINTER(c_double)

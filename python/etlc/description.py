@@ -58,11 +58,14 @@ class Measurement(Ambiguous):
         distance: the distance or expression; NaN if it is unknown, or no monitor needs it.
         threshold: the number it is compared with.
         nearest: the nearest row of the target for a plain distance, else None.
+        inner_threshold: of two thresholds, the one within which the predicate is true, while it is
+            false beyond the other and unknown between them; else None.
     """
 
     distance: float
     threshold: float
     nearest: int | None
+    inner_threshold: float | None = None
 
     _ask = "its .distance, .threshold or .nearest"
 

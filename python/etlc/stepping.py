@@ -3,7 +3,8 @@
 # pyright: reportPrivateUsage=false
 from __future__ import annotations
 
-from ctypes import byref, c_size_t, c_uint64
+import math
+from ctypes import byref, c_float, c_size_t, c_uint64
 from typing import Any, Callable, NoReturn
 
 import numpy as np
@@ -183,8 +184,11 @@ class Stepping(Described):
         at = self._at(self._predicate_at, "predicate", predicate)
         measured = _library.Measured()
         call(library.etlc_measure, self._session, at, byref(measured))
+        inner = c_float()
+        call(library.etlc_inner_threshold, self._session, at, byref(inner))
         nearest = measured.nearest if self._nearest[at] else None
-        return Measurement(measured.distance, measured.threshold, nearest)
+        within = None if math.isnan(inner.value) else inner.value
+        return Measurement(measured.distance, measured.threshold, nearest, within)
 
     def let(self, name: str) -> float:
         """Returns the robustness of a let at the last step; NaN if a missing sample hides it."""

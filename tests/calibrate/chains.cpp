@@ -14,7 +14,11 @@ std::string threshold_of(Method method, const std::string& alpha, Random& random
     switch (method) {
         case Method::f1:
         case Method::whole_of_f1: return "calibrated(f1)";
-        case Method::conformal: return fmt::format("calibrated(conformal, alpha = {})", alpha);
+        case Method::conformal:
+            return fmt::format("calibrated(conformal, alpha = {}{}{})", alpha,
+                               random.word({"", "", ", against = false_positives",
+                                            ", against = both", ", beta = 0.15, against = both"}),
+                               random.word({"", "", ", within = 1 steps"}));
         case Method::class_conditional:
             return fmt::format("calibrated(class_conditional, alpha = {})", alpha);
         case Method::adaptive:
@@ -41,9 +45,10 @@ std::string monitor_of(Method method, const std::string& alpha, Random& random) 
     if (method != Method::whole && method != Method::whole_of_f1)
         return "monitor m = " +
                random.word({"F a", "G !a", "F[0, 0.2 s] (a && own)", "G (!a || own)"});
-    return fmt::format("{}monitor m = {} calibrated(conformal, alpha = {}, against = {})",
+    return fmt::format("{}monitor m = {} calibrated(conformal, alpha = {}, against = {}{})",
                        random.chance(0.3) ? "sliding " : "", random.pick(formulas), alpha,
-                       random.word({"missed_alarm", "missed_success"}));
+                       random.word({"missed_alarm", "missed_success", "both"}),
+                       random.word({"", "", ", within = 1 steps"}));
 }
 
 const std::vector<Edit>& edits() {
@@ -100,6 +105,11 @@ const std::vector<Edit>& edits() {
         {"(a && b)", "(a && !b)"},
         {"-> F[0, 0.1 s] own", "-> F[0, 0.1 s] b"},
         {"against = missed_alarm", "against = missed_success"},
+        {"against = missed_alarm", "against = both"},
+        {", against = both", ", against = false_positives"},
+        {", against = false_positives", ""},
+        {", beta = 0.15", ", beta = 0.2"},
+        {", within = 1 steps", ", within = 2 steps"},
         {"alpha = 0.3", "alpha = 0.1"},
         {"f1)", "conformal, alpha = 0.1)"},
         {"class_conditional", "conformal"},

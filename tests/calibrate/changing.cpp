@@ -208,7 +208,8 @@ void visit(check::Model& model, check::Past& of, Changing& changing) {
 
 void visit(check::Model&, check::Threshold& of, Changing& changing) {
     changing.of("Threshold");
-    auto& [origin, text, alpha, value64, value, n, k, by_group, adaptation, span] = of;
+    auto& [origin, text, alpha, beta, against, within, value64, value, inner, n, k, inner_n,
+           inner_k, by_group, adaptation, span] = of;
     field(changing, "origin", origin);
     field(changing, "text", text);
     field(changing, "alpha", alpha);
@@ -256,7 +257,7 @@ void visit(check::Model& model, check::Fitted& of, Changing& changing) {
 
 void visit(check::Model& model, check::Monitor& of, Changing& changing) {
     changing.of("Monitor");
-    auto& [name, formula, sliding, restarts, horizon, calibration, span, truth] = of;
+    auto& [name, formula, sliding, restarts, horizon, ahead, calibration, span, truth] = of;
     field(changing, "name", name);
     field(changing, "formula", Place{formula, model.formulas.size()});
     field(changing, "sliding", sliding);

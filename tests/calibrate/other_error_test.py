@@ -135,7 +135,7 @@ monitor arrives = F near calibrated(conformal, alpha = 0.2, against = missed_ala
 monitor keeps   = G !far calibrated(conformal, alpha = 0.2, against = missed_success);
 sliding monitor soon = F[0, 3] near calibrated(conformal, alpha = 0.2, against = missed_success);
 """)
-    demos = episodes(EPISODES, 2, missing=["s"])  # others make the score infinite
+    demos = episodes(EPISODES, 2, missing=["x", "y", "s"])
     write("demos", demos)
     report, _ = run("calibrate", "t.etl", "--data", "demos", "-o", "all.json")
     found = lines_of(report)

@@ -70,7 +70,7 @@ std::string believed(const std::string& json) {
         for (const check::Claim& claim : check::claims(*model, monitor))
             text += monitor.name + " " + claim.part + check::text(claim) + "\n";
         if (!monitor.calibration) continue;
-        const check::Threshold& shift = monitor.calibration->threshold;
+        const check::Threshold& shift = *monitor.calibration;
         text += fmt::format("{} {} {} {}\n", monitor.name, shift.value, shift.k, shift.n);
     }
     return text;

@@ -67,7 +67,7 @@ bool breaks(const check::Claim& claim, const etlmon::Verdict& said, const etlmon
         case check::Claim::Kind::missed_success: return success;
         case check::Claim::Kind::missed_alarm: return alarm;
         case check::Claim::Kind::exact: return success || alarm;
-        case check::Claim::Kind::nothing: break;
+        default: break;
     }
     return false;
 }

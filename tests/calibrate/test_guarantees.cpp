@@ -43,6 +43,12 @@ constexpr const char* kDeclarations =
     "predicate half = x <= calibrated(conformal, alpha = 0.5); predicate rest = y <= "
     "calibrated(conformal, alpha = 5e-1);\n"
     "predicate meant = s > 1; truth meant = s > 2;\n"
+    "predicate two = x <= calibrated(conformal, alpha = 0.1, beta = 0.05, against = both);\n"
+    "predicate same = y <= calibrated(conformal, alpha = 0.02, against = both);\n"
+    "predicate few = x <= calibrated(conformal, alpha = 0.1, against = false_positives);\n"
+    "predicate surely = x <= calibrated(conformal, alpha = 0.1, against = both) missing true;\n"
+    "predicate never = x <= calibrated(conformal, alpha = 0.1, against = both) missing false;\n"
+    "predicate share = x <= calibrated(risk, alpha = 0.1, against = both);\n"
     "let after = !a && O a; truth after = flag;\n";
 
 /// Returns all guarantees of one monitor, the parts in brackets.
@@ -91,6 +97,61 @@ TEST(Claims, NothingWhereNothingIsKnown) {
     EXPECT_EQ(claims_of("F fall a"), "no guarantee: 'a' occurs both plain and negated");
     EXPECT_EQ(claims_of("F (half && rest)"),
               "no guarantee: the alphas of its predicates add up to 1");
+}
+
+/// Predicates against both errors bound both, for formulas of any polarity.
+TEST(Claims, OfPredicatesAgainstBothErrors) {
+    const auto lines = [](const char* satisfied, const char* violated, const char* either) {
+        const std::string p = "P(some verdict of a new episode is ";
+        return p + "satisfied wrongly) <= " + satisfied + " | " + p +
+               "violated wrongly) <= " + violated + " | " + p + "wrong) <= " + either;
+    };
+    EXPECT_EQ(claims_of("F two"), lines("0.05", "0.1", "0.15"));
+    EXPECT_EQ(claims_of("G !two"), lines("0.1", "0.05", "0.15"));
+    EXPECT_EQ(claims_of("G (two -> F same)"), lines("0.12", "0.07", "0.19"));
+    EXPECT_EQ(claims_of("F (two <-> flag)"), lines("0.15", "0.15", "0.15"));
+    EXPECT_EQ(
+        claims_of("F (two && s > 1)"),
+        "P(some verdict of a new episode is satisfied wrongly) <= 0.05, except at robustness 0"
+        " | P(some verdict of a new episode is violated wrongly) <= 0.1"
+        " | P(some verdict of a new episode is wrong) <= 0.15, except at robustness 0");
+    // One error is bounded where the bounds of all predicates are on its side.
+    EXPECT_EQ(claims_of("F (two && a)"),
+              "P(some verdict of a new episode is violated wrongly) <= 0.2");
+    EXPECT_EQ(claims_of("F (two && !a)"),
+              "P(some verdict of a new episode is satisfied wrongly) <= 0.15");
+    EXPECT_EQ(claims_of("F (two && a && !b)"), "no guarantee: 'a' occurs plain and 'b' negated");
+    // What counts as true or false where it is missing has no bound against that.
+    EXPECT_EQ(claims_of("F surely"), "P(some verdict of a new episode is violated wrongly) <= 0.1");
+    EXPECT_EQ(claims_of("G !surely"),
+              "P(some verdict of a new episode is satisfied wrongly) <= 0.1");
+    EXPECT_EQ(claims_of("F never"), "P(some verdict of a new episode is satisfied wrongly) <= 0.1");
+    // One-sided ones against false positives.
+    EXPECT_EQ(claims_of("F few"), "P(some verdict of a new episode misses an alarm) <= 0.1");
+    EXPECT_EQ(claims_of("G !few"), "P(some verdict of a new episode misses a success) <= 0.1");
+    EXPECT_EQ(claims_of("F (few && !a)"),
+              "P(some verdict of a new episode misses an alarm) <= 0.2");
+    EXPECT_EQ(claims_of("F (few && a)"),
+              "no guarantee: 'a' may make it satisfied wrongly and 'few' violated wrongly");
+    EXPECT_EQ(claims_of("F share"),
+              "no guarantee: 'share' is calibrated for a share of the frames, not for each");
+}
+
+TEST(Claims, OfMonitorsAgainstBothErrors) {
+    const std::string p = "P(some verdict of a new episode is ";
+    EXPECT_EQ(claims_of("F two calibrated(conformal, alpha = 0.1, against = both)"),
+              p + "satisfied wrongly) <= 0.1 | " + p + "violated wrongly) <= 0.1 | " + p +
+                  "wrong) <= 0.2");
+    EXPECT_EQ(
+        claims_of("F two calibrated(risk, alpha = 0.1, beta = 0.025, against = both)"),
+        "on average over calibrations and new episodes, satisfied at no more than 2.5 % of the "
+        "steps at which it is truly violated"
+        " | on average over calibrations and new episodes, violated at no more than 10 % of "
+        "the steps at which it is truly satisfied");
+    EXPECT_EQ(
+        claims_of("F two calibrated(risk, alpha = 0.1, against = missed_alarm)"),
+        "on average over calibrations and new episodes, satisfied at no more than 10 % of the "
+        "steps at which it is truly violated");
 }
 
 /// The predicates of the let keep to truths that are not those of the let.
@@ -159,9 +220,7 @@ std::vector<calibrate::Scores> score(const ScoredEpisode& episode) {
             if (!(p == 0 ? episode.a : episode.b)[static_cast<std::size_t>(t)]) continue;
             calibrate::Scores& scores = result[p];
             const float delta = episode.samples[static_cast<std::size_t>(t)][p].values[0];
-            const auto reach = static_cast<double>(delta);
-            scores.worst_reach = scores.has_score ? std::max(scores.worst_reach, reach) : reach;
-            scores.has_score = true;
+            scores.positives.add(static_cast<double>(delta), false);
         }
     return result;
 }
@@ -206,9 +265,10 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
         const ScoredEpisode test = random_scored_episode(random);
         bool fitted = true;
         for (const Index p : {0U, 1U}) {
-            const auto fit = calibrate::fit(model.predicates[p], evidence[p]);
+            const auto fit = calibrate::fit(
+                model.predicates[p], calibrate::aims_of(model.predicates[p])[0], evidence[p]);
             if (const auto* found = std::get_if<calibrate::Fitted>(&fit))
-                model.predicates[p].threshold.value = found->epsilon;
+                monitors.evaluator.state().thresholds[p] = found->epsilon;
             else
                 fitted = false;
         }

@@ -42,7 +42,7 @@ check::Model model_of(const std::string& against, float shift,
     check::Options options;
     options.allow_uncalibrated_monitors = true;
     auto model = *check::check(parse::parse(file, sink), file, options, sink);
-    model.monitors[0].calibration->threshold.value = shift;
+    model.monitors[0].calibration->value = shift;
     return model;
 }
 

@@ -52,15 +52,17 @@ calibrate::Evidence evidence(const std::vector<Episode>& episodes, bool upper) {
         for (const Frame& frame : episode) {
             const float score = upper ? frame.delta : -frame.delta;
             scores.labelled.push_back({score, frame.positive});
-            if (!frame.positive) continue;
-            scores.reaches.push_back(static_cast<double>(score));
-            const auto reach = static_cast<double>(score);
-            scores.worst_reach = scores.has_score ? std::max(scores.worst_reach, reach) : reach;
-            scores.has_score = true;
+            ++scores.side(frame.positive).frames;
+            if (frame.positive) scores.positives.add(static_cast<double>(score), true);
         }
         result.add(scores, result.groups);
     }
     return result;
+}
+
+/// Fits the threshold against misses.
+calibrate::Fit fit_misses(const check::Predicate& predicate, const calibrate::Evidence& evidence) {
+    return calibrate::fit(predicate, calibrate::aims_of(predicate)[0], evidence);
 }
 
 bool holds(const std::string& comparison, float delta, float epsilon) {
@@ -82,7 +84,7 @@ std::vector<Episode> random_episodes(Random& random, int n) {
 /// Returns nothing if there is none.
 std::optional<float> threshold(const check::Predicate& predicate,
                                const std::vector<Episode>& episodes) {
-    const auto fit = calibrate::fit(predicate, evidence(episodes, predicate.upper_bound()));
+    const auto fit = fit_misses(predicate, evidence(episodes, predicate.upper_bound()));
     const auto* const fitted = std::get_if<Fitted>(&fit);
     return fitted == nullptr ? std::nullopt : std::optional(fitted->epsilon);
 }
@@ -111,7 +113,7 @@ TEST(Fitted, EachIsLeftOutAsByACallOnTheOthers) {
                     const auto expected = threshold(predicate, others);
                     all = all && expected;
                     if (out.why.empty()) {
-                        ASSERT_EQ(out.thresholds[e], expected);
+                        ASSERT_EQ(out.thresholds[e].value, expected);
                     }
                 }
                 ASSERT_EQ(out.thresholds.size(), all ? episodes.size() : 0U) << method << n;
@@ -150,7 +152,7 @@ TEST(Fitted, RanksAsBruteForceDoes) {
                 const auto count = scores.size();
                 const std::size_t k =
                     ((100 - static_cast<std::size_t>(percent)) * (count + 1) + 99) / 100;
-                const auto fit = calibrate::fit(model.predicates[0], evidence(episodes, upper));
+                const auto fit = fit_misses(model.predicates[0], evidence(episodes, upper));
                 if (count == 0 || k > count) {
                     ASSERT_EQ(std::get<Refusal>(fit),
                               count == 0 ? Refusal::no_positives : Refusal::too_few);
@@ -196,8 +198,8 @@ TEST(Fitted, AdaptiveOnesStartAtTheConformalThreshold) {
             comparison, "calibrated(adaptive, alpha = 0.2, gamma = 0.1, lo = -1.5, hi = 1.5)");
         for (int n = 1; n <= 200; ++n) {
             const auto all = evidence(random_episodes(random, n), upper);
-            const auto expected = calibrate::fit(conformal.predicates[0], all);
-            const auto fit = calibrate::fit(adaptive.predicates[0], all);
+            const auto expected = fit_misses(conformal.predicates[0], all);
+            const auto fit = fit_misses(adaptive.predicates[0], all);
             if (const auto* refusal = std::get_if<Refusal>(&expected)) {
                 ASSERT_EQ(std::get<Refusal>(fit), *refusal);
                 continue;
@@ -271,7 +273,7 @@ TEST(Fitted, F1AsBruteForceDoes) {
                     }
                 }
             }
-            const auto fit = calibrate::fit(model.predicates[0], evidence(episodes, upper));
+            const auto fit = fit_misses(model.predicates[0], evidence(episodes, upper));
             if (best == 0) {
                 ASSERT_EQ(std::get<Refusal>(fit),
                           any_positive ? Refusal::no_f1 : Refusal::no_positives);
@@ -299,7 +301,7 @@ TEST(Fitted, F1IsHalfwayToTheNextValue) {
     const auto fit = [](const std::string& comparison, const Episode& frames) {
         const auto model = model_of(comparison, "calibrated(f1)");
         return std::get<Fitted>(
-            calibrate::fit(model.predicates[0], evidence({frames}, comparison[0] == '<')));
+            fit_misses(model.predicates[0], evidence({frames}, comparison[0] == '<')));
     };
     const Episode apart{{1, true}, {1.5F, true}, {9, false}, {9.5F, false}};
     EXPECT_EQ(fit("<=", apart).epsilon, 5.25F);
@@ -326,7 +328,7 @@ TEST(Fitted, F1IsHalfwayToTheNextValue) {
 TEST(Fitted, InfiniteScoresAreRefused) {
     const auto model = model_of("<=", "calibrated(conformal, alpha = 0.5)");
     const auto fit = [&](float last) {
-        return calibrate::fit(model.predicates[0], evidence({{{1, true}}, {{last, true}}}, true));
+        return fit_misses(model.predicates[0], evidence({{{1, true}}, {{last, true}}}, true));
     };
     EXPECT_EQ(std::get<Refusal>(fit(kInfinity)), Refusal::not_finite);
     EXPECT_EQ(std::get<Refusal>(fit(FLT_MAX)), Refusal::not_finite);  // no float32 beyond it

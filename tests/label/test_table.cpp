@@ -1,15 +1,22 @@
-// Tests the tables that `etlc label` rewrites.
+// Tests the tables that `etlc label` rewrites, and when it makes proposals from them.
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "../evaluate/evaluated.hpp"
 #include "data/files/file.hpp"
 #include "episodes/labels/labels.hpp"
+#include "label/desk.hpp"
+#include "label/propose.hpp"
+#include "label/service.hpp"
 #include "label/table.hpp"
 #include "npy_bytes.hpp"
 
@@ -139,6 +146,38 @@ TEST(Table, HoldsAnyNameOrRefusesIt) {
         EXPECT_FALSE(again->write({{episodes[0], name, "near", 9, std::nullopt}})) << name;
         EXPECT_EQ(file_bytes(file.path()), "episode,predicate,start,end\n") << name;
     }
+}
+
+/// The process that makes proposals reads the labels from disk, at a time that nobody knows: found
+/// where a slow machine let keys go by meanwhile, which were then taken back.
+TEST(Background, ProposesAnewWhereLabelsChangedMeanwhile) {
+    const TemporaryPath folder("episodes");
+    std::filesystem::create_directory(folder.path());
+    DeskRequest request{{}, {}, folder.path() + "/labels.csv"};
+    for (int e = 0; e < 4; ++e) {
+        request.episodes.push_back(fmt::format("{}/{}.csv", folder.path(), e));
+        std::ofstream(request.episodes.back()) << "x\n1\n2\n";
+    }
+    const check::Model model = tests::model_of(
+        "spec s;\ninput x : f32;\npredicate near = x < 1.5;\nmonitor m = G near;\n");
+    diag::Sink sink;
+    auto desk = Desk::open(model, request, sink);
+    ASSERT_TRUE(desk);
+    for (std::size_t e = 0; e < kEnoughLabelled; ++e)
+        ASSERT_FALSE(desk->press(e, 0, Key::never, 0));
+    Background background({"--gtest_list_tests"});  // of this program
+    const auto wait_for = [&](std::uint64_t version) {
+        while (background.version() < version || background.is_busy()) {
+            background.look_after(*desk);
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+    };
+    wait_for(1);
+    ASSERT_FALSE(desk->press(0, 0, Key::begin, 1));
+    while (!background.is_busy()) background.look_after(*desk);
+    ASSERT_TRUE(desk->undo());
+    ASSERT_TRUE(desk->redo());
+    wait_for(3);
 }
 
 }  // namespace

@@ -136,6 +136,7 @@ TEST(Refusals, NullPointers) {
     expect_refused(etlc_steps(dock, nullptr), ETLC_NULL_POINTER, "steps");
     expect_refused(etlc_position(dock, 0, nullptr), ETLC_NULL_POINTER, "position");
     expect_refused(etlc_measure(dock, 0, nullptr), ETLC_NULL_POINTER, "measured");
+    expect_refused(etlc_inner_threshold(dock, 0, nullptr), ETLC_NULL_POINTER, "threshold");
     expect_refused(etlc_let(dock, 0, nullptr), ETLC_NULL_POINTER, "verdict");
     expect_refused(etlc_count(dock, 0, nullptr), ETLC_NULL_POINTER, "counts");
     expect_refused(etlc_explain(dock, 0, ETLC_TEXT, nullptr), ETLC_NULL_POINTER, "text");
@@ -388,6 +389,8 @@ TEST(Refusals, WhatIsNotThere) {
     expect_refused(etlc_position(dock, 3, &number), ETLC_NO_SUCH, "no monitor 3");
     expect_refused(etlc_position(dock, 2, &number), ETLC_UNDECIDED, "'calm' has no verdict yet");
     expect_refused(etlc_measure(dock, 3, &measured), ETLC_NO_SUCH, "no predicate 3");
+    float inner = 0;
+    expect_refused(etlc_inner_threshold(dock, 3, &inner), ETLC_NO_SUCH, "no predicate 3");
     expect_refused(etlc_let(dock, 0, &verdict), ETLC_NOT_KEPT, "options.lets = 1");
     expect_refused(etlc_count(dock, 6, &counts), ETLC_NO_SUCH, "no input 6");
     expect_refused(etlc_explain(dock, 3, ETLC_TEXT, &text), ETLC_NO_SUCH, "no monitor 3");

@@ -115,7 +115,8 @@ private:
         // "They must be sound, and at least as tight as this definition."
         if (!at_most(e.lower, o.lower) || !at_most(o.lower, e.robustness)) return "lower";
         if (!at_most(o.upper, e.upper) || !at_most(e.robustness, o.upper)) return "upper";
-        if (o.final != (o.lower >= 0 || o.upper < 0)) return "final";
+        const bool complete = e.final && !(e.lower >= 0 || e.upper < 0);
+        if (o.final != (o.lower >= 0 || o.upper < 0 || complete)) return "final";
         return nullptr;
     }
 

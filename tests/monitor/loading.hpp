@@ -22,8 +22,21 @@ std::optional<check::Model> load_with_thresholds(const std::string& text,
                                                  const std::string& thresholds);
 
 /// Makes the entry one that was calibrated from n equal scores of n episodes, the fewest that alpha
-/// allows, so that it has this threshold. Takes its alpha; returns the episodes.
-std::vector<std::uint64_t> calibrate_to(float epsilon, bool upper_bound, thresholds::Entry& entry);
+/// allows, so that it has this threshold, which is above its scores or below, and `inner`, which is
+/// on the other side. Takes its alpha; returns the episodes.
+std::vector<std::uint64_t> calibrate_to(float epsilon, bool above, thresholds::Entry& entry,
+                                        std::optional<float> inner = {});
+
+/// A spec whose predicates are calibrated, and its thresholds file.
+struct CalibratedSpec {
+    std::string text;
+    std::vector<float> literals;  ///< thresholds that were replaced, in the order of the predicates
+    std::string thresholds;
+    std::optional<check::Model> model;
+};
+/// Replaces most thresholds of the named predicates of a random spec by two; some of these are
+/// equal, infinite, or in the wrong order, so that the demonstrations are separated.
+CalibratedSpec with_two_thresholds(const std::string& spec, std::uint64_t seed);
 /// Without thresholds: calibrated ones are NaN.
 std::optional<check::Model> load_uncalibrated(const std::string& text);
 

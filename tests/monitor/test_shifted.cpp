@@ -1,5 +1,6 @@
-// Tests monitors that are calibrated as a whole: `etlc run` and the generated classes give the
-// verdicts of the reference minus the shift, in one float32 subtraction.
+// Tests monitors that are calibrated as a whole, and predicates and monitors with two thresholds:
+// `etlc run` and the generated classes give the verdicts of the reference minus the shifts, in one
+// float32 subtraction each.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +12,7 @@
 
 #include "artifacts/thresholds.hpp"
 #include "check/guarantees/calibrated.hpp"
+#include "check/guarantees/conformal.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "compare.hpp"
 #include "generated_program.hpp"
@@ -19,6 +21,8 @@
 #include "random.hpp"
 #include "random_spec.hpp"
 #include "random_trace.hpp"
+#include "reference/normal_form.hpp"
+#include "restart_schedule.hpp"
 
 namespace {
 
@@ -44,7 +48,7 @@ ShiftedSpec random_shifted_spec(std::uint64_t seed, const SpecShape& shape) {
         if (shifted)
             line.replace(line.size() - 1, 1,
                          fmt::format(" calibrated(conformal, alpha = 0.1, against = {});",
-                                     random.word({"missed_alarm", "missed_success"})));
+                                     random.word({"missed_alarm", "missed_success", "both"})));
         text += line + "\n";
     }
     ShiftedSpec result;
@@ -60,26 +64,34 @@ ShiftedSpec random_shifted_spec(std::uint64_t seed, const SpecShape& shape) {
         const float shift = random.chance(0.2)   ? 0.0F
                             : random.chance(0.3) ? static_cast<float>(random.grid(-3, 3, 0.25))
                                                  : static_cast<float>(4 * random.uniform() - 2);
-        entry.episodes = calibrate_to(
-            shift, monitor.calibration->against == check::Against::missed_alarm, entry);
-        entry.reads = check::reads(*uncalibrated, monitor);
         entry.against = check::word(monitor.calibration->against);
+        const bool above = check::is_above(monitor.calibration->against, false);
+        std::optional<float> inner;
+        if (entry.against == "both")
+            inner = random.chance(0.1) ? check::infinite(!above)
+                                       : shift + static_cast<float>(random.grid(-1, 3, 0.5));
+        const bool has_outer = !inner || std::isinf(*inner) || random.chance(0.9);
+        entry.episodes =
+            calibrate_to(has_outer ? shift : check::infinite(above), above, entry, inner);
+        entry.reads = check::reads(*uncalibrated, monitor);
     }
     result.thresholds = thresholds::write(file);
     result.model = load_with_thresholds(text, result.thresholds);
     return result;
 }
 
-/// The shift is subtracted from rho and both bounds; infinities stay.
+/// The shift is subtracted from rho and both bounds; infinities stay, unless the shift is infinite.
 double less(double value, float shift) {
+    if (std::isinf(shift)) return -static_cast<double>(shift);
     return std::isinf(value) ? value : static_cast<double>(static_cast<float>(value) - shift);
 }
 
 void shift(const check::Monitor& monitor, Verdict& verdict) {
     if (!monitor.calibration || verdict.status == Status::undecided) return;
-    for (double* number :
-         {&verdict.lower, &verdict.robustness, &verdict.robustness_high, &verdict.upper})
-        *number = less(*number, monitor.calibration->threshold.value);
+    for (double* number : {&verdict.lower, &verdict.robustness})
+        *number = less(*number, monitor.calibration->low());
+    for (double* number : {&verdict.robustness_high, &verdict.upper})
+        *number = less(*number, monitor.calibration->value);
     verdict.status = verdict.robustness >= 0       ? Status::satisfied
                      : verdict.robustness_high < 0 ? Status::violated
                                                    : Status::unknown;
@@ -89,8 +101,9 @@ void shift(const check::Monitor& monitor, Verdict& verdict) {
 reference::Run expected_run(const check::Model& model, const Trace& trace) {
     reference::Run run = reference::evaluate(model, trace);
     for (auto* rows : {&run.verdicts, &run.finish})
-        for (auto& row : *rows)
-            for (std::size_t m = 0; m < row.size(); ++m) shift(model.monitors[m], row[m]);
+        for (std::size_t i = 0; i < rows->size(); ++i)
+            for (std::size_t m = 0; m < (*rows)[i].size(); ++m)
+                shift(model.monitors[m], (*rows)[i][m]);
     return run;
 }
 
@@ -166,6 +179,121 @@ TEST_P(ShiftedGenerated, AgreesWithTheReferenceAndWithRun) {
         }
     }
 }
+
+// ---- predicates with two thresholds
+// --------------------------------------------------------------
+
+using Formulas = SpecShape::Formulas;
+
+const SpecShape kTwoShapes[] = {
+    {.formulas = Formulas::unnested, .depth = 3, .missing = 0.3},
+    {.formulas = Formulas::prefix, .monitors = 4, .depth = 3, .window = 3},
+    {.formulas = Formulas::sliding, .depth = 4, .window = 3},
+    {.formulas = Formulas::mixed, .monitors = 6, .depth = 3, .window = 4, .restarts = 0.8},
+    {.formulas = Formulas::chains, .monitors = 3, .depth = 20, .restarts = 0.5, .missing = 0.3},
+};
+
+/// How often something occurred that the test is about.
+struct Occurred {
+    int two = 0;            ///< predicates with two thresholds
+    int infinite = 0;       ///< of these with an infinite one
+    int unknown_final = 0;  ///< verdicts that are unknown for good, of repeating monitors
+
+    void add(const check::Model& model) {
+        for (const check::Predicate& predicate : model.predicates) {
+            two += predicate.threshold.inner ? 1 : 0;
+            infinite += predicate.threshold.inner && (std::isinf(*predicate.threshold.inner) ||
+                                                      std::isinf(predicate.threshold.value))
+                            ? 1
+                            : 0;
+        }
+    }
+    void add(const check::Model& model, const Observed& observed) {
+        for (const auto& row : observed.verdicts)
+            for (std::size_t m = 0; m < row.size(); ++m)
+                unknown_final +=
+                    !model.monitors[m].sliding && row[m].final && row[m].status == Status::unknown
+                        ? 1
+                        : 0;
+    }
+};
+
+class TwoThresholds : public testing::TestWithParam<check::Values> {};
+
+TEST_P(TwoThresholds, ThePlanAgreesWithTheReference) {
+    Occurred occurred;
+    for (int n = 0; n < 200; ++n) {
+        const CalibratedSpec spec = with_two_thresholds(
+            random_spec(82000 + n, kTwoShapes[n % std::size(kTwoShapes)]), 82000 + n);
+        ASSERT_TRUE(spec.model);
+        PlanRunner runner(*spec.model, kRoomy, GetParam());
+        if (!runner.refusal().empty()) continue;
+        occurred.add(*spec.model);
+        for (int t = 0; t < 5; ++t) {
+            const Trace trace = random_trace(*spec.model, 100 * n + t, trace_shape(t));
+            const Observed observed = runner.run(trace);
+            occurred.add(*spec.model, observed);
+            const auto mismatch = first_mismatch(
+                *spec.model, expected_run(*spec.model, trace, observed, GetParam()), observed, {});
+            ASSERT_FALSE(mismatch) << *mismatch << "\n"
+                                   << spec.thresholds << spec.text << to_csv(*spec.model, trace);
+        }
+    }
+    EXPECT_GT(occurred.two, 300);
+    EXPECT_GT(occurred.infinite, 30);
+    EXPECT_GT(occurred.unknown_final, 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Values, TwoThresholds,
+                         testing::Values(check::Values::robustness, check::Values::boolean),
+                         [](const auto& values) {
+                             return values.param == check::Values::boolean ? "Boolean"
+                                                                           : "Robustness";
+                         });
+
+class TwoThresholdsGenerated : public testing::TestWithParam<Build> {};
+
+TEST_P(TwoThresholdsGenerated, AgreeWithTheReference) {
+    GeneratedProgram program(std::string("two_thresholds") + GetParam().name);
+    std::vector<Request> requests;
+    for (std::uint32_t n = 0; n < 4 * std::size(kTwoShapes); ++n) {
+        const CalibratedSpec spec = with_two_thresholds(
+            random_spec(83000 + n, kTwoShapes[n % std::size(kTwoShapes)]), 83000 + n);
+        ASSERT_TRUE(spec.model);
+        const auto values = n % 4 == 3 ? check::Values::boolean : check::Values::robustness;
+        ASSERT_TRUE(program.add(*spec.model, values, spec.thresholds));
+        for (int t = 0; t < 6; ++t)
+            requests.push_back({n,
+                                random_trace(*spec.model, 10 * n + t, trace_shape(t)),
+                                random_trace(*spec.model, 500 + 10 * n + t, trace_shape(t + 3)),
+                                {},
+                                {}});
+    }
+    ASSERT_TRUE(program.compile(GetParam()));
+    const auto result = program.run(requests);
+    ASSERT_EQ(result.answers.size(), requests.size());
+    EXPECT_EQ(result.allocations, 0U);
+    for (std::size_t n = 0; n < requests.size(); ++n) {
+        const check::Model& model = program.model(requests[n].spec);
+        const auto values =
+            requests[n].spec % 4 == 3 ? check::Values::boolean : check::Values::robustness;
+        PlanRunner runner(model, kRoomy, values);
+        for (int run = 0; run < 3; ++run) {
+            const Trace& trace = run == 0 ? requests[n].first : requests[n].second;
+            Observed observed = result.answers[n][run];
+            observed.dependencies = runner.dependencies();
+            const auto mismatch =
+                first_mismatch(model, expected_run(model, trace, observed, values), observed,
+                               {.on_demand = values == check::Values::boolean});
+            ASSERT_FALSE(mismatch) << *mismatch << "\n"
+                                   << model.file.text() << to_csv(model, trace);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Builds, TwoThresholdsGenerated,
+                         testing::Values(kGccSanitized, kClangFastMath),
+                         [](const auto& build) { return build.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(Builds, ShiftedGenerated, testing::Values(kGccSanitized, kClangFastMath),
                          [](const auto& build) { return build.param.name; });

@@ -175,6 +175,30 @@ TEST(Why, AValueSaysItsSampleHoweverOftenItIsNegated) {
     EXPECT_EQ(why.row, etlmon::kNoRow);
 }
 
+/// A verdict is satisfied by low ends, which are measured from the inner threshold, and violated by
+/// high ones; a negation exchanges them.
+TEST(Why, OfTwoThresholdsTheOneThatDecides) {
+    constexpr etlmon::Place kTwo[] = {{"near", etlmon::Place::Kind::at_most, 0.5F, 0, 3, 0.25F},
+                                      {"fast", etlmon::Place::Kind::at_least, 2.0F, 4, 0, 3.0F}};
+    const std::uint32_t near = etlmon::code_of(0, 0.75F, 2, 3), fast = etlmon::code_of(4, 3.0F);
+    const auto expect = [&](etlmon::SourcedKey value, float threshold, float distance,
+                            float least = 0.0F) {
+        const auto why = etlmon::sample_of<kCodes>(value, kTwo, etlmon::key_of(least));
+        EXPECT_EQ(why.threshold, threshold);
+        EXPECT_EQ(why.distance, distance);
+    };
+    expect(key(0.125F, 7, near), 0.25F, 0.125F);
+    expect(key(-0.25F, 7, near), 0.5F, 0.75F);
+    expect(etlmon::negate(key(-0.25F, 7, near)), 0.5F, 0.75F);
+    expect(etlmon::negate(key(0.125F, 7, near)), 0.25F, 0.125F);
+    expect(key(0.0F, 7, near), 0.25F, 0.25F);
+    expect(etlmon::negate(key(0.0F, 7, near)), 0.5F, 0.5F);
+    expect(key(1.0F, 7, fast), 3.0F, 4.0F);
+    expect(key(-1.0F, 7, fast), 2.0F, 1.0F);
+    // A monitor that is calibrated as a whole may be satisfied below 0.
+    expect(key(-0.25F, 7, near), 0.25F, 0.5F, -0.5F);
+}
+
 TEST(Why, OfASampleThatWasMissingNothingWasMeasured) {
     const float missing = etlmon::kMissing;
     for (const std::uint32_t code :

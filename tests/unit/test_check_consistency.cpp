@@ -98,9 +98,9 @@ TEST(Consistency, EpisodesAreThereOnceEach) {
         said(
             good, [](Entry&) {}, true, twice),
         "'episodes[7]' is '0000000000000012', which occurs earlier; expected each episode once");
-    EXPECT_EQ(said(good, [](Entry& e) { e.against = "missed_alarm"; }, true, {}),
-              "'predicates.p.episodes' has 0 elements, expected at least 9: one for each score of "
-              "'predicates.p'");
+    EXPECT_EQ(contradiction(good, "monitors.p", true, {}, {})->message,
+              "'monitors.p.episodes' has 0 elements, expected at least 9: one for each score of "
+              "'monitors.p'");
     EXPECT_EQ(said(pooled("f1"), [](Entry&) {}, true, {}),
               "'episodes' has 0 elements, expected at least 1");
 }
@@ -137,6 +137,106 @@ TEST(Consistency, TheThresholdIsThatOfItsScore) {
                           [&](Entry& e) { e.epsilon = std::nextafter(e.epsilon, toward); }, upper),
                       "");
     }
+}
+
+/// Two sides at alpha = 0.2 and beta = 0.1 of `<=` (or `>=`): the positive frames lie up to 3 (from
+/// 3 on), the negative ones from 2 on (up to 2).
+Entry of_both(bool upper_bound) {
+    const double sign = upper_bound ? 1 : -1;
+    Entry entry = conformal(upper_bound);
+    if (!upper_bound) entry.scores = {-4, -3, -2.5, -2.25, -2, -1.5, -1, -1, -0.5};
+    entry.epsilon = beyond(3 * sign, upper_bound);
+    entry.against = "both";
+    entry.beta = "0.1";
+    thresholds::Side& inner = entry.inner.emplace();
+    inner.n = 9;
+    inner.k = 9;
+    inner.scores.assign(9, 5 * sign);
+    inner.scores[upper_bound ? 0 : 8] = 2 * sign;
+    inner.epsilon = beyond(2 * sign, !upper_bound);
+    return entry;
+}
+
+TEST(Consistency, EachOfTwoThresholdsIsThatOfItsScores) {
+    for (const bool upper : {false, true}) {
+        const Entry good = of_both(upper);
+        EXPECT_EQ(said(
+                      good, [](Entry&) {}, upper),
+                  "");
+        EXPECT_EQ(said(
+                      good, [](Entry& e) { e.inner->k = 8; }, upper),
+                  "'predicates.p.inner.k' is 8, expected 9: the rank of beta = 0.1 among 9 scores");
+        EXPECT_NE(said(
+                      good, [](Entry& e) { e.inner->epsilon += 0.5F; }, upper),
+                  "");
+        EXPECT_NE(said(
+                      good, [](Entry& e) { std::swap(e.epsilon, e.inner->epsilon); }, upper),
+                  "");
+        const auto too_few = [&](Entry& e) {
+            e.inner->n = 3;
+            e.inner->k = 4;
+            e.inner->scores.resize(3);
+            e.inner->epsilon = upper ? -INFINITY : INFINITY;
+        };
+        EXPECT_EQ(said(good, too_few, upper), "");
+        const auto both_infinite = [&](Entry& e) {
+            too_few(e);
+            e.n = e.k = 0;
+            e.k = 1;
+            e.scores.clear();
+            e.epsilon = upper ? INFINITY : -INFINITY;
+        };
+        EXPECT_EQ(
+            said(good, both_infinite, upper),
+            "both thresholds of 'predicates.p' are infinite, expected one that is finite: the "
+            "scores are too few");
+        const auto [value, inner] = both(good.epsilon, good.inner->epsilon, upper);
+        EXPECT_EQ(value, good.epsilon);
+        EXPECT_EQ(inner, good.inner->epsilon);
+        // Where the inner one is beyond the outer one, one threshold halfway keeps both bounds.
+        const auto separated = both(good.inner->epsilon, good.epsilon, upper);
+        EXPECT_FALSE(separated.inner);
+        EXPECT_EQ(separated.value, upper ? 2.5F : -2.5F);
+    }
+    Entry one_sided = conformal(true);
+    one_sided.against = "false_positives";
+    one_sided.epsilon = beyond(1, false);
+    EXPECT_EQ(said(one_sided, [](Entry&) {}), "");
+    one_sided.epsilon = beyond(3, true);
+    EXPECT_NE(said(one_sided, [](Entry&) {}), "");
+}
+
+TEST(Consistency, TheRiskIsThatOfTheLosses) {
+    // (sum + 1) / (n + 1) <= alpha
+    EXPECT_TRUE(keeps_risk(std::vector<double>(9, 0.0), "0.1"));
+    EXPECT_FALSE(keeps_risk(std::vector<double>(8, 0.0), "0.1"));
+    EXPECT_TRUE(keeps_risk(std::vector<double>(99, 0.0), "0.01"));
+    EXPECT_TRUE(keeps_risk({0.5, 0.25, 0.25, 0, 0, 0, 0, 0, 0}, "0.2"));
+    EXPECT_FALSE(keeps_risk({0.5, 0.25, 0.26, 0, 0, 0, 0, 0, 0}, "0.2"));
+    EXPECT_FALSE(keeps_risk(std::vector<double>(9, 1.0), "0.9999"));
+    Entry entry;
+    entry.method = "risk";
+    entry.alpha = "0.2";
+    entry.n = 9;
+    entry.scores = {3};
+    entry.epsilon = beyond(3, true);
+    entry.losses = {0.5, 0.25, 0.25, 0, 0, 0, 0, 0, 0};
+    entry.losses_before = {0.5, 0.5, 0.25, 0, 0, 0, 0, 0, 0};
+    EXPECT_EQ(said(entry, [](Entry&) {}), "");
+    EXPECT_EQ(
+        said(entry, [](Entry& e) { e.losses[3] = 0.5; }),
+        "'predicates.p.losses' are too great for alpha = 0.2: expected n / (n + 1) mean + 1 / "
+        "(n + 1) of them, which is at most that");
+    EXPECT_EQ(
+        said(entry, [](Entry& e) { e.losses_before = e.losses; }),
+        "'predicates.p.losses_before' are small enough for alpha = 0.2, so that the threshold "
+        "would be a tighter one");
+    EXPECT_EQ(said(entry, [](Entry& e) { e.losses.pop_back(); }),
+              "'predicates.p.losses' has 8 elements, expected 9");
+    EXPECT_EQ(said(entry, [](Entry& e) { e.losses[0] = 1.5; }),
+              "'predicates.p.losses[0]' is 1.5, expected a share from 0 to 1");
+    EXPECT_EQ(said(conformal(true), [](Entry& e) { e.losses = {0.5}; }),
+              "'predicates.p.losses' has 1 element, expected 0");
 }
 
 }  // namespace

@@ -217,7 +217,8 @@ TEST(Places, MessagesNameWhatWasExpected) {
          "2:20 expected a threshold (a number, an expression or calibrated(...)) after '<=', found "
          "';'"},
         {"predicate p = x <= calibrated(3);",
-         "2:31 expected a method of calibration (f1, conformal or class_conditional) after '(', "
+         "2:31 expected a method of calibration (conformal, risk, class_conditional or f1) after "
+         "'(', "
          "found '3'"},
         {"predicate p = x <= calibrated(f1 alpha = 1);",
          "2:34 expected ')' or ',' after 'f1', found 'alpha'"},

@@ -154,6 +154,75 @@ TEST(Thresholds, NumbersReadBackToTheSameBits) {
     }
 }
 
+const std::string kBoth = R"({
+      "method": "conformal",
+      "alpha": 0.1,
+      "beta": 0.05,
+      "epsilon": 0.5,
+      "n": 1,
+      "k": 1,
+      "scores": [0.25],
+      "inner": {
+        "epsilon": "-inf",
+        "n": 0,
+        "k": 1,
+        "scores": []
+      },
+      "reads": {},
+      "against": "both",
+      "within": 3
+    })";
+
+TEST(Thresholds, TwoThresholdsReadBack) {
+    std::string json = kWhole;
+    const std::size_t from = json.find("{", json.find("\"held\""));
+    json.replace(from, json.find("\n    }", from) + 6 - from, kBoth);
+    const auto file = parse(json, "x");
+    ASSERT_TRUE(file) << file.failure().message;
+    const Entry& held = file->predicates.at("held");
+    EXPECT_EQ(held.beta, "0.05");
+    EXPECT_EQ(held.against, "both");
+    EXPECT_EQ(held.within, 3U);
+    ASSERT_TRUE(held.inner);
+    EXPECT_EQ(held.inner->epsilon, -INFINITY);
+    EXPECT_EQ(held.inner->k, 1U);
+    EXPECT_EQ(write(*file), json);
+
+    const auto said = [&](const std::string& of, const std::string& to) {
+        std::string other = json;
+        other.replace(other.find(of, from), of.size(), to);
+        const auto read = parse(other, "x");
+        return read ? "" : read.failure().message;
+    };
+    EXPECT_EQ(said("\"-inf\"", "\"nan\""),
+              "'predicates.held.inner.epsilon' is the text 'nan', expected a finite float32");
+    EXPECT_EQ(
+        said("\"against\": \"both\"", "\"against\": \"false_positives\""),
+        "'predicates.held.against' is the text 'false_positives', expected 'both', since there "
+        "is an inner threshold");
+    EXPECT_EQ(said("0.05", "5"),
+              "'predicates.held.beta' is '5', expected a number between 0 and 1");
+    EXPECT_EQ(said("\"k\": 1,\n        \"scores\"", "\"k\": 2,\n        \"scores\""),
+              "'predicates.held.inner.k' is '2', expected at most n + 1, which is 1");
+}
+
+TEST(Thresholds, LossesReadBack) {
+    Entry entry;
+    entry.method = "risk";
+    entry.alpha = "0.1";
+    entry.n = 2;
+    entry.scores = {1};
+    entry.losses = {0, 0.25};
+    entry.losses_before = {0, 1};
+    File file;
+    file.predicates["p"] = entry;
+    const auto read = parse(write(file), "x");
+    ASSERT_TRUE(read) << read.failure().message;
+    EXPECT_EQ(read->predicates.at("p").losses, entry.losses);
+    EXPECT_EQ(read->predicates.at("p").losses_before, entry.losses_before);
+    EXPECT_EQ(write(*read), write(file));
+}
+
 TEST(Thresholds, EveryFloatOfASampleReadsBack) {
     Entry entry;
     entry.method = "f1";
@@ -236,7 +305,7 @@ std::vector<Broken> content() {
                "'predicates.held' is '1', expected an object"),
         broken("\"method\": \"conformal\"", "\"method\": \"conform\"",
                at_a + "method' is the text 'conform', expected 'f1', 'conformal', "
-                      "'class_conditional' or 'adaptive'"),
+                      "'class_conditional', 'adaptive' or 'risk'"),
         broken("\"method\": \"conformal\",", "",
                "key " + at_a + "method' is missing, expected a text"),
         broken("\"alpha\": 0.10,", "",
@@ -268,8 +337,8 @@ std::vector<Broken> content() {
         broken("\"inf\"", "\"nan\"",
                at_a + "scores[2]' is the text 'nan', expected a number, 'inf' or '-inf'"),
         broken("\"missed_success\"", "\"error\"",
-               "'monitors.reach.against' is the text 'error', expected 'missed_alarm' or "
-               "'missed_success'"),
+               "'monitors.reach.against' is the text 'error', expected 'missed_alarm', "
+               "'missed_success' or 'both'"),
         broken("\"00000000000000aa\"", "1",
                "'monitors.reach.episodes[0]' is '1', expected a content hash of 16 hex digits"),
         broken("\"reads\": {}", "\"reads\": \"b08b72ea4df23cb1\"",

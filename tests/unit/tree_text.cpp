@@ -37,11 +37,15 @@ std::string word(const Load& load) {
     return list("load", {"\"" + load.path + "\"", "\"" + load.key + "\""});
 }
 
+std::string word(const Bound& bound) {
+    return bound.number.text + bound.unit;
+}
+
 std::string word(const Calibrated& calibrated) {
     std::vector<std::string> items{calibrated.method.text};
     for (const Calibrated::Argument& a : calibrated.arguments)
         items.push_back(
-            list(a.key.text, {std::visit([](const auto& v) { return v.text; }, a.value)}));
+            list(a.key.text, {std::visit([](const auto& v) { return word(v); }, a.value)}));
     return list("calibrated", items);
 }
 
@@ -64,8 +68,7 @@ std::string word(const Point& point) {
     std::string text = point.is_vector       ? list("vector", items)
                        : point.parts.empty() ? list("input", {point.name.text})
                                              : list(point.name.text, items);
-    for (const Bound& delay : point.delays)
-        text = list("ago", {text, delay.number.text + delay.unit});
+    for (const Bound& delay : point.delays) text = list("ago", {text, word(delay)});
     return text;
 }
 
@@ -251,8 +254,7 @@ std::string of(const Formula& f) {
     if (f.operands.empty()) return head(f.kind);
     std::vector<std::string> items;
     if (f.interval) {
-        const auto bound = [](const Bound& b) { return b.number.text + b.unit; };
-        items.push_back(fmt::format("[{},{}]", bound(f.interval->low), bound(f.interval->high)));
+        items.push_back(fmt::format("[{},{}]", word(f.interval->low), word(f.interval->high)));
     }
     for (const FormulaPtr& operand : f.operands) items.push_back(of(*operand));
     return list(head(f.kind), items);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/conformal.hpp"
@@ -19,48 +20,8 @@ using check::ThresholdOrigin;
 using diag::Code;
 using diag::counted;
 
-void refuse(const check::Model& model, const check::Predicate& p, const Evidence& of, bool by_group,
-            Refusal refusal, diag::Sink& sink) {
-    const std::string all = counted(of.demonstrations, "demonstration");
-    switch (refusal) {
-        case Refusal::no_positives: {
-            auto& error = sink.report(
-                Code::no_positive_frame, p.threshold.span,
-                of.positives == 0
-                    ? fmt::format("'{}' is true at no frame of {}, so there is nothing to learn "
-                                  "its threshold from",
-                                  p.name, all)
-                    : fmt::format("the distance of '{}' is unknown at all {} where it is true, in "
-                                  "{}",
-                                  p.name, counted(of.positives, "frame"), all));
-            for (const check::Truth& truth : model.truths)
-                if (&model.predicates[truth.predicate] == &p)
-                    error.note(truth.span, "its truth is here");
-            break;
-        }
-        case Refusal::too_few:
-            if (p.threshold.origin == ThresholdOrigin::class_conditional)
-                refuse_too_few(p.threshold, {of.reaches.size(), "positive frame"}, sink);
-            else
-                refuse_too_few(p.threshold,
-                               {of.worst.size(), by_group ? "group" : "demonstration",
-                                fmt::format(" in which '{}' is true at some frame", p.name),
-                                "frame", of.groups, by_group ? all : ""},
-                               sink);
-            break;
-        case Refusal::not_finite: refuse_infinite(p.name, p.threshold, "threshold", sink); break;
-        case Refusal::no_f1:
-            sink.report(
-                Code::no_threshold, p.threshold.span,
-                fmt::format("no observed value as threshold of '{}' finds a positive frame; it "
-                            "has {}",
-                            p.name, counted(of.positives, "positive frame")));
-            break;
-    }
-}
-
 thresholds::Entry entry_of_predicate(const check::Model& model, Index predicate,
-                                     const Evidence& evidence, const Fitted& fitted) {
+                                     const Evidence& evidence, const Sides& fitted) {
     const check::Labelling labelling{evidence.demonstrations, {{predicate, evidence.from_array}}};
     return entry_of(model.predicates[predicate].threshold, fitted,
                     check::reads(model, predicate, labelling));
@@ -74,6 +35,30 @@ std::vector<Index> labelled_anywhere(const check::Model& model, const Request& r
 }
 
 }  // namespace
+
+std::optional<Sides> fit_all(const check::Model& model, const Subject& of, diag::Sink& sink) {
+    const std::size_t errors = sink.errors();
+    Sides sides;
+    for (const Aim& aim : aims_of(of.predicate)) {
+        const Fit found = fit(of.predicate, aim, of.evidence);
+        if (const auto* refusal = std::get_if<Refusal>(&found)) {
+            refuse(model, of, aim, *refusal, sink);
+        } else if (const auto* out = std::get_if<OutOfRange>(&found)) {
+            sink.report(Code::start_out_of_range, of.predicate.threshold.span,
+                        check::outside(of.predicate, out->epsilon))
+                .note("give it lo and hi with room on both sides of the threshold");
+        } else {
+            sides.push_back(std::get<Fitted>(found));
+        }
+    }
+    if (sink.errors() > errors) return std::nullopt;
+    if (std::all_of(sides.begin(), sides.end(),
+                    [](const Fitted& side) { return std::isinf(side.epsilon); })) {
+        refuse_both(of, sink);
+        return std::nullopt;
+    }
+    return sides;
+}
 
 std::optional<Calibration> calibrate(const check::Model& model, const Request& request,
                                      diag::Sink& sink) {
@@ -90,7 +75,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     if (!episodes::can_be_dealt(request.episodes, request.reading, request.folds, model, sink))
         return std::nullopt;
     const episodes::Leaks leaks(model, predicates);
-    const std::vector<Guaranteed> guarantees = guaranteed(model);
+    const std::vector<Guaranteed> guarantees = guaranteed(model, false);
     const Watched watched =
         watched_by(model, guarantees, predicates, labelled_anywhere(model, request));
     Tracks tracks;
@@ -128,29 +113,20 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     episodes::record(demonstrations, allowance, result.file);
     for (const thresholds::Allowance& used : result.file.allowances)
         calibrated.reservations.push_back(thresholds::text(used));
-    std::vector<Fitted> all;
+    std::vector<Sides> all;
+    std::vector<Subject> subjects;
     for (std::size_t i = 0; i < predicates.size(); ++i) {
         const check::Predicate& predicate = model.predicates[predicates[i]];
-        const Fit fitted = fit(predicate, evidence[i]);
-        if (const auto* refusal = std::get_if<Refusal>(&fitted)) {
-            refuse(model, predicate, evidence[i], groups.are_named(), *refusal, sink);
-            continue;
-        }
-        if (const auto* out = std::get_if<OutOfRange>(&fitted)) {
-            sink.report(Code::start_out_of_range, predicate.threshold.span,
-                        check::outside(predicate, out->epsilon))
-                .note("give it lo and hi with room on both sides of the threshold");
-            continue;
-        }
-        all.push_back(std::get<Fitted>(fitted));
-        warn_of_doubts(predicate, evidence[i], all.back(), sink);
+        subjects.push_back({predicate, evidence[i], false, groups.are_named()});
+        const auto sides = fit_all(model, subjects.back(), sink);
+        if (!sides) continue;
+        all.push_back(*sides);
+        warn_of_doubts(predicate, evidence[i], sides->front().epsilon, sink);
         check::Threshold& threshold = calibrated.predicates[predicates[i]].threshold;
-        threshold.value = all.back().epsilon;
+        set(threshold, predicate, *sides);
         if (threshold.adaptation)
             threshold.value =
                 *check::start(*threshold.adaptation, threshold.value, predicate.upper_bound());
-        threshold.n = all.back().n;
-        threshold.k = all.back().k;
         threshold.by_group =
             groups.are_named() && check::takes_groups(check::method_name(threshold.origin));
         result.file.predicates[predicate.name] =
@@ -169,10 +145,9 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
                                      {tracks, watched, groups, is_complete, is_divided})};
     for (std::size_t i = 0; i < guarantees.size(); ++i)
         warn_of_empty(model, guarantees[i], others.by_guarantee[i], sink);
-    result.report =
-        report(calibrated, predicates, evidence, groups, frames, all, others) +
-        report_of_folds(model, predicates, evidence, demonstrations, groups, request.folds) +
-        episodes::remark_on(allowance);
+    result.report = report(calibrated, predicates, evidence, groups, frames, all, others) +
+                    report_of_folds(subjects, demonstrations, groups, request.folds) +
+                    episodes::remark_on(allowance);
     return result;
 }
 

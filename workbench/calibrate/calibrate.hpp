@@ -58,13 +58,19 @@ std::string in_groups(const episodes::Groups& groups);
 /// has the thresholds.
 std::string report(const check::Model& model, const std::vector<Index>& predicates,
                    const std::vector<Evidence>& evidence, const episodes::Groups& groups,
-                   std::uint64_t frames, const std::vector<Fitted>& fitted, const Others& others);
+                   std::uint64_t frames, const std::vector<Sides>& fitted, const Others& others);
+
+/// Describes the losses of thresholds by risk, and those that are infinite, in lines.
+std::string describe_sides(const Subject& of, const Sides& sides);
 
 /// Reports the thresholds without each fold, and their results on it; empty for 0 folds. They show
 /// how much the thresholds depend on single recordings, and guarantee nothing.
-std::string report_of_folds(const check::Model& model, const std::vector<Index>& predicates,
-                            const std::vector<Evidence>& evidence,
+std::string report_of_folds(const std::vector<Subject>& subjects,
                             const episodes::Identities& episodes, const episodes::Groups& groups,
                             std::uint32_t folds);
+
+/// Fits the thresholds of a predicate, or of a monitor as one. Returns nothing after an error,
+/// which it reports.
+std::optional<Sides> fit_all(const check::Model& model, const Subject& of, diag::Sink& sink);
 
 }  // namespace etlc::calibrate

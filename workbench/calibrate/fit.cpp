@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <queue>
 #include <utility>
@@ -150,22 +151,130 @@ Fit fit_pooled(const data::Sorted<Evidence::Reach>& reaches, const std::string& 
     });
 }
 
+/// Returns the score of the i-th frame of groups that count; infinite beyond the last.
+double score_at(const Evidence::Side& side, std::uint64_t i, const Counts& counts) {
+    double found = std::numeric_limits<double>::infinity();
+    std::uint64_t place = 0;
+    side.reaches.for_each([&](const Evidence::Reach& one) {
+        if (counts(one.group) && place++ == i) found = one.reach;
+    });
+    return found;
+}
+
+/// Fits the tightest threshold that keeps the expected loss of a new group.
+Fit fit_risk(const Evidence::Side& side, const std::string& rate, const Counts& counts) {
+    std::uint64_t scores = 0;
+    side.reaches.for_each([&](const Evidence::Reach& one) { scores += counts(one.group) ? 1 : 0; });
+    Fitted result;
+    result.losses =
+        losses_beyond(side, std::numeric_limits<double>::infinity(), counts);  // of the loosest
+    result.n = result.losses.size();
+    if (!check::keeps_risk(std::vector<double>(result.n), rate)) return Refusal::too_few;
+    if (!check::keeps_risk(result.losses, rate)) return Refusal::always_lost;
+    if (scores == 0) return Refusal::no_positives;
+    std::uint64_t least = 0;
+    std::uint64_t kept = scores - 1;
+    while (least < kept) {
+        const std::uint64_t middle = least + (kept - least) / 2;
+        if (check::keeps_risk(losses_beyond(side, score_at(side, middle, counts), counts), rate))
+            kept = middle;
+        else
+            least = middle + 1;
+    }
+    const double score = score_at(side, least, counts);
+    result.epsilon = check::strictly_above(score);
+    if (std::isinf(score) || std::isinf(result.epsilon)) return Refusal::not_finite;
+    result.scores = {score};
+    result.losses = losses_beyond(side, score, counts);
+    if (least > 0)
+        result.losses_before = losses_beyond(side, score_at(side, least - 1, counts), counts);
+    return result;
+}
+
+/// Returns the threshold against both errors of a side with too few scores.
+Fitted without_end(const Evidence::Side& side, bool by_risk, std::vector<double> scores,
+                   const Counts& counts) {
+    Fitted result;
+    result.epsilon = std::numeric_limits<float>::infinity();
+    if (by_risk)
+        result.losses = losses_beyond(side, std::numeric_limits<double>::infinity(), counts);
+    result.n = by_risk ? result.losses.size() : scores.size();
+    result.k = by_risk ? 0 : result.n + 1;
+    result.scores = std::move(scores);
+    return result;
+}
+
 }  // namespace
 
-thresholds::Entry entry_of(const check::Threshold& threshold, const Fitted& fitted,
+std::vector<Aim> aims_of(const check::Predicate& predicate) {
+    const check::Threshold& threshold = predicate.threshold;
+    std::vector<Aim> aims;
+    for (const bool of_positives : {true, false}) {
+        if (!is_against(threshold, of_positives)) continue;
+        const bool is_beta = !of_positives && !threshold.beta.empty();
+        aims.push_back({of_positives, of_positives == predicate.upper_bound(),
+                        is_beta ? threshold.beta : threshold.alpha, is_beta ? "beta" : "alpha"});
+    }
+    return aims;
+}
+
+check::Predicate over_robustness(const check::Monitor& monitor) {
+    check::Predicate predicate;
+    predicate.name = monitor.name;
+    predicate.comparison = check::Comparison::greater_equal;
+    predicate.threshold = *monitor.calibration;
+    return predicate;
+}
+
+check::Both joined(const check::Predicate& predicate, const Sides& sides) {
+    if (sides.size() == 1) return {sides[0].epsilon, std::nullopt};
+    return check::both(sides[0].epsilon, sides[1].epsilon, predicate.upper_bound());
+}
+
+void set(check::Threshold& threshold, const check::Predicate& predicate, const Sides& sides) {
+    const check::Both both = joined(predicate, sides);
+    threshold.value = both.value;
+    threshold.inner = both.inner;
+    threshold.n = sides[0].n;
+    threshold.k = sides[0].k;
+    if (sides.size() == 1) return;
+    threshold.inner_n = sides[1].n;
+    threshold.inner_k = sides[1].k;
+}
+
+std::vector<double> losses_beyond(const Evidence::Side& side, double lambda, const Counts& counts) {
+    std::vector<std::uint64_t> lost;
+    for (const Evidence::Episode& episode : side.episodes) lost.push_back(episode.lost);
+    side.reaches.for_each([&](const Evidence::Reach& one) {
+        if (one.reach > lambda) ++lost[one.episode];
+    });
+    std::map<std::uint32_t, double> worst;  // by group
+    for (std::size_t e = 0; e < side.episodes.size(); ++e) {
+        const Evidence::Episode& episode = side.episodes[e];
+        if (!counts(episode.group)) continue;
+        double& loss = worst[episode.group];
+        loss = std::max(loss, static_cast<double>(lost[e]) / static_cast<double>(episode.frames));
+    }
+    std::vector<double> losses;
+    for (const auto& [group, loss] : worst) losses.push_back(loss);
+    return losses;
+}
+
+thresholds::Entry entry_of(const check::Threshold& threshold, const Sides& sides,
                            check::Reads reads) {
     thresholds::Entry entry;
     entry.method = check::method_name(threshold.origin);
     entry.alpha = threshold.alpha;
-    entry.epsilon = fitted.epsilon;
-    entry.n = fitted.n;
-    entry.k = fitted.k;
-    entry.scores = fitted.scores;
+    entry.beta = threshold.beta;
+    entry.within = threshold.within;
+    if (threshold.against != check::Against::misses) entry.against = check::word(threshold.against);
+    static_cast<thresholds::Side&>(entry) = sides[0];
+    if (sides.size() > 1) entry.inner = sides[1];
     entry.reads = std::move(reads);
     return entry;
 }
 
-std::string describe_place(const Fitted& fitted, bool upper_bound, const std::string& each) {
+std::string describe_place(const Fitted& fitted, bool above, const std::string& each) {
     const std::uint64_t last = fitted.k % 10;
     const bool teen = fitted.k / 10 % 10 == 1;
     const char* const ending = teen        ? "th"
@@ -173,13 +282,13 @@ std::string describe_place(const Fitted& fitted, bool upper_bound, const std::st
                                : last == 2 ? "nd"
                                : last == 3 ? "rd"
                                            : "th";
-    return fmt::format("just {} the {}{} {} of {}, one per {}", upper_bound ? "above" : "below",
-                       fitted.k, ending, upper_bound ? "smallest" : "greatest",
-                       diag::counted(fitted.n, "score"), each);
+    return fmt::format("just {} the {}{} {} of {}, one per {}", above ? "above" : "below", fitted.k,
+                       ending, above ? "smallest" : "greatest", diag::counted(fitted.n, "score"),
+                       each);
 }
 
-void mirror(Fitted& fitted, bool upper_bound) {
-    if (!upper_bound) {
+void mirror(Fitted& fitted, bool above) {
+    if (!above) {
         fitted.epsilon = 0.0F - fitted.epsilon;  // 0 rather than -0
         for (double& score : fitted.scores) score = 0.0 - score;
     }
@@ -223,22 +332,33 @@ std::vector<Fit> fit_f1_without(const episodes::FramesByScore& labelled, bool st
     return results;
 }
 
-Fit fit(const check::Predicate& predicate, const Evidence& evidence, const Counts& counts) {
+Fit fit(const check::Predicate& predicate, const Aim& aim, const Evidence& evidence,
+        const Counts& counts) {
     const check::Threshold& threshold = predicate.threshold;
+    const Evidence::Side& side = evidence.side(aim.of_positives);
+    const bool by_risk = threshold.origin == ThresholdOrigin::risk;
     std::vector<double> by_group;
     const auto by_worst = [&] {
-        for (const auto& [reach, group] : evidence.worst)
-            if (counts(group)) by_group.push_back(reach);
-        return fit_rank(by_group, threshold.alpha);
+        for (const Evidence::Reach& worst : side.worst)
+            if (counts(worst.group)) by_group.push_back(worst.reach);
+        return fit_rank(by_group, aim.rate);
     };
     Fit fit = threshold.origin == ThresholdOrigin::f1
                   ? fit_f1(evidence.labelled, predicate.strict(), counts)
               : threshold.origin == ThresholdOrigin::class_conditional
-                  ? fit_pooled(evidence.reaches, threshold.alpha, counts)
-                  : by_worst();
+                  ? fit_pooled(side.reaches, aim.rate, counts)
+              : by_risk ? fit_risk(side, aim.rate, counts)
+                        : by_worst();
+    const auto* const refusal = std::get_if<Refusal>(&fit);
+    // A missing sample that counts as the error loses it whatever the threshold.
+    const bool may_lose = by_risk && predicate.missing && *predicate.missing != aim.of_positives;
+    const bool is_short = refusal != nullptr && (*refusal == Refusal::too_few ||
+                                                 (*refusal == Refusal::no_positives && !by_risk));
+    if (threshold.against == check::Against::both && is_short && !may_lose)
+        fit = without_end(side, by_risk, by_group, counts);
     if (auto* fitted = std::get_if<Fitted>(&fit)) {
         if (!by_group.empty()) fitted->scores = std::move(by_group);
-        mirror(*fitted, predicate.upper_bound());
+        mirror(*fitted, aim.above);
         const auto& adaptation = threshold.adaptation;
         if (adaptation && !check::start(*adaptation, fitted->epsilon, predicate.upper_bound()))
             return OutOfRange{fitted->epsilon};
@@ -254,20 +374,30 @@ using check::ThresholdOrigin;
 
 constexpr std::uint32_t kNobody = UINT32_MAX;
 
+/// The thresholds for one error without each group.
+struct OneSide {
+    std::vector<float> thresholds;  ///< per group
+    std::string why;                ///< why one is missing
+};
+
 /// Collects the thresholds; the first that is missing gives the reason.
 class Collected {
 public:
-    Collected(std::string alpha, const char* each, std::size_t groups)
-        : alpha_(std::move(alpha)), each_(each) {
+    /// `may_be_infinite`: all groups together have too few scores.
+    Collected(const Aim& aim, const char* each, std::size_t groups, bool may_be_infinite)
+        : aim_(aim), each_(each), may_be_infinite_(may_be_infinite) {
         result_.thresholds.resize(groups);
     }
 
     /// Takes the threshold of one group.
     void take(const Fit& fit, std::uint32_t group) {
-        if (const auto* fitted = std::get_if<Fitted>(&fit))
-            result_.thresholds[group] = fitted->epsilon;
-        else
+        const auto* const fitted = std::get_if<Fitted>(&fit);
+        if (fitted == nullptr)
             fail(fit);
+        else if (std::isinf(fitted->epsilon) && !may_be_infinite_)
+            fail(Refusal::too_few);
+        else
+            result_.thresholds[group] = fitted->epsilon;
     }
     /// Takes the threshold of the groups for which `has(g)` holds.
     template <class Has>
@@ -275,10 +405,7 @@ public:
         for (std::uint32_t g = 0; g < result_.thresholds.size(); ++g)
             if (has(g)) take(fit, g);
     }
-    LeftOut result() && {
-        if (!result_.why.empty()) result_.thresholds.clear();
-        return std::move(result_);
-    }
+    OneSide result() && { return std::move(result_); }
 
 private:
     void fail(const Fit& fit) {
@@ -286,25 +413,28 @@ private:
         if (std::holds_alternative<OutOfRange>(fit))
             result_.why = "the threshold is out of its range";
         else if (std::get<Refusal>(fit) == Refusal::too_few)
-            result_.why = fmt::format("too few are left for alpha = {}", alpha_);
+            result_.why = fmt::format("too few are left for {} = {}", aim_.rate_name, aim_.rate);
+        else if (std::get<Refusal>(fit) == Refusal::always_lost)
+            result_.why = "missing samples alone lose too much";
         else if (std::get<Refusal>(fit) == Refusal::not_finite)
             result_.why = "the score at the rank is infinite";
         else
             result_.why = fmt::format("no {} is left", each_);
     }
 
-    std::string alpha_;
+    const Aim& aim_;
     const char* each_;
-    LeftOut result_;
+    bool may_be_infinite_;
+    OneSide result_;
 };
 
 /// Takes the thresholds by the rank of one score per group. All groups whose score is among the
 /// best ones leave the same scores at the rank, and so do all others.
 template <class FitWithout>
-void take_by_rank(std::vector<Evidence::Reach> scores, const std::string& alpha, std::size_t groups,
+void take_by_rank(std::vector<Evidence::Reach> scores, const std::string& rate, std::size_t groups,
                   const FitWithout& fit_without, Collected& collected) {
     std::sort(scores.begin(), scores.end());
-    const std::uint64_t k = scores.empty() ? 0 : check::rank(alpha, scores.size() - 1);
+    const std::uint64_t k = scores.empty() ? 0 : check::rank(rate, scores.size() - 1);
     std::vector<std::uint8_t> classes(groups);  // 0: without a score, 1: among the best, 2: others
     for (std::size_t i = 0; i < scores.size(); ++i) classes[scores[i].group] = i < k ? 1 : 2;
     const std::uint32_t best = scores.empty() ? kNobody : scores.front().group;
@@ -325,20 +455,21 @@ void take_by_frames(const check::Predicate& predicate, const Evidence& evidence,
         std::uint64_t k = 0;       ///< rank among the others
     };
     std::vector<Group> groups(evidence.groups);
-    evidence.reaches.for_each([&](const Evidence::Reach& one) { ++groups[one.group].frames; });
+    const data::Sorted<Evidence::Reach>& reaches = evidence.positives.reaches;
+    reaches.for_each([&](const Evidence::Reach& one) { ++groups[one.group].frames; });
     // The score of a group is the one at place k among the others, so at place k + `before` among
     // all. That place only grows, so a group is looked at when its last known place comes.
     using Place = std::pair<std::uint64_t, std::uint32_t>;
     std::priority_queue<Place, std::vector<Place>, std::greater<>> due;
     for (std::uint32_t g = 0; g < groups.size(); ++g) {
-        const std::uint64_t others = evidence.reaches.size() - groups[g].frames;
+        const std::uint64_t others = reaches.size() - groups[g].frames;
         if (others == 0) return collected.take(Refusal::no_positives, g);
         groups[g].k = check::rank(predicate.threshold.alpha, others);
         if (groups[g].k > others) return collected.take(Refusal::too_few, g);
         due.emplace(groups[g].k, g);
     }
     std::uint64_t place = 0;
-    evidence.reaches.for_each([&](const Evidence::Reach& one) {
+    reaches.for_each([&](const Evidence::Reach& one) {
         ++place;
         ++groups[one.group].before;
         while (!due.empty() && due.top().first <= place) {
@@ -356,56 +487,64 @@ void take_by_frames(const check::Predicate& predicate, const Evidence& evidence,
     });
 }
 
+/// Takes the thresholds without each of as many parts of the groups.
+void take_by_parts(const check::Predicate& predicate, const Aim& aim, const Evidence& evidence,
+                   const std::vector<std::uint32_t>& part_of, std::uint32_t parts,
+                   Collected& collected) {
+    std::vector<Fit> fits;
+    if (predicate.threshold.origin == ThresholdOrigin::f1) {
+        fits = fit_f1_without(evidence.labelled, predicate.strict(), part_of, parts);
+        for (Fit& one : fits)
+            if (auto* fitted = std::get_if<Fitted>(&one)) mirror(*fitted, aim.above);
+    }
+    for (std::uint32_t p = static_cast<std::uint32_t>(fits.size()); p < parts; ++p)
+        fits.push_back(
+            fit(predicate, aim, evidence, [&](std::uint32_t g) { return part_of[g] != p; }));
+    for (std::uint32_t p = 0; p < parts; ++p)
+        collected.take_all(fits[p], [&](std::uint32_t g) { return part_of[g] == p; });
+}
+
 }  // namespace
 
 LeftOut left_out(const check::Predicate& predicate, const Evidence& evidence,
                  const episodes::Identities& demonstrations, const episodes::Groups& groups) {
-    Collected collected(predicate.threshold.alpha, "positive frame", groups.count());
     const ThresholdOrigin origin = predicate.threshold.origin;
-    if (origin == ThresholdOrigin::f1) {
-        const std::uint32_t parts = std::min(groups.count(), kMostParts);
-        const auto part_of = episodes::folds_of(demonstrations, groups, parts);
-        auto fits = fit_f1_without(evidence.labelled, predicate.strict(), part_of, parts);
-        for (std::uint32_t p = 0; p < parts; ++p) {
-            if (auto* fitted = std::get_if<Fitted>(&fits[p]))
-                mirror(*fitted, predicate.upper_bound());
-            collected.take_all(fits[p], [&](std::uint32_t g) { return part_of[g] == p; });
-        }
-        LeftOut result = std::move(collected).result();
-        result.parts = parts < groups.count() ? parts : 0;
-        return result;
+    const bool by_parts = origin == ThresholdOrigin::f1 || origin == ThresholdOrigin::risk;
+    const std::uint32_t parts = std::min(groups.count(), kMostParts);
+    LeftOut result;
+    result.parts = by_parts && parts < groups.count() ? parts : 0;
+    std::vector<OneSide> sides;
+    const std::vector<Aim> aims = aims_of(predicate);
+    for (const Aim& aim : aims) {
+        const Fit whole = fit(predicate, aim, evidence);
+        const auto* const of_all = std::get_if<Fitted>(&whole);
+        Collected collected(aim, aim.of_positives ? "positive frame" : "negative frame",
+                            groups.count(), of_all != nullptr && std::isinf(of_all->epsilon));
+        const auto fit_without = [&](std::uint32_t one) {
+            Fit found = fit(predicate, aim, evidence, [&](std::uint32_t g) { return g != one; });
+            auto* const fitted = std::get_if<Fitted>(&found);
+            if (fitted != nullptr && predicate.threshold.adaptation)
+                fitted->epsilon = *check::start(*predicate.threshold.adaptation, fitted->epsilon,
+                                                predicate.upper_bound());
+            return found;
+        };
+        if (by_parts)
+            take_by_parts(predicate, aim, evidence,
+                          episodes::folds_of(demonstrations, groups, parts), parts, collected);
+        else if (origin == ThresholdOrigin::class_conditional)
+            take_by_frames(predicate, evidence, collected);
+        else
+            take_by_rank(evidence.side(aim.of_positives).worst, aim.rate, groups.count(),
+                         fit_without, collected);
+        sides.push_back(std::move(collected).result());
+        if (result.why.empty()) result.why = sides.back().why;
     }
-    if (origin == ThresholdOrigin::class_conditional) {
-        take_by_frames(predicate, evidence, collected);
-        return std::move(collected).result();
+    for (std::uint32_t g = 0; result.why.empty() && g < groups.count(); ++g) {
+        Sides one;
+        for (const OneSide& side : sides) one.emplace_back().epsilon = side.thresholds[g];
+        result.thresholds.push_back(joined(predicate, one));
     }
-    const auto fit_without = [&](std::uint32_t one) {
-        Fit found = fit(predicate, evidence, [&](std::uint32_t g) { return g != one; });
-        auto* const fitted = std::get_if<Fitted>(&found);
-        if (fitted != nullptr && predicate.threshold.adaptation)
-            fitted->epsilon = *check::start(*predicate.threshold.adaptation, fitted->epsilon,
-                                            predicate.upper_bound());
-        return found;
-    };
-    take_by_rank(evidence.worst, predicate.threshold.alpha, groups.count(), fit_without, collected);
-    return std::move(collected).result();
-}
-
-LeftOut left_out(const check::MonitorCalibration& calibration,
-                 const std::vector<Evidence::Reach>& worst, std::size_t groups) {
-    const std::string& alpha = calibration.threshold.alpha;
-    Collected collected(alpha, "step that counts", groups);
-    const auto fit_without = [&](std::uint32_t one) {
-        std::vector<double> others;
-        for (const auto& [score, group] : worst)
-            if (group != one) others.push_back(score);
-        Fit fit = fit_rank(std::move(others), alpha);
-        if (auto* fitted = std::get_if<Fitted>(&fit))
-            mirror(*fitted, calibration.against == check::Against::missed_alarm);
-        return fit;
-    };
-    take_by_rank(worst, alpha, groups, fit_without, collected);
-    return std::move(collected).result();
+    return result;
 }
 
 }  // namespace etlc::calibrate

@@ -18,6 +18,7 @@ namespace {
 using check::Claim;
 using episodes::Fraction;
 using episodes::Label;
+using Open = Guaranteed::Open;
 
 /// Counts per group, for intervals.
 using Fractions = std::vector<Fraction>;
@@ -110,14 +111,17 @@ void add_variants(const std::vector<Broken>& variants, const std::vector<Guarant
                   std::size_t group, std::vector<Fractions>& fractions,
                   std::vector<OtherError>& errors) {
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const Label wrong = all[i].misses_success() ? Label::yes : Label::no;
-        const Label right = all[i].misses_success() ? Label::no : Label::yes;
+        const bool is_cost = all[i].open == Open::unknown;
+        const Label wrong = is_cost                          ? Label::unknown
+                            : all[i].open == Open::satisfied ? Label::yes
+                                                             : Label::no;
+        const Label right = wrong == Label::yes ? Label::no : Label::yes;
         VariantError& error = errors[i].variants;
         Fraction& of = fractions[i][group];
         for (const Broken& broken : variants) {
             ++error.made[static_cast<std::size_t>(broken.variant)];
             const Concluded& verdicts = broken.concluded[i];
-            if (verdicts.is != right) continue;
+            if (!is_cost && verdicts.is != right) continue;
             ++of.whole;
             of.part += verdicts.said == wrong ? 1 : 0;
         }
@@ -148,8 +152,14 @@ void count(const check::Model& model, const std::vector<Guaranteed>& all, const 
         for (std::size_t i = 0; i < all.size(); ++i) {
             const Said& said = episode[i];
             const std::uint64_t truly_violated = said.steps - said.truly_satisfied;
-            const bool success = all[i].misses_success();
+            const bool success = all[i].open == Open::satisfied;
+            errors[i].all += said.all;
             errors[i].steps += said.steps;
+            if (all[i].open == Open::unknown) {
+                fractions[i][group].part += static_cast<std::int64_t>(said.unknown);
+                fractions[i][group].whole += said.all;
+                continue;
+            }
             errors[i].said += success ? said.satisfied : said.violated;
             errors[i].truly += success ? said.truly_satisfied : truly_violated;
             fractions[i][group].part +=
@@ -173,17 +183,8 @@ void count(const check::Model& model, const std::vector<Guaranteed>& all, const 
 
 }  // namespace
 
-std::vector<Guaranteed> guaranteed(const check::Model& model) {
-    std::vector<Guaranteed> found;
-    for (Index m = 0; m < model.monitors.size(); ++m) {
-        const check::Monitor& monitor = model.monitors[m];
-        if (monitor.calibration) continue;
-        for (const Claim& claim : check::claims(model, monitor))
-            if (claim.kind == Claim::Kind::missed_success ||
-                claim.kind == Claim::Kind::missed_alarm)
-                found.push_back({m, claim});
-    }
-    return found;
+check::Both both_of(const check::Threshold& threshold) {
+    return {threshold.value, threshold.inner};
 }
 
 namespace {
@@ -206,6 +207,17 @@ bool measures_in_its_truth(const check::Model& model, const check::Monitor& moni
 
 }  // namespace
 
+namespace {
+
+/// Returns what a predicate says: neither between two thresholds.
+Label called_by(check::Comparison comparison, float delta, const check::Both& threshold) {
+    if (check::holds(comparison, delta, threshold.inner.value_or(threshold.value)))
+        return Label::yes;
+    return check::holds(comparison, delta, threshold.value) ? Label::unknown : Label::no;
+}
+
+}  // namespace
+
 std::vector<OtherError> other_errors(const check::Model& model,
                                      const std::vector<Index>& predicates,
                                      const std::vector<Evidence>& evidence,
@@ -223,13 +235,17 @@ std::vector<OtherError> other_errors(const check::Model& model,
             continue;
         }
         fractions[i].resize(groups.count());
+        const check::Against against = predicate.threshold.against;
+        const bool is_cost = against == check::Against::both;
+        const bool of_positives = against == check::Against::false_positives;
         evidence[i].labelled.for_each([&](const episodes::Scored& frame) {
-            if (frame.positive) return;
+            if (!is_cost && frame.positive != of_positives) return;
             const float delta = predicate.upper_bound() ? frame.score : -frame.score;
-            const float threshold = out[i].thresholds[frame.episode];
+            const check::Both& threshold = out[i].thresholds[frame.episode];
+            const Label called = called_by(predicate.comparison, delta, threshold);
+            const Label wrong = is_cost ? Label::unknown : of_positives ? Label::no : Label::yes;
             ++fractions[i][frame.episode].whole;
-            fractions[i][frame.episode].part +=
-                check::holds(predicate.comparison, delta, threshold) ? 1 : 0;
+            fractions[i][frame.episode].part += called == wrong ? 1 : 0;
         });
         add(errors[i], fractions[i]);
     }
@@ -264,7 +280,7 @@ std::vector<OtherError> other_errors(const check::Model& model, const std::vecto
     }
     Thresholds thresholds;
     for (const check::Predicate& predicate : model.predicates)
-        thresholds.predicates.push_back(predicate.threshold.value);
+        thresholds.predicates.push_back(both_of(predicate.threshold));
     count(
         model, all, recorded,
         [&](std::uint32_t group) -> const Thresholds& {
@@ -290,7 +306,7 @@ std::vector<OtherError> other_errors_of_shifts(const check::Model& model,
             errors[i].why = "its truth measures something that the monitor does not";
     Thresholds thresholds;
     for (const check::Predicate& predicate : model.predicates)
-        thresholds.predicates.push_back(predicate.threshold.value);
+        thresholds.predicates.push_back(both_of(predicate.threshold));
     thresholds.shifts.resize(all.size());
     count(
         model, all, recorded,
@@ -312,10 +328,12 @@ using diag::counted;
 
 /// Returns the verdict of the other error, and that of its truth.
 const char* said_word(const Guaranteed& of) {
-    return of.misses_success() ? "satisfied" : "violated";
+    return of.open == Open::unknown     ? "unknown"
+           : of.open == Open::satisfied ? "satisfied"
+                                        : "violated";
 }
 const char* true_word(const Guaranteed& of) {
-    return of.misses_success() ? "violated" : "satisfied";
+    return of.open == Open::satisfied ? "violated" : "satisfied";
 }
 
 std::string percent(double share) {
@@ -331,34 +349,51 @@ std::string share_of(const ErrorShare& error) {
     return text;
 }
 
-constexpr const char* kHead = "the other error: ";
+const char* head(bool is_cost) {
+    return is_cost ? "the cost: " : "the other error: ";
+}
 
 /// Returns the line where nothing was counted; otherwise nothing.
-std::optional<std::string> nothing_counted(const OtherError& error, const std::string& no_case) {
-    if (!error.why.empty()) return fmt::format("{}not counted: {}\n", kHead, error.why);
-    if (error.cases == 0) return fmt::format("{}nothing to judge it on: {}\n", kHead, no_case);
+std::optional<std::string> nothing_counted(const OtherError& error, bool is_cost,
+                                           const std::string& no_case) {
+    if (!error.why.empty()) return fmt::format("{}not counted: {}\n", head(is_cost), error.why);
+    if (error.cases == 0)
+        return fmt::format("{}nothing to judge it on: {}\n", head(is_cost), no_case);
     return std::nullopt;
 }
 
 }  // namespace
 
-std::string describe(const OtherError& error) {
-    if (const auto nothing = nothing_counted(error, "no measured frame is negative"))
+std::string describe(const OtherError& error, check::Against against) {
+    const bool is_cost = against == check::Against::both;
+    const bool of_positives = against == check::Against::false_positives;
+    const char* const kind = is_cost ? "labelled" : of_positives ? "positive" : "negative";
+    if (const auto nothing =
+            nothing_counted(error, is_cost, fmt::format("no measured frame is {}", kind)))
         return *nothing;
-    std::string text = fmt::format("{}true at {} of {} negative frames, {}", kHead, error.errors,
-                                   error.cases, share_of(error));
+    std::string text = fmt::format("{}{} at {} of {} {} frames, {}", head(is_cost),
+                                   is_cost        ? "unknown"
+                                   : of_positives ? "false"
+                                                  : "true",
+                                   error.errors, error.cases, kind, share_of(error));
     if (error.parts > 0)
         text += fmt::format("; {} left out in {} parts",
                             error.by_group ? "groups" : "demonstrations", error.parts);
     return text + "\n";
 }
 
-std::string note_on_other_errors(bool by_group) {
+bool has_cost(const std::vector<Guaranteed>& all) {
+    return std::any_of(all.begin(), all.end(),
+                       [](const Guaranteed& one) { return one.open == Open::unknown; });
+}
+
+std::string note_on_other_errors(bool by_group, bool has_cost) {
     const char* const each = by_group ? "group" : "episode";
     return fmt::format(
-        "    The other error is counted in each {0} with the thresholds that the other {0}s give; "
-        "in brackets its 95 % interval over {0}s.\n",
-        each);
+        "    The other error {1} counted in each {0} with the thresholds that the other {0}s give; "
+        "in "
+        "brackets {2} 95 % interval over {0}s.\n",
+        each, has_cost ? "and the cost are" : "is", has_cost ? "their" : "its");
 }
 
 namespace {
@@ -379,6 +414,8 @@ std::string made(const VariantError& error) {
 
 /// Returns "satisfied on 12 of 140 truly violated".
 std::string errors_of(const VariantError& error, const Guaranteed& of) {
+    if (of.open == Open::unknown)
+        return fmt::format("unknown on {} of {}", error.errors, error.cases);
     return fmt::format("{} on {} of {} truly {}", said_word(of), error.errors, error.cases,
                        true_word(of));
 }
@@ -410,21 +447,32 @@ bool is_wrong_on_most(const VariantError& error) {
 
 std::string describe(const OtherError& error, const Guaranteed& of, const std::string& indent) {
     std::string text = indent;
-    if (const auto nothing =
-            nothing_counted(error, fmt::format("no step is truly {}", true_word(of))))
+    const bool is_cost = of.open == Open::unknown;
+    const char* const each = error.by_group ? "group" : "episode";
+    const std::string no_case =
+        is_cost ? "there is no verdict" : fmt::format("no step is truly {}", true_word(of));
+    if (const auto nothing = nothing_counted(error, is_cost, no_case))
         text += *nothing;
+    else if (is_cost)
+        text += fmt::format("{}unknown at {} of {} steps, {}; in {} of {} {}s\n", head(true),
+                            error.errors, error.cases, share_of(error), error.wrong, error.groups,
+                            each);
     else
         text += fmt::format(
             "{}{} at {} of {} truly {} steps, {}; in {} of {} {}s\n"
             "{}in all {} at {} of {} steps, truly at {}\n",
-            kHead, said_word(of), error.errors, error.cases, true_word(of), share_of(error),
-            error.wrong, error.groups, error.by_group ? "group" : "episode", indent, said_word(of),
-            error.said, error.steps, error.truly);
+            head(false), said_word(of), error.errors, error.cases, true_word(of), share_of(error),
+            error.wrong, error.groups, each, indent, said_word(of), error.said, error.steps,
+            error.truly);
+    if (error.why.empty() && error.steps < error.all)
+        text += fmt::format("{}the truth is open at {} of {} steps\n", indent,
+                            error.all - error.steps, error.all);
     return error.why.empty() ? text + indent + describe(error.variants, of) : text;
 }
 
 void warn_of_empty(const check::Model& model, const Guaranteed& of, const OtherError& error,
                    diag::Sink& sink) {
+    if (of.open == Open::unknown) return;  // that it says little is not hidden
     const bool by_steps = is_empty(error);
     const bool by_variants = is_wrong_on_most(error.variants);
     if (!by_steps && !by_variants) return;
@@ -451,8 +499,9 @@ void warn_of_empty(const check::Model& model, const Guaranteed& of, const OtherE
     if (by_variants)
         warning.note(fmt::format("of {}: {}", made(error.variants), errors_of(error.variants, of)));
     warning.note(fmt::format(
-        "try a predicate that has to hold for some steps (held[5 steps] p), {}or a distance that "
-        "separates better (etlc fit --suggest)",
+        "try 'against = both', with which a verdict is unknown where it may be wrong, a predicate "
+        "that has to hold for some steps (held[5 steps] p), {}or a distance that separates better "
+        "(etlc fit --suggest)",
         monitor.calibration ? "" : "a monitor that is calibrated as a whole, "));
 }
 

@@ -1,5 +1,6 @@
 // The error that a guarantee does not bound: a predicate that is true where its truth is not, and
-// the opposite wrong verdict of a monitor. It is counted in each demonstration with the thresholds
+// the opposite wrong verdict of a monitor. Against both errors it is the cost instead: how often a
+// predicate or a verdict is unknown. It is counted in each demonstration with the thresholds
 // that the others give, since thresholds fit the demonstrations that they come from too well. A
 // guarantee holds and is empty where its monitor says the same whatever is true. Demonstrations are
 // mostly successes, so the monitor is judged on broken variants of them too.
@@ -42,7 +43,8 @@ struct VariantError : ErrorShare {
 };
 
 struct OtherError : ErrorShare {
-    std::uint64_t steps = 0;  ///< monitors: all steps of known truth
+    std::uint64_t all = 0;    ///< monitors: all steps
+    std::uint64_t steps = 0;  ///< those of known truth
     std::uint64_t said = 0;   ///< those with the wrong verdict, as its cases have if wrong
     std::uint64_t truly = 0;  ///< those at which the truth is that verdict
     std::uint32_t parts = 0;  ///< groups were left out in this many parts; 0: one by one
@@ -51,9 +53,6 @@ struct OtherError : ErrorShare {
 
 /// The tracks of all episodes, in order.
 using Tracks = data::Spool<std::string>;
-
-/// Returns the guarantees of the monitors that are not calibrated as a whole.
-std::vector<Guaranteed> guaranteed(const check::Model& model);
 
 struct Tracked {
     const Tracks& tracks;
@@ -76,6 +75,9 @@ std::vector<OtherError> other_errors(const check::Model& model, const std::vecto
                                      const std::vector<Index>& predicates,
                                      const std::vector<LeftOut>& out, const Tracked& recorded);
 
+/// Returns the thresholds of a predicate or monitor.
+check::Both both_of(const check::Threshold& threshold);
+
 /// Returns the error of each monitor that is calibrated as a whole. `out`: per monitor.
 std::vector<OtherError> other_errors_of_shifts(const check::Model& model,
                                                const std::vector<Guaranteed>& all,
@@ -83,12 +85,14 @@ std::vector<OtherError> other_errors_of_shifts(const check::Model& model,
                                                const Tracked& recorded);
 
 /// Describes it in a line: "the other error: true at 12 of 40 negative frames, ...".
-std::string describe(const OtherError& error);
+std::string describe(const OtherError& error, check::Against against);
 /// Describes it in lines, each after `indent`.
 std::string describe(const OtherError& error, const Guaranteed& of, const std::string& indent);
 
+/// Whether both errors of some monitor are bounded.
+bool has_cost(const std::vector<Guaranteed>& all);
 /// Explains these lines at the end of a report.
-std::string note_on_other_errors(bool by_group);
+std::string note_on_other_errors(bool by_group, bool has_cost);
 
 /// Warns of a guarantee that holds and is empty, or whose monitor is wrong on most variants.
 void warn_of_empty(const check::Model& model, const Guaranteed& of, const OtherError& error,

@@ -14,9 +14,23 @@ namespace etlc::calibrate {
 namespace {
 
 using episodes::Label;
+using Open = Guaranteed::Open;
 
 /// A byte of a track for a boolean input.
 enum class Flag : char { missing, no, yes };
+
+// A byte of a track for a label, and for the label as recorded.
+constexpr unsigned kRecorded = 2;
+char byte_of(Label label, Label recorded) {
+    return static_cast<char>(static_cast<unsigned>(label) | static_cast<unsigned>(recorded)
+                                                                << kRecorded);
+}
+Label label_in(char byte) {
+    return static_cast<Label>(static_cast<unsigned>(byte) & 3U);
+}
+Label recorded_in(char byte) {
+    return static_cast<Label>(static_cast<unsigned>(byte) >> kRecorded);
+}
 
 void set(execute::Sample& sample, bool present, float value) {
     sample.present = present;
@@ -70,6 +84,28 @@ check::Model replayed(const check::Model& model, const std::vector<Guaranteed>& 
 
 }  // namespace
 
+std::vector<Guaranteed> guaranteed(const check::Model& model, bool as_a_whole) {
+    using Kind = check::Claim::Kind;
+    std::vector<Guaranteed> found;
+    for (Index m = 0; m < model.monitors.size(); ++m) {
+        const check::Monitor& monitor = model.monitors[m];
+        if (monitor.calibration.has_value() != as_a_whole) continue;
+        for (const check::Claim& claim : check::claims(model, monitor)) {
+            const Kind kind = claim.kind;
+            if (kind == Kind::nothing || kind == Kind::exact || kind == Kind::wrong) continue;
+            const bool of_alarms = kind == Kind::missed_alarm || kind == Kind::satisfied_wrongly ||
+                                   kind == Kind::satisfied_share;
+            const bool again = !found.empty() && found.back().monitor == m &&
+                               found.back().claim.part == claim.part;
+            if (again)
+                found.back().open = Open::unknown;
+            else
+                found.push_back({m, claim, of_alarms ? Open::violated : Open::satisfied});
+        }
+    }
+    return found;
+}
+
 Watched watched_by(const check::Model& model, const std::vector<Guaranteed>& all,
                    const std::vector<Index>& labelled, const std::vector<Index>& in_all) {
     if (all.empty()) return {};
@@ -97,14 +133,17 @@ Watched watched_by(const check::Model& model, const std::vector<Guaranteed>& all
 }
 
 void add_step(const Watched& watched, const execute::Evaluator& measured,
-              const episodes::Frames& recording, bool is_divided, std::string& track) {
+              const episodes::Recording& recording, bool is_divided, std::string& track) {
     for (const Index p : watched.predicates) {
         const float delta = measured.distance(p);
         char bytes[sizeof delta];
         std::memcpy(bytes, &delta, sizeof delta);
         track.append(bytes, sizeof bytes);
     }
-    for (const Index p : watched.labelled) track += static_cast<char>(recording.label(p));
+    const auto add = [&](Index p) {
+        track += byte_of(recording.label(p), recording.recorded_label(p));
+    };
+    for (const Index p : watched.labelled) add(p);
     for (const Index f : watched.flags) {
         const execute::Sample& sample = recording.samples()[f];
         const bool is_there = sample.present && !sample.values.empty();
@@ -112,14 +151,14 @@ void add_step(const Watched& watched, const execute::Evaluator& measured,
         track += static_cast<char>(!is_there ? Flag::missing : holds ? Flag::yes : Flag::no);
     }
     for (const Index p : watched.dividing)
-        track += static_cast<char>(is_divided ? recording.label(p) : Label::unknown);
+        is_divided ? add(p) : track.push_back(byte_of(Label::unknown, Label::unknown));
 }
 
 namespace {
 
 using episodes::label_of;
 
-/// Returns the labels of each labelled predicate over the steps of a track.
+/// Returns the recorded labels of each labelled predicate over the steps of a track.
 std::vector<std::vector<Label>> labels_in(const Watched& watched, const std::string& track) {
     std::vector<std::size_t> places;
     std::size_t at = sizeof(float) * watched.predicates.size();
@@ -129,7 +168,7 @@ std::vector<std::vector<Label>> labels_in(const Watched& watched, const std::str
     std::vector<std::vector<Label>> labels(places.size());
     for (std::size_t i = 0; i < places.size(); ++i)
         for (std::size_t step = 0; step < track.size(); step += watched.step_size())
-            labels[i].push_back(static_cast<Label>(track[step + places[i]]));
+            labels[i].push_back(recorded_in(track[step + places[i]]));
     return labels;
 }
 
@@ -155,7 +194,7 @@ public:
             at += sizeof(float);
             set(samples_[input++], !std::isnan(of_.measured_[p]), 0);
         }
-        for (const Index p : of_.watched_.labelled) labels_[p] = static_cast<Label>(track_[at++]);
+        for (const Index p : of_.watched_.labelled) labels_[p] = label_in(track_[at++]);
         for (const Index f : of_.watched_.flags) {
             const auto flag = static_cast<Flag>(track_[at++]);
             set(samples_[f], flag != Flag::missing, flag == Flag::yes ? 1.0F : 0.0F);
@@ -203,7 +242,8 @@ Replayer::Replayer(const check::Model& model, std::vector<Guaranteed> all, Watch
       truths_(truth_plan_.plan, &truth_),
       measured_(model.predicates.size()) {
     monitors_.evaluator().replace_predicate_values([this](Index p) {
-        return plan::value_of(model_.predicates[p], measured_[p], thresholds_->predicates[p],
+        const auto& [value, inner] = thresholds_->predicates[p];
+        return plan::value_of(model_.predicates[p], measured_[p], value, inner,
                               check::Values::robustness);
     });
     truths_.evaluator().replace_predicate_values([this](Index p) {
@@ -244,8 +284,11 @@ std::vector<Broken> Replayer::replay_variants(const std::string& track,
 void Replayer::run(episodes::Frames& steps, const Thresholds& thresholds,
                    const episodes::AfterStep& after_step) {
     thresholds_ = &thresholds;
-    for (plan::Monitor& monitor : monitor_plan_.plan.monitors)
-        if (monitor.shifted) monitor.shift = thresholds.shifts[monitor.index];
+    for (plan::Monitor& monitor : monitor_plan_.plan.monitors) {
+        if (!monitor.shifted) continue;
+        monitor.shift = thresholds.shifts[monitor.index].value;
+        monitor.inner_shift = thresholds.shifts[monitor.index].inner;
+    }
     episodes::replay(steps, {&monitors_, &truths_}, after_step, after_step);
 }
 
@@ -262,6 +305,8 @@ void Replayer::note(std::vector<Said>& said) {
         const etlmon::Verdict& says = monitors_.verdict(m);
         const etlmon::Verdict& is = truths_.verdict(m);
         follow(m);
+        ++said[m].all;
+        said[m].unknown += says.unknown() ? 1 : 0;
         if (is.unknown()) continue;
         ++said[m].steps;
         said[m].satisfied += says.satisfied() ? 1 : 0;

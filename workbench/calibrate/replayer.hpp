@@ -1,6 +1,7 @@
 // Replays recorded episodes against monitors with other thresholds, without reading them again. A
 // track holds what the formulas see of each step, so no distance is measured twice: 4 bytes for
-// each predicate, and one for each label and boolean input. A broken variant of an episode is its
+// each predicate, and one for each label (as recorded, and as it counts near a change) and boolean
+// input. A broken variant of an episode is its
 // track with the steps in another order.
 #pragma once
 
@@ -10,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "check/guarantees/conformal.hpp"
 #include "check/guarantees/guarantees.hpp"
 #include "compile.hpp"
 #include "episodes/recording.hpp"
@@ -23,10 +25,16 @@ using check::Index;
 /// A monitor with a guarantee, for its whole formula or for a conjunct.
 struct Guaranteed {
     Index monitor = 0;
-    check::Claim claim;  ///< missed_success or missed_alarm
-
-    bool misses_success() const { return claim.kind == check::Claim::Kind::missed_success; }
+    check::Claim claim;
+    /// The error that the guarantee leaves open: a verdict that is satisfied wrongly, or violated
+    /// wrongly; if both are bounded, one that is unknown.
+    enum class Open : std::uint8_t { satisfied, violated, unknown };
+    Open open = Open::satisfied;
 };
+
+/// Returns the guarantees for the errors of monitors, of each formula or conjunct once: of those
+/// that are calibrated as a whole, or of the others.
+std::vector<Guaranteed> guaranteed(const check::Model& model, bool as_a_whole);
 
 /// The parts of a step that a track holds.
 struct Watched {
@@ -47,10 +55,12 @@ Watched watched_by(const check::Model& model, const std::vector<Guaranteed>& all
 
 /// Appends a step to the track. `is_divided`: the episode has the labels that only divide it.
 void add_step(const Watched& watched, const execute::Evaluator& measured,
-              const episodes::Frames& recording, bool is_divided, std::string& track);
+              const episodes::Recording& recording, bool is_divided, std::string& track);
 
 /// The verdicts of a monitor and of its truth over the steps of an episode whose truth is known.
 struct Said {
+    std::uint64_t all = 0;      ///< steps, of open truth too
+    std::uint64_t unknown = 0;  ///< of all
     std::uint64_t steps = 0;
     std::uint64_t satisfied = 0;  ///< according to the monitor
     std::uint64_t violated = 0;
@@ -78,8 +88,8 @@ struct Broken {
 
 /// The thresholds of an episode.
 struct Thresholds {
-    std::vector<float> predicates;  ///< by index in the model
-    std::vector<float> shifts;      ///< per guarantee; read for monitors calibrated as a whole
+    std::vector<check::Both> predicates;  ///< by index in the model
+    std::vector<check::Both> shifts;  ///< per guarantee; read for monitors calibrated as a whole
 };
 
 /// Replays one episode after the other, on one thread.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
 
 #include "calibrate/calibrate.hpp"
 #include "calibrate/fit.hpp"
@@ -24,6 +26,39 @@ using check::Claim;
 using check::ThresholdOrigin;
 using diag::counted;
 
+/// Returns the truth of the frames at which the error can happen, and what it says there.
+const char* true_word(const Subject& of, const Aim& aim) {
+    if (of.is_monitor) return aim.of_positives ? "satisfied" : "violated";
+    return aim.of_positives ? "true" : "false";
+}
+const char* wrong_word(const Subject& of, Aim aim) {
+    aim.of_positives = !aim.of_positives;
+    return true_word(of, aim);
+}
+
+/// Returns "alpha = 0.1 needs at least 9 demonstrations in which 'p' is true at some frame; there
+/// are 5".
+std::string needed(const Subject& of, const Aim& aim, std::uint64_t n) {
+    const bool by_frame = of.predicate.threshold.origin == ThresholdOrigin::class_conditional;
+    return fmt::format(
+        "{} = {} needs at least {}{}; there {} {}", aim.rate_name, aim.rate,
+        counted(check::scores_needed(aim.rate), by_frame ? "positive frame" : of.noun()),
+        by_frame ? "" : of.which(aim), n == 1 ? "is" : "are", n);
+}
+
+/// Returns what a threshold against false positives, or both errors, promises.
+std::string promise(const check::Predicate& predicate) {
+    std::string text;
+    for (const Aim& aim : aims_of(predicate))
+        text +=
+            fmt::format("{}no {} frame is called {} with probability >= 1 - {}",
+                        text.empty() ? "" : ", and ", aim.of_positives ? "positive" : "negative",
+                        aim.of_positives ? "false" : "true", aim.rate);
+    return fmt::format(
+        "{}\n    in a {}, {}", check::origin(predicate.threshold),
+        predicate.threshold.by_group ? "demonstration of a new group" : "new demonstration", text);
+}
+
 std::string how(const check::Predicate& predicate, const Fitted& fitted) {
     const check::Threshold& threshold = predicate.threshold;
     const char* const each = threshold.by_group ? "group" : "demonstration";
@@ -35,6 +70,7 @@ std::string how(const check::Predicate& predicate, const Fitted& fitted) {
             return fmt::format("f1: {:.4f} on the {} it was chosen on; no guarantee", fitted.f1,
                                counted(fitted.n, "labelled frame"));
         case ThresholdOrigin::conformal:
+            if (threshold.against != check::Against::misses) return promise(predicate);
             return fmt::format(
                 "conformal, alpha = {}: {}\n"
                 "    {} is covered with probability >= 1 - {}; given these {}, with {:.3f} to "
@@ -61,35 +97,36 @@ std::string how(const check::Predicate& predicate, const Fitted& fitted) {
                 threshold.alpha, moves.gamma, moves.lo, moves.hi, place(each),
                 check::miss_bound(predicate));
         }
+        case ThresholdOrigin::risk: return check::origin(threshold);
         case ThresholdOrigin::literal: break;
     }
     return "";
 }
 
 std::string predicate_report(const check::Model& model, Index index, const Evidence& evidence,
-                             const Fitted& fitted, const OtherError& other) {
+                             const Sides& sides, const OtherError& other) {
     const check::Predicate& predicate = model.predicates[index];
-    std::string text =
-        fmt::format("\n{}: {}{:.9g}\n    {}\n    labels: {} frames positive, {} negative",
-                    predicate.name, predicate.text, predicate.threshold.value,
-                    how(predicate, fitted), evidence.positives, evidence.negatives);
+    const check::Threshold& threshold = predicate.threshold;
+    std::string text = fmt::format(
+        "\n{}: {}{}\n    {}\n    labels: {} frames positive, {} negative", predicate.name,
+        predicate.text,
+        threshold.inner ? check::numbers(threshold) : fmt::format("{:.9g}", threshold.value),
+        how(predicate, sides.front()), evidence.positives.frames, evidence.negatives.frames);
     if (evidence.unlabelled > 0)
-        text += fmt::format(", {} unknown and left out", evidence.unlabelled);
+        text += fmt::format(", {} unknown{} and left out", evidence.unlabelled,
+                            threshold.within > 0 ? " or near a change" : "");
     text += '\n';
     if (evidence.from_array > 0)
         text += fmt::format(
             "    labels of {} of {} come from an array truth.{} or a table, not from a truth "
             "in the spec\n",
             evidence.from_array, counted(evidence.demonstrations, "demonstration"), predicate.name);
-    const bool by_demonstration =
-        predicate.threshold.origin == ThresholdOrigin::conformal || predicate.threshold.adaptation;
-    if (by_demonstration && evidence.without_score > 0)
-        text += fmt::format("    {} without a positive frame left out\n",
-                            counted(evidence.without_score, "demonstration"));
+    text += describe_sides({predicate, evidence, false, threshold.by_group}, sides);
     if (evidence.unmeasured > 0)
-        text += fmt::format("    {} of unknown distance skipped\n",
-                            counted(evidence.unmeasured, "labelled frame"));
-    return text + "    " + describe(other);
+        text += fmt::format("    {} of unknown distance {}\n",
+                            counted(evidence.unmeasured, "labelled frame"),
+                            threshold.origin == ThresholdOrigin::risk ? "counted" : "skipped");
+    return text + "    " + describe(other, threshold.against);
 }
 
 std::string monitor_report(const check::Model& model, const Others& others, bool by_group) {
@@ -98,20 +135,35 @@ std::string monitor_report(const check::Model& model, const Others& others, bool
         widest = std::max(widest, monitor.name.size());
     std::string text = "\nguarantees\n";
     bool zero_aside = false;
+    bool of_successes = false;
+    bool of_both = false;
+    const bool with_cost = has_cost(others.guarantees) ||
+                           std::any_of(model.predicates.begin(), model.predicates.end(),
+                                       [](const check::Predicate& p) {
+                                           return p.threshold.against == check::Against::both;
+                                       });
     std::size_t next = 0;  // guarantees are in this order
     for (const check::Monitor& monitor : model.monitors) {
         if (monitor.calibration) continue;  // its own calibration comes later
-        for (const Claim& claim : check::claims(model, monitor)) {
+        const std::vector<Claim> claims = check::claims(model, monitor);
+        for (std::size_t c = 0; c < claims.size(); ++c) {
+            const Claim& claim = claims[c];
             zero_aside |= claim.zero_aside;
+            of_successes |= claim.kind == Claim::Kind::missed_success;
+            of_both |= claim.kind == Claim::Kind::satisfied_wrongly ||
+                       claim.kind == Claim::Kind::violated_wrongly;
             if (claim.part.empty())
-                text += fmt::format("    {:<{}}  {}\n", monitor.name, widest, check::text(claim));
+                text += fmt::format("    {:<{}}  {}\n", c == 0 ? monitor.name : "", widest,
+                                    check::text(claim));
             else
                 text += fmt::format("    {:<{}}  of its part {}: {}\n", "", widest, claim.part,
                                     check::text(claim));
             const bool is_next = next < others.guarantees.size() &&
                                  &model.monitors[others.guarantees[next].monitor] == &monitor &&
                                  others.guarantees[next].claim.part == claim.part;
-            if (!is_next) continue;
+            // The lines of one formula come first.
+            const bool is_last = c + 1 == claims.size() || claims[c + 1].part != claim.part;
+            if (!is_next || !is_last) continue;
             text += describe(others.by_guarantee[next], others.guarantees[next],
                              std::string(widest + 6, ' '));
             ++next;
@@ -128,11 +180,49 @@ std::string monitor_report(const check::Model& model, const Others& others, bool
                      : "    Probabilities are over the demonstrations and the new episode "
                        "together, which "
                        "must be exchangeable, per episode as recorded.\n") +
-           "    Bounds on successes exclude steps with missing samples.\n" +
-           note_on_other_errors(by_group);
+           (of_successes || !of_both
+                ? "    Bounds on successes exclude steps with missing samples.\n"
+                : "") +
+           note_on_other_errors(by_group, with_cost);
 }
 
 }  // namespace
+
+std::string describe_sides(const Subject& of, const Sides& sides) {
+    const check::Threshold& threshold = of.predicate.threshold;
+    const bool by_risk = threshold.origin == ThresholdOrigin::risk;
+    std::string text;
+    const std::vector<Aim> aims = aims_of(of.predicate);
+    const bool by_episode =
+        by_risk || threshold.origin == ThresholdOrigin::conformal || threshold.adaptation;
+    for (std::size_t i = 0; by_episode && i < aims.size(); ++i) {
+        const Aim& aim = aims[i];
+        const Evidence::Side& side = of.evidence.side(aim.of_positives);
+        const Fitted& fitted = sides[i];
+        const std::string called = fmt::format("called {}", wrong_word(of, aim));
+        if (std::isinf(fitted.epsilon))
+            text += fmt::format("    never {}: {}\n", called, needed(of, aim, fitted.n));
+        else if (by_risk)
+            text += fmt::format(
+                "    {} at {:.1f} % of the {}s at which it is {}, on average over these {}s\n",
+                called,
+                100 * std::accumulate(fitted.losses.begin(), fitted.losses.end(), 0.0) /
+                    static_cast<double>(fitted.n),
+                of.unit(), true_word(of, aim), of.noun());
+        std::uint64_t left_out = side.without_score;
+        if (by_risk) left_out = of.evidence.demonstrations - side.episodes.size();
+        if (of.is_monitor) left_out = of.evidence.groups - fitted.n;
+        const std::string without =
+            !of.is_monitor     ? aim.of_positives ? "a positive frame" : "a negative frame"
+            : aims.size() == 1 ? "such a step"
+                               : fmt::format("a truly {} step", true_word(of, aim));
+        if (left_out > 0)
+            text += fmt::format("    {} without {} left out\n",
+                                counted(left_out, of.is_monitor ? of.noun() : "demonstration"),
+                                without);
+    }
+    return text;
+}
 
 std::string in_groups(const episodes::Groups& groups) {
     return groups.are_named() ? " in " + counted(groups.count(), "group") : "";
@@ -140,7 +230,7 @@ std::string in_groups(const episodes::Groups& groups) {
 
 std::string report(const check::Model& model, const std::vector<Index>& predicates,
                    const std::vector<Evidence>& evidence, const episodes::Groups& groups,
-                   std::uint64_t frames, const std::vector<Fitted>& fitted, const Others& others) {
+                   std::uint64_t frames, const std::vector<Sides>& fitted, const Others& others) {
     std::string text = fmt::format("{}{}, {}\n", counted(groups.episodes(), "demonstration"),
                                    in_groups(groups), counted(frames, "frame"));
     for (std::size_t i = 0; i < predicates.size(); ++i)
@@ -167,16 +257,23 @@ struct HeldOut {
     std::uint64_t false_alarms = 0;
     std::uint64_t misses = 0;
 
-    void add(float threshold) {
-        least = std::min(least, threshold);
-        greatest = std::max(greatest, threshold);
+    void add(const check::Both& both) {
+        for (const float threshold : {both.value, both.inner.value_or(both.value)}) {
+            least = std::min(least, threshold);
+            greatest = std::max(greatest, threshold);
+        }
     }
 
-    std::string text(const std::string& name, std::uint32_t folds, const char* what) const {
-        std::string text = fmt::format("    {}: ", name);
+    std::string text(const Subject& of, std::uint32_t folds) const {
+        const check::Threshold& threshold = of.predicate.threshold;
+        std::string text = fmt::format("    {}: ", of.predicate.name);
         if (least <= greatest)
-            text += fmt::format("{:.7g} to {:.7g}; held out, {} of {} miss nothing", least,
-                                greatest, covered, counted(groups, what));
+            text += fmt::format(
+                "{:.7g} to {:.7g}; held out, {} of {} {}", least, greatest, covered,
+                counted(groups, of.noun()),
+                is_against(threshold, true) && is_against(threshold, false) ? "have no error"
+                : is_against(threshold, true) || of.is_monitor              ? "miss nothing"
+                                                               : "have no false positive");
         if (const std::uint64_t frames = 2 * hits + false_alarms + misses; frames > 0)
             text += fmt::format(", F1 of the frames {:.3f}",
                                 2 * static_cast<double>(hits) / static_cast<double>(frames));
@@ -192,105 +289,90 @@ std::string heading(std::uint32_t folds) {
                        folds);
 }
 
-/// Adds the results of the threshold in the groups of the fold that it was fitted without.
-void judge(const check::Predicate& predicate, float threshold, const Evidence& evidence,
-           const Counts& in_fold, HeldOut& result) {
-    struct Positives {
-        std::uint64_t hits = 0;
-        std::uint64_t misses = 0;
+/// Adds the results of the thresholds in the groups of the fold that they were fitted without.
+void judge_frames(const check::Predicate& predicate, const check::Both& both,
+                  const Evidence& evidence, const Counts& in_fold, HeldOut& result) {
+    struct Found {
+        std::uint64_t frames = 0;  ///< at which an error that it is against can happen
+        std::uint64_t errors = 0;
     };
-    std::vector<Positives> found(evidence.groups);
+    std::vector<Found> found(evidence.groups);
     evidence.labelled.for_each([&](const episodes::Scored& frame) {
         if (!in_fold(frame.episode)) return;
         const float delta = predicate.upper_bound() ? frame.score : -frame.score;
-        const bool holds = check::holds(predicate.comparison, delta, threshold);
-        if (frame.positive)
-            ++(holds ? found[frame.episode].hits : found[frame.episode].misses);
-        else
-            result.false_alarms += holds ? 1 : 0;
+        const bool is_true =
+            check::holds(predicate.comparison, delta, both.inner.value_or(both.value));
+        const bool is_false = !check::holds(predicate.comparison, delta, both.value);
+        result.hits += frame.positive && is_true ? 1 : 0;
+        result.misses += frame.positive && is_false ? 1 : 0;
+        result.false_alarms += !frame.positive && is_true ? 1 : 0;
+        if (!is_against(predicate.threshold, frame.positive)) return;
+        ++found[frame.episode].frames;
+        found[frame.episode].errors += (frame.positive ? is_false : is_true) ? 1 : 0;
     });
-    for (const auto& [hits, misses] : found) {
-        result.hits += hits;
-        result.misses += misses;
-        if (hits + misses == 0) continue;
-        ++result.groups;
-        result.covered += misses == 0 ? 1 : 0;
+    for (const auto& [frames, errors] : found) {
+        result.groups += frames > 0 ? 1 : 0;
+        result.covered += frames > 0 && errors == 0 ? 1 : 0;
     }
 }
 
-/// Calls `judge_fold(fold, fitted, result)` with the fit that `fit_others(fold)` returns for each.
-template <class FitOthers, class Judge>
-HeldOut held_out(std::uint32_t folds, const FitOthers& fit_others, const Judge& judge_fold) {
+/// The same of a monitor, by its worst scores.
+void judge_worst(const std::vector<Aim>& aims, const Sides& sides, const Evidence& evidence,
+                 const Counts& in_fold, HeldOut& result) {
+    std::map<std::uint32_t, bool> covered;
+    for (std::size_t i = 0; i < aims.size(); ++i) {
+        const auto beyond = static_cast<double>(sides[i].epsilon);
+        for (const auto& [reach, group, episode] : evidence.side(aims[i].of_positives).worst) {
+            if (!in_fold(group)) continue;
+            const bool is_within = reach < (aims[i].above ? beyond : -beyond);
+            covered.emplace(group, true).first->second &= is_within;
+        }
+    }
+    for (const auto& [group, is_covered] : covered) {
+        ++result.groups;
+        result.covered += is_covered ? 1 : 0;
+    }
+}
+
+HeldOut held_out(const Subject& of, const std::vector<std::uint32_t>& fold_of,
+                 std::uint32_t folds) {
     HeldOut result;
+    const check::Predicate& predicate = of.predicate;
+    const std::vector<Aim> aims = aims_of(predicate);
     for (std::uint32_t fold = 0; fold < folds; ++fold) {
-        Fit found = fit_others(fold);
-        if (auto* fitted = std::get_if<Fitted>(&found))
-            judge_fold(fold, *fitted, result);
-        else
+        const auto in_fold = [&](std::uint32_t g) { return fold_of[g] == fold; };
+        Sides sides;
+        for (const Aim& aim : aims) {
+            const Fit found =
+                fit(predicate, aim, of.evidence, [&](std::uint32_t g) { return !in_fold(g); });
+            if (const auto* fitted = std::get_if<Fitted>(&found)) sides.push_back(*fitted);
+        }
+        if (sides.size() < aims.size()) {
             ++result.without_threshold;
+            continue;
+        }
+        check::Both both = joined(predicate, sides);
+        if (const auto& moves = predicate.threshold.adaptation)
+            both.value = *check::start(*moves, both.value, predicate.upper_bound());
+        result.add(both);
+        if (of.is_monitor)
+            judge_worst(aims, sides, of.evidence, in_fold, result);
+        else
+            judge_frames(predicate, both, of.evidence, in_fold, result);
     }
     return result;
 }
 
 }  // namespace
 
-std::string report_of_folds(const check::Model& model, const std::vector<Index>& predicates,
-                            const std::vector<Evidence>& evidence,
+std::string report_of_folds(const std::vector<Subject>& subjects,
                             const episodes::Identities& episodes, const episodes::Groups& groups,
                             std::uint32_t folds) {
     if (folds == 0) return "";
     const auto fold_of = episodes::folds_of(episodes, groups, folds);
     std::string text = heading(folds);
-    for (std::size_t i = 0; i < predicates.size(); ++i) {
-        const check::Predicate& predicate = model.predicates[predicates[i]];
-        const auto fit_others = [&](std::uint32_t fold) {
-            return fit(predicate, evidence[i], [&](std::uint32_t g) { return fold_of[g] != fold; });
-        };
-        const auto judge_fold = [&](std::uint32_t fold, const Fitted& fitted, HeldOut& result) {
-            const auto& moves = predicate.threshold.adaptation;
-            const float threshold =
-                moves ? *check::start(*moves, fitted.epsilon, predicate.upper_bound())
-                      : fitted.epsilon;
-            result.add(threshold);
-            const auto in_fold = [&](std::uint32_t g) { return fold_of[g] == fold; };
-            judge(predicate, threshold, evidence[i], in_fold, result);
-        };
-        text += held_out(folds, fit_others, judge_fold)
-                    .text(predicate.name, folds, groups.are_named() ? "group" : "demonstration");
-    }
-    return text;
-}
-
-std::string report_of_folds(const check::Model& model, const std::vector<Index>& monitors,
-                            const std::vector<MonitorScores>& scores,
-                            const episodes::Identities& episodes, const episodes::Groups& groups,
-                            std::uint32_t folds) {
-    if (folds == 0) return "";
-    const auto fold_of = episodes::folds_of(episodes, groups, folds);
-    std::string text = heading(folds);
-    for (std::size_t i = 0; i < monitors.size(); ++i) {
-        const check::Monitor& monitor = model.monitors[monitors[i]];
-        const auto fit_others = [&](std::uint32_t fold) {
-            std::vector<double> others;
-            for (std::size_t g = 0; g < scores.size(); ++g)
-                if (fold_of[g] != fold && scores[g][i].steps > 0)
-                    others.push_back(scores[g][i].worst);
-            return fit_rank(std::move(others), monitor.calibration->threshold.alpha);
-        };
-        const auto judge_fold = [&](std::uint32_t fold, Fitted& fitted, HeldOut& result) {
-            const auto beyond = static_cast<double>(fitted.epsilon);
-            mirror(fitted, monitor.calibration->against == check::Against::missed_alarm);
-            result.add(fitted.epsilon);
-            for (std::size_t g = 0; g < scores.size(); ++g) {
-                const MonitorScore& score = scores[g][i];
-                if (fold_of[g] != fold || score.steps == 0) continue;
-                ++result.groups;
-                result.covered += score.worst < beyond ? 1 : 0;
-            }
-        };
-        text += held_out(folds, fit_others, judge_fold)
-                    .text(monitor.name, folds, groups.are_named() ? "group" : "episode");
-    }
+    for (const Subject& subject : subjects)
+        text += held_out(subject, fold_of, folds).text(subject, folds);
     return text;
 }
 
@@ -299,71 +381,152 @@ std::string report_of_folds(const check::Model& model, const std::vector<Index>&
 
 namespace {
 
-/// Returns the share of the negative frames that the threshold takes for positive, or 0 without
-/// any.
-double false_part(const check::Predicate& predicate, const Evidence& evidence,
-                  const Fitted& fitted) {
-    const float epsilon = predicate.upper_bound() ? fitted.epsilon : -fitted.epsilon;
-    std::uint64_t within = 0;
+/// Returns the share of the frames of the opposite label at which the predicate is `said`, or 0
+/// without any.
+double wrong_part(const check::Predicate& predicate, const Evidence& evidence, float threshold,
+                  bool said) {
+    std::uint64_t all = 0;
+    std::uint64_t wrong = 0;
     evidence.labelled.for_each([&](const episodes::Scored& frame) {
-        const bool holds = frame.score < epsilon || (!predicate.strict() && frame.score == epsilon);
-        within += holds && !frame.positive ? 1 : 0;
+        if (frame.positive == said) return;
+        const float delta = predicate.upper_bound() ? frame.score : -frame.score;
+        ++all;
+        wrong += check::holds(predicate.comparison, delta, threshold) == said ? 1 : 0;
     });
-    const auto negatives = static_cast<double>(evidence.labelled.negatives());
-    return negatives == 0 ? 0 : static_cast<double>(within) / negatives;
+    return all == 0 ? 0 : static_cast<double>(wrong) / static_cast<double>(all);
 }
 
 }  // namespace
 
-void refuse_too_few(const check::Threshold& threshold, const TooFew& found, diag::Sink& sink) {
-    auto& error =
-        sink.report(diag::Code::too_few_scores, threshold.span,
-                    fmt::format("alpha = {} needs at least {}{}; there {} {}", threshold.alpha,
-                                diag::counted(check::scores_needed(threshold.alpha), found.noun),
-                                found.which, found.scores == 1 ? "is" : "are", found.scores));
-    if (!found.in_groups.empty())
-        error.note(
-            fmt::format("{} are in {}, and the episodes of a group count once, with the "
-                        "worst of them",
-                        found.in_groups, diag::counted(found.all, found.noun)));
-    if (found.all <= found.scores) return;
-    const std::uint64_t left_out = found.all - found.scores;
-    error.note(fmt::format("of {}, {} without such a {} {} left out",
-                           diag::counted(found.all, found.noun), left_out, found.unit,
-                           left_out == 1 ? "is" : "are"));
+std::string Subject::which(const Aim& aim) const {
+    return fmt::format(" in which {}'{}' is {} at some {}",
+                       is_monitor ? "the ground truth of " : "", predicate.name,
+                       true_word(*this, aim), unit());
 }
 
-void refuse_infinite(const std::string& name, const check::Threshold& threshold, const char* what,
-                     diag::Sink& sink) {
-    sink.report(diag::Code::no_threshold, threshold.span,
-                fmt::format("the score of '{}' at the rank of alpha = {} is infinite: no {} lies "
-                            "beyond it",
-                            name, threshold.alpha, what));
-}
+namespace {
 
-void warn_of_large_alpha(const std::string& name, const check::Threshold& threshold,
+void refuse_without_case(const check::Model& model, const Subject& of, const Aim& aim,
                          diag::Sink& sink) {
-    using check::Decimal;
-    if (threshold.alpha.empty() || !(Decimal::parse("0.5") < Decimal::parse(threshold.alpha)))
-        return;
-    episodes::warn_of_data(
-        diag::Code::large_alpha,
-        fmt::format("alpha = {} of '{}' allows more than half to be missed", threshold.alpha, name),
-        threshold.span, sink)
-        .note(check::large_alpha_note(threshold.alpha));
+    const check::Predicate& p = of.predicate;
+    const std::uint64_t frames = of.evidence.side(aim.of_positives).frames;
+    const std::string all =
+        counted(of.evidence.demonstrations, of.is_monitor ? "episode" : "demonstration");
+    const char* const word = true_word(of, aim);
+    const std::string at = counted(frames, of.unit());
+    std::string message;
+    if (frames == 0)
+        message =
+            fmt::format("{}'{}' is {} at no {} of {}, so there is nothing to learn its {} from",
+                        of.is_monitor ? "the ground truth of " : "", p.name, word, of.unit(), all,
+                        of.is_monitor ? "shift" : "threshold");
+    else if (of.is_monitor)
+        message = fmt::format(
+            "whatever its shift, '{}' is {} at none of the {} at which its ground truth is {}, in "
+            "{}",
+            p.name, wrong_word(of, aim), at, word, all);
+    else
+        message = fmt::format("the distance of '{}' is unknown at all {} where it is {}, in {}",
+                              p.name, at, word, all);
+    auto& error = sink.report(diag::Code::no_positive_frame, p.threshold.span, std::move(message));
+    if (p.threshold.within > 0 && of.evidence.unlabelled > 0)
+        error.note(fmt::format("its truth is open at {}, most of them within {} of a change",
+                               counted(of.evidence.unlabelled, of.unit()),
+                               counted(p.threshold.within, "step")));
+    for (const check::Truth& truth : model.truths)
+        if (!of.is_monitor && &model.predicates[truth.predicate] == &p)
+            error.note(truth.span, "its truth is here");
 }
 
-void warn_of_doubts(const check::Predicate& predicate, const Evidence& evidence,
-                    const Fitted& fitted, diag::Sink& sink) {
+void refuse_too_few(const Subject& of, const Aim& aim, diag::Sink& sink) {
+    const bool by_frame = of.predicate.threshold.origin == ThresholdOrigin::class_conditional;
+    const Evidence::Side& side = of.evidence.side(aim.of_positives);
+    const bool by_risk = of.predicate.threshold.origin == ThresholdOrigin::risk;
+    const std::uint64_t scores = by_frame  ? side.reaches.size()
+                                 : by_risk ? losses_beyond(side, 0, kAll).size()
+                                           : side.worst.size();
+    auto& error = sink.report(diag::Code::too_few_scores, of.predicate.threshold.span,
+                              needed(of, aim, scores));
+    if (by_frame) return;
+    const std::uint64_t groups = of.evidence.groups;
+    if (of.by_group)
+        error.note(fmt::format(
+            "{} are in {}, and the episodes of a group count once, with the worst of them",
+            counted(of.evidence.demonstrations, of.is_monitor ? "episode" : "demonstration"),
+            counted(groups, of.noun())));
+    if (groups <= scores) return;
+    error.note(fmt::format("of {}, {} without such a {} {} left out", counted(groups, of.noun()),
+                           groups - scores, of.unit(), groups - scores == 1 ? "is" : "are"));
+}
+
+}  // namespace
+
+void refuse(const check::Model& model, const Subject& of, const Aim& aim, Refusal refusal,
+            diag::Sink& sink) {
+    const check::Predicate& p = of.predicate;
+    const auto report = [&](std::string message) {
+        sink.report(diag::Code::no_threshold, p.threshold.span, std::move(message));
+    };
+    if (refusal == Refusal::no_positives || of.evidence.side(aim.of_positives).frames == 0)
+        return refuse_without_case(model, of, aim, sink);
+    switch (refusal) {
+        case Refusal::too_few: return refuse_too_few(of, aim, sink);
+        case Refusal::no_f1:
+            return report(
+                fmt::format("no observed value as threshold of '{}' finds a positive frame; it "
+                            "has {}",
+                            p.name, counted(of.evidence.positives.frames, "positive frame")));
+        case Refusal::always_lost:
+            return report(fmt::format(
+                "whatever its threshold, '{}' is {} at too many of the {}s at which it is {}, "
+                "because its samples are missing there: on average over the {}s more than {} = {} "
+                "allows",
+                p.name, wrong_word(of, aim), of.unit(), true_word(of, aim), of.noun(),
+                aim.rate_name, aim.rate));
+        default:
+            return report(fmt::format(
+                "the score of '{}' at the rank of {} = {} is infinite: no {} "
+                "lies beyond it",
+                p.name, aim.rate_name, aim.rate, of.is_monitor ? "shift" : "threshold"));
+    }
+}
+
+void refuse_both(const Subject& of, diag::Sink& sink) {
+    auto& error = sink.report(
+        diag::Code::too_few_scores, of.predicate.threshold.span,
+        fmt::format("'{}' would always be unknown: both its thresholds are infinite, because there "
+                    "are too few {}s",
+                    of.predicate.name, of.noun()));
+    for (const Aim& aim : aims_of(of.predicate))
+        error.note(needed(of, aim, of.evidence.side(aim.of_positives).worst.size()));
+}
+
+void warn_of_large_alpha(const check::Predicate& predicate, diag::Sink& sink) {
+    using check::Decimal;
+    for (const Aim& aim : aims_of(predicate)) {
+        if (aim.rate.empty() || !(Decimal::parse("0.5") < Decimal::parse(aim.rate))) continue;
+        episodes::warn_of_data(
+            diag::Code::large_alpha,
+            fmt::format("{} = {} of '{}' allows more than half to be {}", aim.rate_name, aim.rate,
+                        predicate.name, aim.of_positives ? "missed" : "false positives"),
+            predicate.threshold.span, sink)
+            .note(check::large_alpha_note(aim.rate, aim.rate_name));
+        return;
+    }
+}
+
+void warn_of_doubts(const check::Predicate& predicate, const Evidence& evidence, float epsilon,
+                    diag::Sink& sink) {
     constexpr double kNearlyEvery = 0.95;
-    warn_of_large_alpha(predicate.name, predicate.threshold, sink);
+    warn_of_large_alpha(predicate, sink);
     const auto warn = [&](std::string message) -> diag::Diagnostic& {
         return episodes::warn_of_data(diag::Code::doubtful_threshold, std::move(message),
                                       predicate.threshold.span, sink);
     };
     const auto ranked =
         episodes::auroc(evidence.labelled, evidence.groups, episodes::Likely::smaller);
-    if (episodes::warn_of_labels(predicate, {evidence.positives, evidence.negatives}, ranked, sink))
+    if (episodes::warn_of_labels(predicate, {evidence.positives.frames, evidence.negatives.frames},
+                                 ranked, sink))
         return;
     if (ranked && ranked->interval && ranked->interval->low <= 0.5) {
         warn(fmt::format("what '{}' measures does not tell its labels apart: the area under the "
@@ -373,11 +536,12 @@ void warn_of_doubts(const check::Predicate& predicate, const Evidence& evidence,
             .note("0.5 is chance: check the labels, the embedding and the targets");
         return;
     }
-    const double part = false_part(predicate, evidence, fitted);
+    if (predicate.threshold.against == check::Against::both) return;
+    const bool wrongly = is_against(predicate.threshold, true);  // what it is not against
+    const double part = wrong_part(predicate, evidence, epsilon, wrongly);
     if (part < kNearlyEvery) return;
-    warn(fmt::format("with the threshold {:.9g}, '{}' is true at {:.0f} % of the frames labelled "
-                     "false",
-                     fitted.epsilon, predicate.name, std::floor(100 * part)))
+    warn(fmt::format("with the threshold {:.9g}, '{}' is {} at {:.0f} % of the frames labelled {}",
+                     epsilon, predicate.name, wrongly, std::floor(100 * part), !wrongly))
         .note("a weaker guarantee, more targets or other labels may make it narrower");
 }
 

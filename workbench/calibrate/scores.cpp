@@ -12,29 +12,50 @@ namespace etlc::calibrate {
 using check::ThresholdOrigin;
 using episodes::Label;
 
-void Evidence::add(const Scores& scores, std::uint32_t group) {
+void SideScores::add(double reach, bool keep) {
+    worst_reach = has_score ? std::max(worst_reach, reach) : reach;
+    has_score = true;
+    if (keep) reaches.push_back(reach);
+}
+
+void Evidence::Side::add(const SideScores& scores, std::uint32_t group) {
     constexpr std::uint32_t kNowhere = UINT32_MAX;
-    if (group == groups) {
-        ++groups;
-        place_.push_back(kNowhere);
-    }
-    ++demonstrations;
-    from_array += scores.from_array ? 1 : 0;
-    positives += scores.positives;
-    negatives += scores.negatives;
-    unlabelled += scores.unlabelled;
-    unmeasured += scores.unmeasured;
+    if (group >= places.size()) places.resize(group + std::size_t{1}, kNowhere);
+    frames += scores.frames;
     without_score += scores.has_score ? 0 : 1;
-    if (scores.has_score && place_[group] == kNowhere) {
-        place_[group] = static_cast<std::uint32_t>(worst.size());
+    if (scores.has_score && places[group] == kNowhere) {
+        places[group] = static_cast<std::uint32_t>(worst.size());
         worst.push_back({scores.worst_reach, group});
     } else if (scores.has_score) {
-        Reach& known = worst[place_[group]];
+        Reach& known = worst[places[group]];
         known.reach = std::max(known.reach, scores.worst_reach);
     }
-    for (const double reach : scores.reaches) reaches.add({reach, group});
+    const auto episode = static_cast<std::uint32_t>(episodes.size());
+    if (scores.frames > 0) episodes.push_back({group, scores.frames, scores.lost});
+    for (const double reach : scores.reaches) reaches.add({reach, group, episode});
+}
+
+void Evidence::add(const Scores& scores, std::uint32_t group) {
+    groups = std::max(groups, group + 1);
+    ++demonstrations;
+    from_array += scores.from_array ? 1 : 0;
+    unlabelled += scores.unlabelled;
+    unmeasured += scores.unmeasured;
+    positives.add(scores.positives, group);
+    negatives.add(scores.negatives, group);
     for (const Scores::Labelled& frame : scores.labelled)
         labelled.add({frame.score, group, frame.positive});
+}
+
+bool is_against(const check::Threshold& threshold, bool misses) {
+    const bool one = threshold.against == check::Against::misses ||
+                     threshold.against == check::Against::missed_success;
+    return threshold.against == check::Against::both || one == misses;
+}
+
+bool keeps_all(const check::Threshold& threshold) {
+    return threshold.origin == ThresholdOrigin::class_conditional ||
+           threshold.origin == ThresholdOrigin::risk;
 }
 
 namespace {
@@ -72,6 +93,8 @@ Scorer::Scorer(const check::Model& model, const episodes::Leaks& leaks,
         return std::find(wanted_.inputs.begin(), wanted_.inputs.end(), input) !=
                wanted_.inputs.end();
     });
+    wanted_.within.resize(model.predicates.size());
+    for (const Index p : predicates_) wanted_.within[p] = model.predicates[p].threshold.within;
     divided_ = wanted_;
     divided_.predicates = all_of(predicates_, watched_.dividing);
 }
@@ -111,21 +134,20 @@ void Scorer::add(Index predicate, Label label, Scores& scores) const {
         return;
     }
     const bool positive = label == Label::yes;
-    ++(positive ? scores.positives : scores.negatives);
+    const check::Predicate& p = model_.predicates[predicate];
+    SideScores& side = scores.side(positive);
+    ++side.frames;
     const float delta = measured_.evaluator().distance(predicate);
     if (std::isnan(delta)) {
         ++scores.unmeasured;
+        side.lost += p.missing && *p.missing != positive ? 1 : 0;
         return;
     }
-    const check::Predicate& p = model_.predicates[predicate];
     const float score = p.upper_bound() ? delta : -delta;
     scores.labelled.push_back({score, positive});
-    if (!positive || p.threshold.origin == ThresholdOrigin::f1) return;
+    if (!is_against(p.threshold, positive) || p.threshold.origin == ThresholdOrigin::f1) return;
     const Interval interval = *interval_of(model_, predicate, measured_.evaluator(), pasts_);
-    const double reach = p.upper_bound() ? interval.high : -interval.low;
-    scores.worst_reach = scores.has_score ? std::max(scores.worst_reach, reach) : reach;
-    scores.has_score = true;
-    if (p.threshold.origin == ThresholdOrigin::class_conditional) scores.reaches.push_back(reach);
+    side.add(p.upper_bound() == positive ? interval.high : -interval.low, keeps_all(p.threshold));
 }
 
 }  // namespace etlc::calibrate

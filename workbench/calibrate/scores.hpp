@@ -1,5 +1,5 @@
-// Nonconformity scores of the calibrated predicates. Distances come from the kernels that the
-// monitor uses. Memory is that of one frame and of a number per labelled frame.
+// Nonconformity scores of the calibrated predicates and monitors. Distances come from the kernels
+// that the monitor uses. Memory is that of one frame and of a number per labelled frame.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,40 @@
 
 namespace etlc::calibrate {
 
-/// Scores of a predicate in one demonstration, negated for >= and > so that smaller ones are
-/// better.
+/// The scores of an episode for one of the two errors: a miss, at positive frames, or a false
+/// positive, at negative ones. Scores are negated where the threshold lies below them, so that
+/// smaller ones are better.
+struct SideScores {
+    std::uint64_t frames = 0;     ///< frames at which the error can happen
+    std::uint64_t lost = 0;       ///< those at which a missing sample counts as the error
+    bool has_score = false;       ///< at least one of them was measured
+    double worst_reach = 0;       ///< its greatest score in any build
+    std::vector<double> reaches;  ///< class_conditional, risk: all scores
+
+    void add(double reach, bool keep);
+};
+
+/// Scores of a predicate in one demonstration, or of a monitor that is calibrated as a whole in one
+/// episode: its robustness is a predicate `rho >= shift`, true where its truth is satisfied.
 struct Scores {
     struct Labelled {
         float score = 0;
         bool positive = false;
     };
-    std::uint64_t positives = 0;   ///< frames at which its truth holds
-    std::uint64_t negatives = 0;   ///< frames at which it does not
-    std::uint64_t unlabelled = 0;  ///< frames at which a missing sample leaves it open
-    std::uint64_t unmeasured = 0;  ///< positive or negative frames whose distance is unknown
-    bool from_array = false;       ///< labels come from an array of the episode
+    SideScores positives;            ///< of frames at which its truth holds
+    SideScores negatives;            ///< of frames at which it does not
+    std::uint64_t unlabelled = 0;    ///< frames at which its truth is open
+    std::uint64_t unmeasured = 0;    ///< positive or negative frames whose distance is unknown
+    bool from_array = false;         ///< labels come from an array of the episode
+    std::vector<Labelled> labelled;  ///< all measured frames, negated for >= and >; of predicates
 
-    bool has_score = false;          ///< at least one positive frame was measured
-    double worst_reach = 0;          ///< its greatest score in any build
-    std::vector<double> reaches;     ///< class_conditional: scores of all positive frames
-    std::vector<Labelled> labelled;  ///< all measured frames
+    SideScores& side(bool of_positives) { return of_positives ? positives : negatives; }
 };
+
+/// Whether a threshold is against misses, or against false positives.
+bool is_against(const check::Threshold& threshold, bool misses);
+/// Whether each error keeps all scores.
+bool keeps_all(const check::Threshold& threshold);
 
 struct Demonstration : episodes::Recorded {
     std::vector<Scores> scores;  ///< per calibrated predicate
@@ -46,10 +62,14 @@ void fields(Archive& archive, Scores::Labelled& frame) {
 }
 
 template <class Archive>
+void fields(Archive& archive, SideScores& side) {
+    archive(side.frames, side.lost, side.has_score, side.worst_reach, side.reaches);
+}
+
+template <class Archive>
 void fields(Archive& archive, Scores& scores) {
     archive(scores.positives, scores.negatives, scores.unlabelled, scores.unmeasured,
-            scores.from_array, scores.has_score, scores.worst_reach, scores.reaches,
-            scores.labelled);
+            scores.from_array, scores.labelled);
 }
 
 template <class Archive>
@@ -59,36 +79,49 @@ void fields(Archive& archive, Demonstration& demonstration) {
 }
 
 /// Scores of a predicate in all demonstrations, by their groups: those of a group count once, and a
-/// demonstration without one is a group by itself. Memory is 24 bytes per group and that of
+/// demonstration without one is a group by itself. Memory is some bytes per episode and that of
 /// data::Sorted, however many frames there are.
 struct Evidence {
     /// The greatest score that any build may have measured.
     struct Reach {
         double reach = 0;
         std::uint32_t group = 0;
+        std::uint32_t episode = 0;  ///< among those with a frame
 
         bool operator<(const Reach& other) const {
             return reach != other.reach ? reach < other.reach : group < other.group;
         }
     };
 
+    struct Episode {
+        std::uint32_t group = 0;
+        std::uint64_t frames = 0;  ///< as in SideScores
+        std::uint64_t lost = 0;
+    };
+    /// The scores of all episodes for one error.
+    struct Side {
+        std::uint64_t frames = 0;             ///< as in SideScores
+        std::uint64_t without_score = 0;      ///< demonstrations
+        std::vector<Reach> worst;             ///< one per group with a score
+        data::Sorted<Reach> reaches;          ///< class_conditional, risk: one per frame
+        std::vector<Episode> episodes;        ///< those with a frame
+        std::vector<std::uint32_t> places{};  ///< in `worst`, per group
+
+        void add(const SideScores& scores, std::uint32_t group);
+    };
+
     std::uint64_t demonstrations = 0;
     std::uint32_t groups = 0;
-    std::uint64_t without_score = 0;  ///< demonstrations
-    std::uint64_t from_array = 0;     ///< demonstrations with an array of labels
-    std::uint64_t positives = 0;      ///< frames, as in Scores
-    std::uint64_t negatives = 0;
-    std::uint64_t unlabelled = 0;
+    std::uint64_t from_array = 0;  ///< demonstrations with an array of labels
+    std::uint64_t unlabelled = 0;  ///< frames, as in Scores
     std::uint64_t unmeasured = 0;
-    std::vector<Reach> worst;          ///< one per group with a score
-    data::Sorted<Reach> reaches;       ///< class_conditional: one per positive frame
+    Side positives;
+    Side negatives;
     episodes::FramesByScore labelled;  ///< all measured frames; `episode` is the group
 
+    const Side& side(bool of_positives) const { return of_positives ? positives : negatives; }
     /// Adds the next demonstration. Numbers of groups begin with 0, without a gap.
     void add(const Scores& scores, std::uint32_t group);
-
-private:
-    std::vector<std::uint32_t> place_;  ///< in `worst`, per group
 };
 
 /// Returns the predicates with a calibrated threshold, in the order of the model.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
+#include <map>
 #include <memory>
 #include <set>
 
@@ -30,31 +32,44 @@ using check::round_up;
 using diag::Code;
 using diag::counted;
 
-bool against_alarms(const check::Monitor& monitor) {
-    return monitor.calibration->against == Against::missed_alarm;
-}
-
-/// Returns the ground truth's verdict at the steps that give a score.
-std::string_view truth_word(const check::Monitor& monitor) {
-    return against_alarms(monitor) ? "violated" : "satisfied";
-}
-
-/// Returns the least and the greatest robustness of the predicate in any build.
+/// Returns the greatest low end of the robustness of the predicate in any build, and its least high
+/// end.
 plan::Value spread(const check::Model& model, Index predicate, const execute::Evaluator& measured,
                    const PastIntervals& pasts) {
     const Interval delta = *interval_of(model, predicate, measured, pasts);
     const check::Predicate& p = model.predicates[predicate];
-    const float epsilon = p.threshold.value;
+    const float true_within = p.threshold.low();
+    const float false_beyond = p.threshold.value;
     const float low =
-        p.upper_bound() ? epsilon - round_up(delta.high) : round_down(delta.low) - epsilon;
-    const float high =
-        p.upper_bound() ? epsilon - round_down(delta.low) : round_up(delta.high) - epsilon;
+        p.upper_bound() ? true_within - round_down(delta.low) : round_up(delta.high) - true_within;
+    const float high = p.upper_bound() ? false_beyond - round_up(delta.high)
+                                       : round_down(delta.low) - false_beyond;
     return {etlmon::key_of(low), etlmon::key_of(high)};
 }
 
-/// Scores the calibrated monitors in one episode after the other, on one thread. Rho is as
-/// pessimistic as that of a verdict where samples are missing, and as high (low) as in any build
-/// otherwise. The arguments must outlive it.
+/// Returns the index of the negated monitor of each calibrated one that the scores need; kNone for
+/// the others. It is added to the model.
+std::vector<Index> add_negations(check::Model& model, const check::Model& calibrated,
+                                 const std::vector<Index>& monitors) {
+    std::vector<Index> negations;
+    for (const Index m : monitors) {
+        negations.push_back(check::kNone);
+        if (!is_against(*calibrated.monitors[m].calibration, true)) continue;
+        check::Formula negation;
+        negation.kind = check::Formula::Kind::negation;
+        negation.operands = {model.monitors[m].formula};
+        check::Monitor negated = model.monitors[m];
+        negated.formula = static_cast<Index>(model.formulas.size());
+        negations.back() = static_cast<Index>(model.monitors.size());
+        model.formulas.push_back(std::move(negation));
+        model.monitors.push_back(std::move(negated));
+    }
+    return negations;
+}
+
+/// Scores the calibrated monitors in one episode after the other, on one thread. The low ends of
+/// rho and of its negation are as low as those of a verdict where samples are missing or between
+/// two thresholds, and as high as in any build otherwise. The arguments must outlive it.
 class MonitorScorer {
 public:
     MonitorScorer(const check::Model& model, const MonitorPlans& plans,
@@ -68,16 +83,15 @@ public:
 
 private:
     diag::Result<MonitorEpisode> score(const std::string& path, const episodes::Wanted& wanted);
-    void note(std::vector<MonitorScore>& scores) const;
+    void note(std::vector<Scores>& scores) const;
 
     const check::Model& model_;
     const std::vector<Index>& monitors_;
+    const std::vector<Index>& negations_;
     const Watched& watched_;
     const episodes::ReadOptions& reading_;
-    episodes::Follower highest_;  ///< the highest rho in any build
-    episodes::Follower lowest_;
-    PastIntervals pasts_of_highest_;  ///< both measure the same, one after the other
-    PastIntervals pasts_of_lowest_;
+    episodes::Follower highest_;  ///< the highest low ends in any build
+    PastIntervals pasts_;
     episodes::Follower truths_;
     episodes::Wanted wanted_;
     episodes::Wanted divided_;  ///< the same with the labels that divide episodes
@@ -88,32 +102,24 @@ MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plan
                              const Watched& watched, const episodes::ReadOptions& reading)
     : model_(model),
       monitors_(monitors),
+      negations_(plans.negations),
       watched_(watched),
       reading_(reading),
       highest_(plans.monitors),
-      lowest_(plans.monitors),
-      pasts_of_highest_(model, plans.monitors),
-      pasts_of_lowest_(model, plans.monitors),
+      pasts_(model, plans.monitors),
       truths_(plans.truths, &plans.ground_truth),
       wanted_(episodes::wanted(model, {&plans.monitors, &plans.truths},
                                episodes::labelled_predicates(plans.ground_truth), leaks)),
       divided_(wanted_) {
+    wanted_.within = divided_.within = plans.within;
     divided_.predicates.clear();
     std::set_union(wanted_.predicates.begin(), wanted_.predicates.end(), watched.dividing.begin(),
                    watched.dividing.end(), std::back_inserter(divided_.predicates));
-    execute::Evaluator& lowest = lowest_.evaluator();
-    lowest.after_pasts([&] { pasts_of_lowest_.step(lowest); });
-    lowest.replace_predicate_values(
-        [&](Index p) { return spread(model_, p, lowest, pasts_of_lowest_); });
-    // A verdict reads the low end: the first end for a literal, the second for a negated one. With
-    // the ends exchanged it reads the highest in any build, and the range of a missing sample
-    // stays.
+    // The low end of a verdict reads the low end of a literal, and the high end of a negated one;
+    // the range of a missing sample stays.
     execute::Evaluator& highest = highest_.evaluator();
-    highest.after_pasts([&] { pasts_of_highest_.step(highest); });
-    highest.replace_predicate_values([&](Index p) {
-        const plan::Value value = spread(model_, p, highest, pasts_of_highest_);
-        return plan::Value{value.high, value.low};
-    });
+    highest.after_pasts([&] { pasts_.step(highest); });
+    highest.replace_predicate_values([&](Index p) { return spread(model_, p, highest, pasts_); });
 }
 
 diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path) {
@@ -126,11 +132,10 @@ diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path,
                                                   const episodes::Wanted& wanted) {
     auto recording = episodes::Recording::open(wanted, path, reading_);
     if (!recording) return recording.failure();
-    std::vector<MonitorScore> scores(monitors_.size());
+    std::vector<Scores> scores(monitors_.size());
     std::string track;
     const bool is_divided = wanted.predicates.size() == divided_.predicates.size();
-    pasts_of_highest_.reset();
-    pasts_of_lowest_.reset();
+    pasts_.reset();
     const auto rest = [&] {
         note(scores);
         return true;
@@ -139,7 +144,7 @@ diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path,
         add_step(watched_, highest_.evaluator(), *recording, is_divided, track);
         return rest();
     };
-    const auto done = episodes::replay(*recording, {&truths_, &highest_, &lowest_}, frame, rest);
+    const auto done = episodes::replay(*recording, {&truths_, &highest_}, frame, rest);
     if (!done) return done.failure();
     MonitorEpisode result{
         recording->recorded(), std::move(scores), {}, std::move(track), is_divided};
@@ -148,83 +153,30 @@ diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path,
     return result;
 }
 
-void MonitorScorer::note(std::vector<MonitorScore>& scores) const {
+void MonitorScorer::note(std::vector<Scores>& scores) const {
     for (std::size_t i = 0; i < monitors_.size(); ++i) {
         const Index monitor = monitors_[i];
         if (!truths_.reports(monitor)) continue;
         const etlmon::Verdict& truth = truths_.verdict(monitor);
-        MonitorScore& score = scores[i];
-        if (truth.unknown()) ++score.unknown;
-        const bool alarms =
-            model_.monitors[monitor].calibration->against == check::Against::missed_alarm;
-        if (alarms ? !truth.violated() : !truth.satisfied()) continue;
-        const double rho = alarms ? static_cast<double>(highest_.verdict(monitor).robustness)
-                                  : -static_cast<double>(lowest_.verdict(monitor).robustness);
-        score.worst = score.steps == 0 ? rho : std::max(score.worst, rho);
-        ++score.steps;
-    }
-}
-
-/// Adds the scores of an episode to those of its group, which take the worst.
-void add(std::vector<MonitorScores>& groups, std::uint32_t group, MonitorScores scores) {
-    if (group == groups.size()) {
-        groups.push_back(std::move(scores));
-        return;
-    }
-    for (std::size_t i = 0; i < scores.size(); ++i) {
-        MonitorScore& of = groups[group][i];
-        if (scores[i].steps > 0)
-            of.worst = of.steps == 0 ? scores[i].worst : std::max(of.worst, scores[i].worst);
-        of.steps += scores[i].steps;
-        of.unknown += scores[i].unknown;
-    }
-}
-
-/// Scores of a monitor in all groups.
-struct Totals {
-    std::uint64_t with_score = 0;
-    std::uint64_t steps = 0;
-    std::uint64_t unknown = 0;
-    std::vector<double> scores;
-
-    Totals(const std::vector<MonitorScores>& groups, std::size_t of) {
-        for (const MonitorScores& group : groups) {
-            const MonitorScore& score = group[of];
-            steps += score.steps;
-            unknown += score.unknown;
-            if (score.steps == 0) continue;
-            ++with_score;
-            scores.push_back(score.worst);
+        const bool satisfied = truth.satisfied();
+        if (truth.unknown()) {
+            ++scores[i].unlabelled;
+            continue;
         }
+        SideScores& side = scores[i].side(satisfied);
+        ++side.frames;
+        const check::Threshold& shift = *model_.monitors[monitor].calibration;
+        if (!is_against(shift, satisfied)) continue;
+        const double reach = highest_.verdict(satisfied ? negations_[i] : monitor).robustness;
+        if (reach > -std::numeric_limits<double>::infinity()) side.add(reach, keeps_all(shift));
     }
-};
-
-void refuse(const check::Monitor& monitor, const Totals& totals, const episodes::Groups& groups,
-            Refusal refusal, diag::Sink& sink) {
-    const std::string episodes = counted(groups.episodes(), "episode");
-    const check::Threshold& threshold = monitor.calibration->threshold;
-    if (refusal == Refusal::no_positives)
-        sink.report(Code::no_positive_frame, threshold.span,
-                    fmt::format("the ground truth of '{}' is {} at no step of {}, so there is "
-                                "nothing to learn its shift from",
-                                monitor.name, truth_word(monitor), episodes));
-    else if (refusal == Refusal::too_few)
-        refuse_too_few(threshold,
-                       {totals.with_score, groups.are_named() ? "group" : "episode",
-                        fmt::format(" in which the ground truth of '{}' is {} at some step",
-                                    monitor.name, truth_word(monitor)),
-                        "step", groups.count(), groups.are_named() ? episodes : ""},
-                       sink);
-    else
-        refuse_infinite(monitor.name, threshold, "shift", sink);
 }
 
 thresholds::Entry entry_of_monitor(const check::Model& model, const check::Monitor& monitor,
-                                   const Fitted& fitted, const episodes::Identities& episodes,
+                                   const Sides& fitted, const episodes::Identities& episodes,
                                    const check::Labelling& labelling) {
     thresholds::Entry entry =
-        entry_of(monitor.calibration->threshold, fitted, check::reads(model, monitor, labelling));
-    entry.against = check::word(monitor.calibration->against);
+        entry_of(*monitor.calibration, fitted, check::reads(model, monitor, labelling));
     episodes.for_each([&](std::size_t, const episodes::Recorded& episode) {
         entry.episodes.push_back(episodes::hash_of(episode));
     });
@@ -232,43 +184,58 @@ thresholds::Entry entry_of_monitor(const check::Model& model, const check::Monit
 }
 
 std::string monitor_report(const check::Model& model, const check::Monitor& monitor,
-                           const Totals& totals, const Fitted& fitted,
-                           const episodes::Groups& groups) {
-    const char* const each = groups.are_named() ? "group" : "episode";
-    std::string text = fmt::format(
-        "\n{}: rho of {} less {:.9g}\n"
-        "    conformal, alpha = {}: {} whose ground truth is {} at some step\n"
-        "    {}; given these {}, with probability >= 1 - {:.3f} to 1 - {:.3f} (5 % and 95 % "
-        "quantiles, without ties)\n",
-        monitor.name, check::shown(model, monitor.formula), fitted.epsilon,
-        monitor.calibration->threshold.alpha, describe_place(fitted, against_alarms(monitor), each),
-        truth_word(monitor), check::text(check::claims(model, monitor)[0]),
-        groups.are_named() ? counted(fitted.n, "group") : std::to_string(fitted.n),
-        1 - check::coverage_quantile(fitted.n, fitted.k, 0.05),
-        1 - check::coverage_quantile(fitted.n, fitted.k, 0.95));
-    if (totals.with_score < groups.count())
-        text += fmt::format("    {} without such a step left out\n",
-                            counted(groups.count() - totals.with_score, each));
-    if (totals.unknown > 0)
-        text += fmt::format("    {} skipped, where a missing label leaves the ground truth open\n",
-                            counted(totals.unknown, "step"));
+                           const Subject& of, const Sides& sides, const episodes::Groups& groups) {
+    const check::Threshold& shift = *monitor.calibration;
+    const Aim aim = aims_of(of.predicate).front();
+    std::string text =
+        fmt::format("\n{}: rho of {}", monitor.name, check::shown(model, monitor.formula));
+    const std::vector<check::Claim> claims = check::claims(model, monitor);
+    if (sides.size() == 1 && shift.origin == check::ThresholdOrigin::conformal) {
+        text += fmt::format(
+            " less {:.9g}\n"
+            "    conformal, alpha = {}: {} whose ground truth is {} at some step\n"
+            "    {}; given these {}, with probability >= 1 - {:.3f} to 1 - {:.3f} (5 % and 95 % "
+            "quantiles, without ties)\n",
+            shift.value, shift.alpha, describe_place(sides[0], aim.above, of.noun()),
+            aim.of_positives ? "satisfied" : "violated", check::text(claims[0]),
+            groups.are_named() ? counted(shift.n, "group") : std::to_string(shift.n),
+            1 - check::coverage_quantile(shift.n, shift.k, 0.05),
+            1 - check::coverage_quantile(shift.n, shift.k, 0.95));
+    } else {
+        text += fmt::format("\n    {}\n    {}\n", shift.text, check::of_shift(shift));
+        for (const check::Claim& claim : claims)
+            text += fmt::format("    {}\n", check::text(claim));
+    }
+    text += describe_sides(of, sides);
+    if (of.evidence.unlabelled > 0)
+        text +=
+            fmt::format("    {} skipped, where a missing label{} leaves the ground truth open\n",
+                        counted(of.evidence.unlabelled, "step"),
+                        shift.within > 0 ? " or one near a change" : "");
     return text;
 }
 
-/// Returns the guarantees of the monitors that are calibrated as a whole.
-std::vector<Guaranteed> guaranteed_as_a_whole(const check::Model& model) {
-    std::vector<Guaranteed> found;
-    for (const Index m : calibrated_monitors(model))
-        found.push_back({m, check::claims(model, model.monitors[m])[0]});
-    return found;
-}
-
-LeftOut shifts_without_each(const check::Monitor& monitor, const std::vector<MonitorScores>& scores,
-                            std::size_t of) {
-    std::vector<Evidence::Reach> worst;
-    for (std::uint32_t g = 0; g < scores.size(); ++g)
-        if (scores[g][of].steps > 0) worst.push_back({scores[g][of].worst, g});
-    return left_out(*monitor.calibration, worst, scores.size());
+/// Returns the steps around a change at which the labels of each predicate are unknown. Reports
+/// monitors that read the same labels and differ in them.
+std::vector<std::uint32_t> within_of(const check::Model& model, const std::vector<Index>& monitors,
+                                     const std::vector<Index>& labelled, diag::Sink& sink) {
+    std::vector<std::uint32_t> within(model.predicates.size());
+    std::map<Index, const check::Monitor*> readers;
+    for (const Index m : monitors) {
+        const check::Monitor& monitor = model.monitors[m];
+        for (const Index p : check::predicates_of(model, monitor)) {
+            if (!std::binary_search(labelled.begin(), labelled.end(), p)) continue;
+            within[p] = monitor.calibration->within;
+            const check::Monitor& other = *readers.emplace(p, &monitor).first->second;
+            if (other.calibration->within == within[p]) continue;
+            sink.report(Code::calibration_argument, monitor.calibration->span,
+                        fmt::format("'{}' and '{}' are calibrated with the labels of '{}' and "
+                                    "differ in 'within'; expected the same",
+                                    other.name, monitor.name, model.predicates[p].name));
+            break;
+        }
+    }
+    return within;
 }
 
 /// Returns the predicates that are not their own truth or have labels in the first episode.
@@ -305,19 +272,21 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     const auto in_first = episodes::labelled_in_first(model, request, sink);
     if (!in_first) return std::nullopt;
     const std::vector<Index> labelled = find_labelled(model, monitors, *in_first);
-    const check::Model plain = unshifted(model);
+    check::Model plain = unshifted(model);
     const episodes::GroundTruth truth = episodes::ground_truth(plain, labelled);
-    const auto compiled = compile(plain, {}, sink);
+    const std::vector<std::uint32_t> within = within_of(model, monitors, labelled, sink);
+    const std::vector<Index> negations = add_negations(plain, model, monitors);
+    const auto compiled = compile(std::move(plain), {}, sink);
     // The truth does not depend on rho.
     const auto truths = compile(truth.model, {{}, check::Values::boolean}, sink);
-    if (!compiled || !truths) return std::nullopt;
-    const MonitorPlans plans{compiled->plan, truths->plan, truth};
+    if (!compiled || !truths || sink.has_errors()) return std::nullopt;
+    const MonitorPlans plans{compiled->plan, truths->plan, truth, negations, within};
 
     const episodes::Leaks leaks(model, labelled);
     episodes::Identities recorded;
     episodes::Groups groups;
-    std::vector<MonitorScores> scored;  // per group
-    const std::vector<Guaranteed> guarantees = guaranteed_as_a_whole(model);
+    std::vector<Evidence> evidence(monitors.size());
+    const std::vector<Guaranteed> guarantees = guaranteed(model, true);
     const Watched watched = watched_by(model, guarantees, labelled, *in_first);
     Tracks tracks;
     bool is_divided = true;
@@ -334,7 +303,9 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
             frames += episode.frames;
             ++labelling.episodes;
             for (const Index predicate : episode.from_arrays) ++labelling.from_arrays[predicate];
-            add(scored, groups.add(episode.group), std::move(episode.scores));
+            const std::uint32_t group = groups.add(episode.group);
+            for (std::size_t i = 0; i < monitors.size(); ++i)
+                evidence[i].add(episode.scores[i], group);
             tracks.add(episode.track);
             is_divided &= episode.is_divided;
         });
@@ -351,28 +322,23 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     check::Model shifted = model;
     std::vector<std::string> reports;
     std::vector<LeftOut> out;
+    std::vector<check::Predicate> predicates;
+    for (const Index m : monitors) predicates.push_back(over_robustness(model.monitors[m]));
+    std::vector<Subject> subjects;
     for (std::size_t i = 0; i < monitors.size(); ++i) {
         const check::Monitor& monitor = model.monitors[monitors[i]];
-        const Totals totals(scored, i);
-        Fit fit = fit_rank(totals.scores, monitor.calibration->threshold.alpha);
-        if (const auto* refusal = std::get_if<Refusal>(&fit)) {
-            refuse(monitor, totals, groups, *refusal, sink);
-            continue;
-        }
-        auto& fitted = std::get<Fitted>(fit);
-        fitted.scores = totals.scores;
-        mirror(fitted, against_alarms(monitor));
-        warn_of_large_alpha(monitor.name, monitor.calibration->threshold, sink);
+        subjects.push_back({predicates[i], evidence[i], true, groups.are_named()});
+        const auto sides = fit_all(model, subjects.back(), sink);
+        if (!sides) continue;
+        warn_of_large_alpha(predicates[i], sink);
         result.file.monitors[monitor.name] =
-            entry_of_monitor(model, monitor, fitted, recorded, labelling);
-        check::Threshold& shift = shifted.monitors[monitors[i]].calibration->threshold;
-        shift.value = fitted.epsilon;
-        shift.n = fitted.n;
-        shift.k = fitted.k;
+            entry_of_monitor(model, monitor, *sides, recorded, labelling);
+        check::Threshold& shift = *shifted.monitors[monitors[i]].calibration;
+        set(shift, predicates[i], *sides);
         shift.by_group = groups.are_named();
-        reports.push_back(
-            monitor_report(shifted, shifted.monitors[monitors[i]], totals, fitted, groups));
-        out.push_back(shifts_without_each(monitor, scored, i));
+        reports.push_back(monitor_report(shifted, shifted.monitors[monitors[i]], subjects.back(),
+                                         *sides, groups));
+        out.push_back(left_out(predicates[i], evidence[i], recorded, groups));
     }
     if (sink.has_errors()) return std::nullopt;
     const auto others = other_errors_of_shifts(shifted, guarantees, out,
@@ -383,8 +349,8 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         result.report += reports[i] + describe(others[i], guarantees[i], "    ");
         warn_of_empty(model, guarantees[i], others[i], sink);
     }
-    result.report += "\n" + note_on_other_errors(groups.are_named());
-    result.report += report_of_folds(model, monitors, scored, recorded, groups, request.folds);
+    result.report += "\n" + note_on_other_errors(groups.are_named(), has_cost(guarantees));
+    result.report += report_of_folds(subjects, recorded, groups, request.folds);
     thresholds::drop_unused_recordings(result.file);
     for (const thresholds::Allowance& used : result.file.allowances)
         result.report += fmt::format("\n{}\n", thresholds::text(used));

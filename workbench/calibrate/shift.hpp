@@ -1,8 +1,10 @@
 // Calibration of whole monitors: the shift of rho of each calibrated monitor, from labelled
 // episodes on which the thresholds of its predicates were not calibrated. The score of an episode
-// is the greatest rho, in any build, over the steps at which the ground-truth monitor is violated
-// (against missed_success: the least rho over those at which it is satisfied). The shift is
-// strictly beyond score k, so no such step of a covered episode has the wrong sign.
+// is the greatest low end of rho, in any build, over the steps at which the ground-truth monitor is
+// violated (against missed_success: the least high end over those at which it is satisfied). These
+// are the ends that a verdict is decided by. The shift is strictly beyond score k, so no such step
+// of a covered episode has the wrong sign. A step without such an end, because of a missing sample,
+// cannot have it.
 #pragma once
 
 #include <optional>
@@ -27,29 +29,16 @@ struct MonitorPlans {
     const plan::Plan& monitors;
     const plan::Plan& truths;
     const episodes::GroundTruth& ground_truth;
+    const std::vector<Index>& negations;       ///< per calibrated monitor, the one that negates it
+    const std::vector<std::uint32_t>& within;  ///< per predicate, as in episodes::Wanted
 };
-
-/// The score of a monitor in one episode, negated for missed_success so that smaller ones are
-/// better.
-struct MonitorScore {
-    std::uint64_t steps = 0;    ///< steps that the monitor must not miss
-    std::uint64_t unknown = 0;  ///< steps at which a missing sample leaves the truth open
-    double worst = 0;           ///< the worst rho in any build over these steps, if any
-};
-
-using MonitorScores = std::vector<MonitorScore>;  ///< per calibrated monitor
 
 struct MonitorEpisode : episodes::Recorded {
-    MonitorScores scores;
+    std::vector<Scores> scores;      ///< per calibrated monitor
     std::vector<Index> from_arrays;  ///< predicates with an array of labels
     std::string track;               ///< of what the monitors see
     bool is_divided = true;          ///< it has all labels that divide it into phases
 };
-
-template <class Archive>
-void fields(Archive& archive, MonitorScore& score) {
-    archive(score.steps, score.unknown, score.worst);
-}
 
 template <class Archive>
 void fields(Archive& archive, MonitorEpisode& episode) {
@@ -63,11 +52,5 @@ void fields(Archive& archive, MonitorEpisode& episode) {
 /// episode. Returns nothing after an error, which it reports.
 std::optional<Calibration> calibrate_monitors(const check::Model& model, thresholds::File before,
                                               const Request& request, diag::Sink& sink);
-
-/// Reports the shifts without each fold, as for predicates. `scores` are per group.
-std::string report_of_folds(const check::Model& model, const std::vector<Index>& monitors,
-                            const std::vector<MonitorScores>& scores,
-                            const episodes::Identities& episodes, const episodes::Groups& groups,
-                            std::uint32_t folds);
 
 }  // namespace etlc::calibrate

@@ -407,7 +407,29 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
     result.freshness_.resize(inputs.size());
     result.samples_.resize(model.inputs.size());
     result.frame_.resize(model.inputs.size());
+    if (auto failure = result.read_ahead(wanted, open)) return *failure;
     return result;
+}
+
+std::optional<Failure> Recording::read_ahead(const Wanted& wanted, const Opener& open) {
+    Wanted labels = wanted;
+    std::erase_if(labels.predicates,
+                  [&](Index p) { return p >= wanted.within.size() || wanted.within[p] == 0; });
+    if (labels.predicates.empty()) return std::nullopt;
+    labels.within.clear();
+    labels.identity.clear();
+    labels.leaks = nullptr;
+    auto recording = Recording::open(labels, open);
+    if (!recording) return recording.failure();
+    ahead_.resize(model_->predicates.size());
+    for (;;) {
+        const auto more = recording->next();
+        if (!more) return more.failure();
+        if (!*more) break;
+        for (const Index p : labels.predicates) ahead_[p].push_back(recording->label(p));
+    }
+    for (const Index p : labels.predicates) open_near_changes(ahead_[p], wanted.within[p]);
+    return std::nullopt;
 }
 
 diag::Result<bool> Recording::next() {
@@ -451,6 +473,12 @@ diag::Result<bool> Recording::narrow() {
 }
 
 Label Recording::label(Index predicate) const {
+    if (!ahead_.empty() && frames_ <= ahead_[predicate].size())
+        return ahead_[predicate][frames_ - 1];
+    return recorded_label(predicate);
+}
+
+Label Recording::recorded_label(Index predicate) const {
     const Source& source = sources_[predicate];
     if (!source.from_array) return (*truth_)[source.formula];
     const double value = sample_.values[source.channel][0];

@@ -87,6 +87,9 @@ struct Wanted {
     std::vector<Index> identity;    ///< inputs in the hash; all are in `inputs` too
     const Leaks* leaks = nullptr;   ///< targets that no frame may equal; null: no check
     std::vector<Index> optional{};  ///< inputs to read from episodes that have them
+    /// Per predicate, the steps before and from a change of its label at which it is unknown;
+    /// empty: none. Labels are then read ahead, so the episode is read twice.
+    std::vector<std::uint32_t> within{};
 };
 
 /// Returns whether an input needs an encoder that the episode's marks do not name.
@@ -155,6 +158,8 @@ public:
     diag::Result<bool> next() override;
     const std::vector<execute::Sample>& samples() const override { return samples_; }
     Label label(Index predicate) const override;
+    /// Returns the label as recorded, near a change too.
+    Label recorded_label(Index predicate) const;
     /// Returns whether its labels come from an array of the episode, or from beside it.
     bool from_array(Index predicate) const { return sources_[predicate].from_array; }
 
@@ -183,6 +188,8 @@ private:
         : model_(wanted.model), leaks_(wanted.leaks), seen_(*wanted.model, wanted.identity) {}
 
     diag::Result<bool> narrow();
+    /// Reads the labels of all frames, where some are unknown near a change.
+    std::optional<diag::Failure> read_ahead(const Wanted& wanted, const Opener& open);
 
     const check::Model* model_;
     const Leaks* leaks_;
@@ -203,6 +210,7 @@ private:
     std::vector<execute::Sample> samples_;
     Frame frame_;
     std::uint64_t frames_ = 0;
+    std::vector<std::vector<Label>> ahead_;  ///< per predicate, of all frames, if read ahead
     std::optional<Leak> leak_;
     std::vector<NearLeak> near_;
 };

@@ -57,8 +57,7 @@ std::vector<std::pair<std::string, float>> calibrated_in(const check::Model& mod
         if (predicate.threshold.origin != check::ThresholdOrigin::literal)
             thresholds.emplace_back(predicate.name, predicate.threshold.value);
     for (const check::Monitor& monitor : model.monitors)
-        if (monitor.calibration)
-            thresholds.emplace_back(monitor.name, monitor.calibration->threshold.value);
+        if (monitor.calibration) thresholds.emplace_back(monitor.name, monitor.calibration->value);
     return thresholds;
 }
 

@@ -563,8 +563,9 @@ private:
     }
 
     bool supports(NodeId literal, Index atom, float measured) const {
-        const etlmon::Value value = subject_.observations.value(atom, measured);
-        return subject_.supports(status_, subject_.graph[literal].negated ? -value.low : value.low);
+        etlmon::Value value = subject_.observations.value(atom, measured);
+        if (subject_.graph[literal].negated) value = etlmon::negate(value);
+        return subject_.supports(status_, status_ == Status::satisfied ? value.low : value.high);
     }
 
     /// Returns the first number above or below at which the literal no longer supports the status.

@@ -116,13 +116,15 @@ std::vector<Sample> in_order(std::vector<Sample> samples) {
     return samples;
 }
 
-std::vector<Sample> missing(const Subject& subject) {
+/// Returns the samples within reach that are missing or between two thresholds.
+std::vector<Sample> unknown_samples(const Subject& subject) {
     const auto reached = reach({subject.graph, subject.root, subject.position, subject.last});
     std::vector<Sample> result;
     for (Index atom = 0; atom < subject.observations.atoms().size(); ++atom)
         for (std::uint64_t step = 0; step <= subject.last; ++step) {
             if (!subject.observations.is_looked_at(atom) ||
-                !subject.observations.is_missing({atom, step}))
+                !(subject.observations.is_missing({atom, step}) ||
+                  subject.observations.is_between({atom, step})))
                 continue;
             bool seen = false;
             for (NodeId id = 0; id <= subject.root && !seen; ++id) {
@@ -162,17 +164,20 @@ Explanation explain(const ir::Program& program, const Observations& observations
                           nodes_of(program, monitor.formula),
                           question.position,
                           question.step,
-                          monitor.calibration ? monitor.calibration->threshold.value : 0};
+                          monitor.calibration ? monitor.calibration->low() : 0,
+                          monitor.calibration ? monitor.calibration->value : 0};
     Judged judged = judge(subject);
     Explanation result;
     result.status = judged.status;
     if (judged.status == Status::unknown) {
-        result.missing = missing(subject);
+        for (const Sample& sample : unknown_samples(subject))
+            (observations.is_missing(sample) ? result.missing : result.between).push_back(sample);
         return result;
     }
     result.for_good = judged.reading == Reading::for_good;
     const Sourced root = judged.at(subject.root, subject.position);
-    result.robustness = etlmon::float_of(etlmon::shifted(root.key, subject.shift));
+    result.robustness = etlmon::float_of(Subject::end_of(
+        root.key, judged.status == Status::satisfied ? subject.low_shift : subject.high_shift));
     result.critical = judged.values.source(root);
     result.chain = Chain(program, subject, judged).from(monitor.formula);
     Support support(subject, judged, root.key);

@@ -52,6 +52,7 @@ struct Explanation {
     std::optional<Change> change;
     /// For an unknown verdict: the missing samples within reach, by step, then atom.
     std::vector<Sample> missing;
+    std::vector<Sample> between;  ///< likewise: those that lie between two thresholds
 };
 
 Explanation explain(const ir::Program& program, const Observations& observations,

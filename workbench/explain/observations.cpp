@@ -111,6 +111,12 @@ bool Observations::is_missing(Sample sample) const {
     return etlmon::is_nan(measured(sample));
 }
 
+bool Observations::is_between(Sample sample) const {
+    if (!atoms_[sample.atom].is_predicate || is_missing(sample)) return false;
+    const etlmon::Value found = value(sample);
+    return predicate(sample.atom).threshold.inner && found.low < 0 && found.high >= 0;
+}
+
 etlmon::Value Observations::value(Index atom, float measured) const {
     if (atoms_[atom].is_predicate) {
         const check::Predicate& predicate = this->predicate(atom);

@@ -68,6 +68,8 @@ public:
     /// Returns the distance or expression of a predicate, 0 or 1 of a bool; NaN where missing.
     float measured(Sample sample) const { return columns_[sample.atom].measured[sample.step]; }
     bool is_missing(Sample sample) const;
+    /// Returns whether a known number lies between two thresholds.
+    bool is_between(Sample sample) const;
     /// Returns the nearest row of a predicate's n-th distance.
     std::uint32_t nearest(Sample sample, std::size_t n) const {
         return columns_[sample.atom].nearest[n][sample.step];

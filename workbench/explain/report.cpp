@@ -60,10 +60,14 @@ const char* word(Status status) {
                                         : "unknown";
 }
 
+float threshold(const Observations& observations, Sample sample) {
+    const check::Threshold& of = observations.predicate(sample.atom).threshold;
+    return observations.value(sample).high < 0 ? of.value : of.low();
+}
+
 float margin(const Observations& observations, Sample sample) {
     if (!observations.atoms()[sample.atom].is_predicate) return 0;
-    return std::abs(observations.measured(sample) -
-                    observations.predicate(sample.atom).threshold.value);
+    return std::abs(observations.measured(sample) - threshold(observations, sample));
 }
 
 std::vector<Nearest> nearest(const Observations& observations, Sample sample) {
@@ -95,9 +99,12 @@ public:
     std::string write() {
         head();
         if (explained_.status == Status::unknown) {
-            section("missing samples within reach");
+            if (explained_.between.empty() || !explained_.missing.empty())
+                section("missing samples within reach");
             for (const Interval& i : intervals(observations_, explained_.missing))
                 line("{} at {}", name_of(observations_, i.atom), steps(i.first, i.last));
+            if (!explained_.between.empty()) section("between two thresholds, within reach");
+            for (const Interval& i : intervals(observations_, explained_.between)) between(i);
             return std::move(text_);
         }
         section("samples that decide it");
@@ -125,9 +132,10 @@ private:
         text_ += fmt::format("{} = {}\n", monitor.name, check::shown(model_, monitor.formula));
         text_ += fmt::format("after {}, about {}: {}", when(report_.question.step),
                              when(report_.question.position), word(explained_.status));
+        if (report_.is_final && (explained_.status != Status::unknown || !monitor.sliding))
+            text_ += " for good";
         if (explained_.status != Status::unknown)
-            text_ += fmt::format("{}, robustness {}{:.6g}", report_.is_final ? " for good" : "",
-                                 bound(), explained_.robustness);
+            text_ += fmt::format(", robustness {}{:.6g}", bound(), explained_.robustness);
         text_ += "\n";
     }
 
@@ -163,8 +171,21 @@ private:
              measured(i));
     }
 
-    /// "min l2(z, people) 0.2 to 0.4 <= 0.5, nearest row 3"
+    void between(const Interval& i) {
+        const check::Threshold& of = observations_.predicate(i.atom).threshold;
+        const bool upper = observations_.predicate(i.atom).upper_bound();
+        line("{} is unknown at {}: {}, called true {} {:.6g}, called false {} {:.6g}",
+             name_of(observations_, i.atom), steps(i.first, i.last), measured_numbers(i),
+             upper ? "up to" : "from", of.low(), upper ? "beyond" : "below", of.value);
+    }
+
+    /// "min l2(z, people) is 0.2 to 0.4, threshold 0.5, nearest row 3"
     std::string measured(const Interval& i) const {
+        return fmt::format("{}, threshold {:.6g}{}", measured_numbers(i),
+                           threshold(observations_, {i.atom, i.first}), nearest(i));
+    }
+
+    std::string measured_numbers(const Interval& i) const {
         const check::Predicate& predicate = observations_.predicate(i.atom);
         float low = observations_.measured({i.atom, i.first});
         float high = low;
@@ -175,8 +196,7 @@ private:
         std::string text =
             fmt::format("{} is {:.6g}", check::print(model_, predicate.expression), low);
         if (low < high) text += fmt::format(" to {:.6g}", high);
-        text += fmt::format(", threshold {:.6g}", predicate.threshold.value);
-        return text + nearest(i);
+        return text;
     }
 
     /// ", nearest row 3 then"; for several distances ", nearest row 3 of people, 0 of walls".
@@ -267,6 +287,9 @@ public:
         text +=
             member("chain", list(explained_.chain, [&](const Link& link) { return linked(link); }));
         text += member("change", explained_.change ? changed(*explained_.change) : "null");
+        if (!explained_.between.empty())
+            text += member("between", list(intervals(observations_, explained_.between),
+                                           [&](const Interval& i) { return between(i); }));
         text +=
             fmt::format("  \"missing\": {}\n}}\n",
                         list(intervals(observations_, explained_.missing), [&](const Interval& i) {
@@ -301,10 +324,21 @@ private:
         if (observations_.atoms()[at.atom].is_predicate) return number(observations_.measured(at));
         return observations_.measured(at) != 0 ? "true" : "false";
     }
-    std::string threshold(Index atom) const {
-        return observations_.atoms()[atom].is_predicate
-                   ? number(observations_.predicate(atom).threshold.value)
+    /// Prints the threshold that decides a sample.
+    std::string threshold(Sample at) const {
+        return observations_.atoms()[at.atom].is_predicate
+                   ? number(explain::threshold(observations_, at))
                    : "null";
+    }
+    std::string between(const Interval& i) const {
+        const check::Threshold& of = observations_.predicate(i.atom).threshold;
+        std::string all;
+        for (std::uint64_t step = i.first; step <= i.last; ++step)
+            all += (step == i.first ? "" : ", ") + measured({i.atom, step});
+        return fmt::format(
+            "{{{}, \"first\": {}, \"last\": {}, \"inner_threshold\": {}, \"threshold\": {}, "
+            "\"measured\": [{}]}}",
+            named(i.atom), i.first, i.last, number(of.low()), number(of.value), all);
     }
     std::string nearest(Sample at) const {
         const std::vector<Nearest> rows = explain::nearest(observations_, at);
@@ -328,7 +362,8 @@ private:
         return fmt::format(
             "{{{}, \"first\": {}, \"last\": {}, \"holds\": {}, \"threshold\": {}, "
             "\"margin\": {}, \"closest\": {}, \"measured\": [{}], \"nearest\": [{}]}}",
-            named(i.atom), i.first, i.last, i.holds ? "true" : "false", threshold(i.atom),
+            named(i.atom), i.first, i.last, i.holds ? "true" : "false",
+            threshold({i.atom, i.first}),
             i.is_missing ? "null" : number(margin(observations_, {i.atom, i.closest})), i.closest,
             all_measured, all_nearest);
     }
@@ -337,7 +372,7 @@ private:
         return fmt::format(
             "{{{}, \"step\": {}, \"measured\": {}, \"threshold\": {}, "
             "\"nearest\": {}}}",
-            named(at.atom), at.step, measured(at), threshold(at.atom), nearest(at));
+            named(at.atom), at.step, measured(at), threshold(at), nearest(at));
     }
 
     std::string linked(const Link& link) const {

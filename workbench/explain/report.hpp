@@ -67,6 +67,9 @@ struct Interval {
 std::vector<Interval> intervals(const Observations& observations,
                                 const std::vector<Sample>& samples);
 
+/// Returns the threshold of a predicate that decides a sample: of two, that within which it is
+/// true, or that beyond which it is false.
+float threshold(const Observations& observations, Sample sample);
 std::string name_of(const Observations& observations, Index atom);
 const char* word(Status status);
 /// Returns the distance of a measurement from its threshold.

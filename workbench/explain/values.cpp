@@ -1,6 +1,7 @@
 #include "explain/values.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -216,8 +217,12 @@ void Values::alter(NodeId id, const Altered& altered) {
 
 // ---- the verdict --------------------------------------------------------------------------------
 
+etlmon::Key Subject::end_of(etlmon::Key key, float shift) {
+    return std::isinf(shift) ? -etlmon::key_of(shift) : etlmon::shifted(key, shift);
+}
+
 bool Subject::supports(Status status, etlmon::Key key) const {
-    return (etlmon::shifted(key, shift) >= 0) == (status == Status::satisfied);
+    return status == Status::satisfied ? end_of(key, low_shift) >= 0 : end_of(key, high_shift) < 0;
 }
 
 /// A verdict that is final holds so far as well.

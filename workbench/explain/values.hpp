@@ -116,10 +116,14 @@ struct Subject {
     std::vector<bool> nodes;  ///< below the root and of all formulas in the monitor's
     std::uint64_t position = 0;
     std::uint64_t last = 0;  ///< of the prefix
-    float shift = 0;         ///< subtracted from the verdict
+    /// Subtracted from the verdict: from its low end, and from its high one.
+    float low_shift = 0;
+    float high_shift = 0;
 
-    /// Returns whether a key supports the status.
+    /// Returns whether a key supports the status: satisfied as a low end, violated as a high one.
     bool supports(Status status, etlmon::Key key) const;
+    /// Returns an end less its shift.
+    static etlmon::Key end_of(etlmon::Key key, float shift);
 };
 
 struct Judged {

@@ -157,12 +157,15 @@ std::string lesson_of(const Desk& desk) {
 }  // namespace
 
 void Background::look_after(const Desk& desk) {
+    if (std::exchange(seen_, desk.version()) != desk.version()) {
+        changed_ = Clock::now();
+        if (running_.valid()) learned_.clear();  // it may have read these labels or those before
+    }
     if (running_.valid() && running_.wait_for(0s) == std::future_status::ready) {
         auto parsed = parse_proposals(running_.get(), desk);
         proposals_ = parsed ? std::move(*parsed) : Proposals{"they cannot be read", {}};
         ++version_;
     }
-    if (std::exchange(seen_, desk.version()) != desk.version()) changed_ = Clock::now();
     if (running_.valid() || Clock::now() - changed_ < kQuiet) return;
     const std::size_t labelled = labelled_episodes(desk).size();
     if (labelled < kEnoughLabelled || labelled == desk.episodes().size()) return;

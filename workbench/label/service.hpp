@@ -88,7 +88,7 @@ private:
     std::uint64_t version_ = 0;
     std::uint64_t seen_ = 0;  ///< version of the desk
     Clock::time_point changed_;
-    std::string learned_;  ///< labels that the running or last process learned from
+    std::string learned_;  ///< labels that the running or last process learned from, if it is known
 };
 
 }  // namespace etlc::label

@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* The version of this header. A library accepts programs of its own and of earlier versions. */
-#define ETLC_API_VERSION 4u
+#define ETLC_API_VERSION 5u
 
 /* ---- errors --------------------------------------------------------------------------------- */
 
@@ -269,6 +269,11 @@ typedef struct etlc_measured {
 /* Returns the measurement of a predicate at the last step. */
 ETLC_EXPORT etlc_status etlc_measure(etlc_session session, uint32_t predicate,
                                      etlc_measured *measured);
+
+/* Returns the threshold within which a predicate with two thresholds is true; it is false beyond
+ * that of etlc_measured. NaN: it has one. From version 5 on. */
+ETLC_EXPORT etlc_status etlc_inner_threshold(etlc_session session, uint32_t predicate,
+                                             float *threshold);
 
 /* Returns the value of a let at the last step. */
 ETLC_EXPORT etlc_status etlc_let(etlc_session session, uint32_t let, etlc_verdict *verdict);

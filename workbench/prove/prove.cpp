@@ -187,12 +187,19 @@ private:
         if (found.upper != expected.upper) promised.upper = both(promised.upper, found.upper);
     }
 
-    /// "satisfied where rho >= 0, violated where rho_high < 0"; "final where lower >= 0 or
-    /// upper < 0"
+    /// "final where lower >= 0 or upper < 0"; that of a repeating monitor also "once all that the
+    /// formula looks ahead has been seen"
+    Diagram final_by(const Place& at, Diagram lower_holds, Diagram upper_fails) {
+        const std::uint32_t ahead = plan_.monitors[at.said.monitor].ahead;
+        const bool complete =
+            at.sliding || (ahead != plan::kUnbounded && at.said.step >= at.position + ahead);
+        return complete ? kAlways : either(lower_holds, upper_fails);
+    }
+
+    /// "satisfied where rho >= 0, violated where rho_high < 0"
     void check_status(const Place& at, const Numbers& found) {
         const auto sign = [&](Diagram of) { return space_.diagrams.at_zero(of); };
-        const Diagram final =
-            at.sliding ? kAlways : either(sign(found.lower), no(sign(found.upper)));
+        const Diagram final = final_by(at, sign(found.lower), no(sign(found.upper)));
         if (at.said.satisfied != sign(found.low) || at.said.violated != no(sign(found.high)) ||
             at.said.final != final)
             blame(at, "its status", Witness());
@@ -216,7 +223,7 @@ private:
         const Said& said = at.said;
         check_truth(at, "satisfied", said.satisfied, expected.low);
         check_truth(at, "violated", said.violated, no(expected.high));
-        const Diagram due = at.sliding ? kAlways : either(expected.lower, no(expected.upper));
+        const Diagram due = final_by(at, expected.lower, no(expected.upper));
         check_truth(at, "final", both(said.final, due), due);
         // It may be final earlier, if no later verdict contradicts it.
         const Diagram early = both(said.final, no(due));

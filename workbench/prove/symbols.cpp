@@ -26,13 +26,14 @@ Atom atom_of(const check::Model& model, bool is_predicate, Index index) {
     // "counts as false where it is missing": then it is known.
     const double said = missing.value_or(false) ? reference::kInfinity : -reference::kInfinity;
     const bool is_truth = !is_predicate || model.predicates[index].equality();
-    return {is_predicate,
-            index,
-            true,
-            is_truth,
-            missing ? reference::Unseen{said, said} : range,
-            range,
-            is_predicate ? model.predicates[index].threshold.value : 0};
+    Atom atom{is_predicate, index, true,
+              is_truth,     false, missing ? reference::Unseen{said, said} : range,
+              range};
+    if (is_predicate) {
+        atom.of_two = model.predicates[index].threshold.inner.has_value();
+        atom.threshold = model.predicates[index].threshold.value;
+    }
+    return atom;
 }
 
 bool is_of(const reference::Node& node, const Atom& atom) {
@@ -74,7 +75,7 @@ std::vector<Truths> truths_of(const plan::Plan& plan, const std::vector<Atom>& a
         const bool is_declared = atom.is_predicate
                                      ? plan.model->predicates[atom.index].missing.has_value()
                                      : plan.model->inputs[atom.index].missing.has_value();
-        result.push_back(is_declared ? Truths::known : Truths::any);
+        result.push_back(is_declared && !atom.of_two ? Truths::known : Truths::any);
         for (std::size_t n = 0; n < form.nodes.size(); ++n) {
             if (!is_of(form.nodes[n], atom)) continue;
             reference::Unseen range = ranges.ranges[n];
@@ -194,10 +195,15 @@ public:
         const Diagram negated_high = variable(first + etlprove::kNegatedHigh);
         const reference::Unseen& range = atoms_[atom].missing;
         const Diagram same = both(equal(low, high), equal(negated_low, negated_high));
+        const Diagram in_order = both(implies(low, high), implies(negated_high, negated_low));
+        const Diagram between =
+            atoms_[atom].of_two
+                ? both(in_order, both(known, known_sample(high, negated_high, atoms_[atom])))
+                : etlprove::kNever;
         const Diagram missing = both(
             both(equal(low, number(range.lowest)), equal(negated_low, number(-range.lowest))),
             both(equal(high, number(range.highest)), equal(negated_high, number(-range.highest))));
-        return either(both(same, known), missing);
+        return either(either(both(same, known), missing), between);
     }
 
     /// Each end is in the range of numbers and of what a missing sample may be.

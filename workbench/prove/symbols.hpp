@@ -105,6 +105,7 @@ struct Atom {
     Index index = 0;        ///< of the model's predicates or inputs
     bool is_read = true;    ///< by the class, at every step
     bool is_truth = false;  ///< +inf or -inf: of a bool, == or !=
+    bool of_two = false;    ///< a predicate with two thresholds, whose ends differ
     /// Range where the sample is missing, and of every value.
     reference::Unseen missing;
     reference::Unseen range;

@@ -21,6 +21,13 @@ class MonitorCheck {
 public:
     explicit MonitorCheck(Context& context) : c_(context), reaches_(reaches(context.model)) {}
 
+    void measure(Monitor& monitor) const {
+        const Reach& reach = reaches_[monitor.formula];
+        if (monitor.restarts == Restarts::when_final && reach.unbounded == kNone &&
+            reach.horizon <= kMaxBound)
+            monitor.ahead = static_cast<std::uint32_t>(reach.horizon);
+    }
+
     void sliding(Monitor& monitor, Span name) {
         const Reach& reach = reaches_[monitor.formula];
         if (reach.unbounded != kNone) {
@@ -115,7 +122,7 @@ void refuse_moving_thresholds(Context& c, const Monitor& monitor) {
                c.model.predicates[formula.index].threshold.adaptation.has_value();
     });
     if (at == parts.end()) return;
-    c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
+    c.report(Code::calibration_not_available, monitor.calibration->span,
              fmt::format("'{}' is calibrated as a whole, which needs fixed thresholds; that of "
                          "'{}' is adaptive",
                          monitor.name, c.model.predicates[c.model.formulas[*at].index].name))
@@ -128,7 +135,7 @@ void refuse_comparisons_without_truth(Context& c, const Monitor& monitor) {
     const Index at = node_without_truth(c.model, monitor.true_formula());
     if (at == kNone) return;
     const std::string comparison = c.model.predicates[c.model.formulas[at].index].shown();
-    c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
+    c.report(Code::calibration_not_available, monitor.calibration->span,
              fmt::format("'{}' is calibrated as a whole, against the truths of its predicates; "
                          "'{}' has no name and therefore no truth",
                          monitor.name, comparison))
@@ -146,7 +153,7 @@ Restarts restarts(ast::Monitor::Kind kind) {
 /// The positions of a restarting monitor depend on its verdicts, and these on the shift.
 bool moves_with_its_shift(Context& c, const Monitor& monitor) {
     if (monitor.restarts == Restarts::never) return false;
-    c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
+    c.report(Code::calibration_not_available, monitor.calibration->span,
              fmt::format("'{}' restarts at steps that its shift would change; only a monitor with "
                          "fixed positions can be calibrated as a whole",
                          monitor.name))
@@ -175,6 +182,7 @@ void check_monitors(Context& c) {
         const Span name = c.scope.entity(NameKind::monitor, i).span;
         if (monitor.formula == kNone) continue;
         monitor.truth = with_truths_of_lets(c, monitor.formula);
+        check.measure(monitor);
         if (monitor.sliding)
             check.sliding(monitor, name);
         else

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "check/numbers/decimal.hpp"
+#include "check/time/time.hpp"
 
 namespace etlc::check {
 
@@ -16,6 +17,8 @@ namespace {
 
 using diag::Code;
 
+constexpr std::string_view kMonitorForm =
+    "calibrated(conformal, alpha = 0.1, against = missed_alarm)";
 constexpr std::string_view kAdaptiveForm =
     "calibrated(adaptive, alpha = 0.1, gamma = 0.01, lo = 0.1, hi = 0.6)";
 
@@ -28,9 +31,10 @@ struct Method {
 const std::vector<Method>& methods() {
     static const std::vector<Method> all{
         {"f1", ThresholdOrigin::f1, {}},
-        {"conformal", ThresholdOrigin::conformal, {"alpha"}},
+        {"conformal", ThresholdOrigin::conformal, {"alpha", "beta", "against", "within"}},
         {"class_conditional", ThresholdOrigin::class_conditional, {"alpha"}},
         {"adaptive", ThresholdOrigin::adaptive, {"alpha", "gamma", "lo", "hi"}},
+        {"risk", ThresholdOrigin::risk, {"alpha", "beta", "against", "within"}},
     };
     return all;
 }
@@ -46,27 +50,71 @@ const Method* find_method(Context& c, const ast::Name& name) {
 }
 
 /// An alpha of 0.9, meant as coverage, gives thresholds that look good and miss nearly everything.
-void warn_of_large_alpha(Context& c, const ast::Number& alpha) {
-    const Decimal value = Decimal::parse(alpha.text);
+void warn_of_large_rate(Context& c, const std::string& key, const ast::Number& rate) {
+    const Decimal value = Decimal::parse(rate.text);
     if (!(Decimal::parse("0.5") < value)) return;
-    const std::string text = shown(alpha);
-    c.report(Code::large_alpha, alpha.span,
-             fmt::format("alpha = {} allows more than half to be missed", text))
-        .note(large_alpha_note(alpha.text));
+    c.report(Code::large_alpha, rate.span,
+             fmt::format("{} = {} allows more than half to be {}", key, shown(rate),
+                         key == "alpha" ? "missed" : "false positives"))
+        .note(large_alpha_note(rate.text, key));
 }
 
-bool is_alpha(Context& c, const ast::Calibrated::Argument& argument) {
-    const auto* number = std::get_if<ast::Number>(&argument.value);
-    const bool open_unit = number != nullptr && Decimal::parse(number->text).is_positive() &&
-                           Decimal::parse(number->text) < Decimal::parse("1");
-    if (open_unit) {
-        warn_of_large_alpha(c, *number);
-        return true;
+/// Returns the text of a number or time as written.
+std::string text_of(const std::variant<ast::Bound, ast::Name>& value) {
+    const auto* const bound = std::get_if<ast::Bound>(&value);
+    return bound != nullptr ? with_unit(shown(bound->number), bound->unit)
+                            : std::get<ast::Name>(value).text;
+}
+
+/// Returns the number; null after an error if it is a word or has a unit.
+const ast::Number* number_in(Context& c, const ast::Calibrated::Argument& argument,
+                             std::string_view expected) {
+    const auto* const bound = std::get_if<ast::Bound>(&argument.value);
+    if (bound != nullptr && bound->unit.empty()) return &bound->number;
+    c.report(
+        Code::calibration_argument, ast::span_of(argument.value),
+        fmt::format("{} = {}; expected {}", argument.key.text, text_of(argument.value), expected));
+    return nullptr;
+}
+
+/// Returns the text of alpha or beta; empty after an error.
+std::string rate_of(Context& c, const ast::Calibrated::Argument& argument) {
+    constexpr std::string_view kExpected = "a number above 0 and below 1";
+    const ast::Number* const number = number_in(c, argument, kExpected);
+    if (number == nullptr) return {};
+    const Decimal value = Decimal::parse(number->text);
+    if (!value.is_positive() || !(value < Decimal::parse("1"))) {
+        c.report(Code::calibration_argument, number->span,
+                 fmt::format("{} = {}; expected {}", argument.key.text, shown(*number), kExpected));
+        return {};
     }
-    const std::string text =
-        number != nullptr ? shown(*number) : std::get<ast::Name>(argument.value).text;
-    return c.refuse(Code::calibration_argument, ast::span_of(argument.value),
-                    fmt::format("alpha = {}; expected a number above 0 and below 1", text));
+    warn_of_large_rate(c, argument.key.text, *number);
+    return number->text;
+}
+
+/// Returns the value of `against`; nothing after an error.
+std::optional<Against> against_of(Context& c, const ast::Calibrated::Argument& argument,
+                                  const std::vector<Against>& known) {
+    const auto* name = std::get_if<ast::Name>(&argument.value);
+    std::vector<std::string> expected;
+    for (const Against against : known) {
+        if (name != nullptr && name->text == word(against)) return against;
+        expected.push_back(fmt::format("against = {}", word(against)));
+    }
+    return c.no_value(Code::calibration_argument, ast::span_of(argument.value),
+                      fmt::format("expected {}", diag::alternatives(expected)));
+}
+
+/// Returns the number of steps of `within`; 0 after an error.
+std::uint32_t within_of(Context& c, const ast::Calibrated::Argument& argument) {
+    const auto* const bound = std::get_if<ast::Bound>(&argument.value);
+    const std::size_t errors = c.sink.errors();
+    const std::uint32_t steps = bound == nullptr ? 0 : bound_steps(c, *bound).value_or(0);
+    if (steps == 0 && c.sink.errors() == errors)
+        c.report(Code::calibration_argument, ast::span_of(argument.value),
+                 fmt::format("within = {}; expected a time of at least one step",
+                             text_of(argument.value)));
+    return steps;
 }
 
 /// Checks that the arguments are those of the method, each at most once.
@@ -86,37 +134,54 @@ void check_arguments(Context& c, const ast::Calibrated& written, const Method& m
     }
 }
 
-/// Returns the text of alpha, empty for a method without; nothing after an error in an argument.
-std::optional<std::string> alpha_of(Context& c, const ast::Calibrated& written,
-                                    const Method& method) {
+/// Returns canonical text: "calibrated(conformal, alpha = 0.1, against = both)".
+std::string text_of(const Threshold& threshold) {
+    std::string text = fmt::format("calibrated({}", method_name(threshold.origin));
+    if (!threshold.alpha.empty()) text += ", alpha = " + threshold.alpha;
+    if (!threshold.beta.empty()) text += ", beta = " + threshold.beta;
+    if (threshold.against != Against::misses)
+        text += fmt::format(", against = {}", word(threshold.against));
+    if (threshold.within > 0) text += ", within = " + diag::counted(threshold.within, "step");
+    return text + ")";
+}
+
+/// Returns the threshold without its number; nothing after an error. `known`: the errors that it
+/// may be against, the first of which is meant where the spec says nothing.
+std::optional<Threshold> uncalibrated(Context& c, const ast::Calibrated& written,
+                                      const Method& method, const std::vector<Against>& known) {
     const std::size_t errors = c.sink.errors();
     check_arguments(c, written, method);
-    std::string alpha;
-    for (const ast::Calibrated::Argument& argument : written.arguments)
-        if (argument.key.text == "alpha" && !method.arguments.empty() && is_alpha(c, argument))
-            alpha = std::get<ast::Number>(argument.value).text;
+    Threshold result;
+    result.origin = method.origin;
+    result.value64 = std::numeric_limits<double>::quiet_NaN();
+    result.value = std::numeric_limits<float>::quiet_NaN();
+    result.span = written.span;
+    result.against = known.front();
+    const ast::Calibrated::Argument* beta = nullptr;
+    for (const ast::Calibrated::Argument& argument : written.arguments) {
+        const std::string& key = argument.key.text;
+        const auto& taken = method.arguments;
+        if (std::find(taken.begin(), taken.end(), key) == taken.end()) continue;
+        if (key == "alpha") result.alpha = rate_of(c, argument);
+        if (key == "beta") result.beta = rate_of(c, *(beta = &argument));
+        if (key == "within") result.within = within_of(c, argument);
+        if (key == "against")
+            if (const auto against = against_of(c, argument, known)) result.against = *against;
+    }
     if (c.sink.errors() > errors) return std::nullopt;
-    if (!method.arguments.empty() && alpha.empty())
+    if (!method.arguments.empty() && result.alpha.empty())
         return c.no_value(
             Code::calibration_argument, written.span,
             fmt::format("{} needs its error rate; expected {}", method.name,
                         method.origin == ThresholdOrigin::adaptive
                             ? std::string(kAdaptiveForm)
                             : fmt::format("calibrated({}, alpha = 0.1)", method.name)));
-    return alpha;
-}
-
-Threshold uncalibrated(const ast::Calibrated& written, const Method& method,
-                       const std::string& alpha) {
-    Threshold threshold;
-    threshold.origin = method.origin;
-    threshold.alpha = alpha;
-    threshold.text = alpha.empty() ? fmt::format("calibrated({})", method.name)
-                                   : fmt::format("calibrated({}, alpha = {})", method.name, alpha);
-    threshold.value64 = std::numeric_limits<double>::quiet_NaN();
-    threshold.value = std::numeric_limits<float>::quiet_NaN();
-    threshold.span = written.span;
-    return threshold;
+    if (beta != nullptr && result.against != Against::both)
+        return c.no_value(Code::calibration_argument, beta->key.span,
+                          "beta is the rate of the second error; without 'against = both' there "
+                          "is one, and its rate is alpha");
+    result.text = text_of(result);
+    return result;
 }
 
 // ---- thresholds that follow delayed labels: updates never round, so the bound on the miss rate
@@ -134,12 +199,7 @@ constexpr double kLeastGrid = 0x1p-126;
 const ast::Number* number_of(Context& c, const ast::Calibrated& written, std::string_view key,
                              std::vector<std::string_view>& missing) {
     for (const ast::Calibrated::Argument& argument : written.arguments) {
-        if (argument.key.text != key) continue;
-        if (const auto* number = std::get_if<ast::Number>(&argument.value)) return number;
-        const ast::Name& name = std::get<ast::Name>(argument.value);
-        c.report(Code::calibration_argument, name.span,
-                 fmt::format("{} = {}; expected a number", key, name.text));
-        return nullptr;
+        if (argument.key.text == key) return number_in(c, argument, "a number");
     }
     missing.push_back(key);
     return nullptr;
@@ -232,24 +292,12 @@ std::optional<Adaptation> check_adaptation(Context& c, const ast::Calibrated& wr
     return result;
 }
 
-constexpr std::string_view kMonitorForm =
-    "calibrated(conformal, alpha = 0.1, against = missed_alarm)";
-
-/// Returns the value of `against`; nothing after an error.
-std::optional<Against> against_of(Context& c, const ast::Calibrated::Argument& argument) {
-    const auto* name = std::get_if<ast::Name>(&argument.value);
-    for (const Against against : {Against::missed_alarm, Against::missed_success})
-        if (name != nullptr && name->text == word(against)) return against;
-    return c.no_value(Code::calibration_argument, ast::span_of(argument.value),
-                      "expected against = missed_alarm or against = missed_success");
-}
-
 }  // namespace
 
-std::string large_alpha_note(const std::string& alpha) {
+std::string large_alpha_note(const std::string& alpha, std::string_view key) {
     return fmt::format(
-        "it is an error rate, not a coverage: to cover a share of {}, write alpha = {:.9g}", alpha,
-        1 - to_double(alpha));
+        "it is an error rate, not a coverage: to cover a share of {}, write {} = {:.9g}", alpha,
+        key, 1 - to_double(alpha));
 }
 
 std::string_view method_name(ThresholdOrigin origin) {
@@ -259,50 +307,51 @@ std::string_view method_name(ThresholdOrigin origin) {
 }
 
 std::string_view word(Against against) {
-    return against == Against::missed_alarm ? "missed_alarm" : "missed_success";
+    switch (against) {
+        case Against::misses: return "misses";
+        case Against::false_positives: return "false_positives";
+        case Against::missed_alarm: return "missed_alarm";
+        case Against::missed_success: return "missed_success";
+        case Against::both: break;
+    }
+    return "both";
 }
 
-std::optional<MonitorCalibration> check_monitor_calibrated(Context& c,
-                                                           const ast::Calibrated& written) {
+std::optional<Threshold> check_monitor_calibrated(Context& c, const ast::Calibrated& written) {
     const Method* method = find_method(c, written.method);
     if (method == nullptr) return std::nullopt;
-    if (method->origin != ThresholdOrigin::conformal) {
+    if (method->origin != ThresholdOrigin::conformal && method->origin != ThresholdOrigin::risk) {
         c.report(Code::unknown_method, written.method.span,
-                 fmt::format("a monitor is calibrated with 'conformal'; '{}' is for predicates",
+                 fmt::format("a monitor is calibrated with 'conformal' or 'risk'; '{}' is for "
+                             "predicates",
                              method->name))
             .note(fmt::format("expected {}", kMonitorForm));
         return std::nullopt;
     }
-    const Method whole{method->name, method->origin, {"alpha", "against"}};
-    const std::size_t errors = c.sink.errors();
-    std::optional<Against> against;
-    for (const ast::Calibrated::Argument& argument : written.arguments)
-        if (argument.key.text == "against") against = against_of(c, argument);
-    const auto alpha = alpha_of(c, written, whole);
-    if (!alpha || c.sink.errors() > errors) return std::nullopt;
-    if (!against)
-        return c.no_value(
-            Code::calibration_argument, written.span,
-            fmt::format("a monitor is calibrated against one kind of error; expected {}",
-                        kMonitorForm));
-    MonitorCalibration result{uncalibrated(written, *method, *alpha), *against};
-    result.threshold.text =
-        fmt::format("calibrated(conformal, alpha = {}, against = {})", *alpha, word(*against));
-    return result;
+    const auto result = uncalibrated(
+        c, written, *method, {Against::missed_alarm, Against::missed_success, Against::both});
+    const auto& all = written.arguments;
+    const bool is_against = std::any_of(all.begin(), all.end(), [](const auto& argument) {
+        return argument.key.text == "against";
+    });
+    if (!result || is_against) return result;
+    return c.no_value(
+        Code::calibration_argument, written.span,
+        fmt::format("a monitor is calibrated against one kind of error, or both; expected {}",
+                    kMonitorForm));
 }
 
 std::optional<Threshold> check_calibrated(Context& c, const ast::Calibrated& written) {
     const Method* method = find_method(c, written.method);
     if (method == nullptr) return std::nullopt;
-    const auto alpha = alpha_of(c, written, *method);
-    if (!alpha) return std::nullopt;
-    Threshold threshold = uncalibrated(written, *method, *alpha);
-    if (method->origin != ThresholdOrigin::adaptive) return threshold;
-    threshold.adaptation = check_adaptation(c, written, *alpha);
-    if (!threshold.adaptation) return std::nullopt;
-    const Adaptation& moves = *threshold.adaptation;
-    threshold.text = fmt::format("calibrated(adaptive, alpha = {}, gamma = {}, lo = {}, hi = {})",
-                                 *alpha, moves.gamma, moves.lo, moves.hi);
+    auto threshold = uncalibrated(c, written, *method,
+                                  {Against::misses, Against::false_positives, Against::both});
+    if (!threshold || method->origin != ThresholdOrigin::adaptive) return threshold;
+    threshold->adaptation = check_adaptation(c, written, threshold->alpha);
+    if (!threshold->adaptation) return std::nullopt;
+    const Adaptation& moves = *threshold->adaptation;
+    threshold->text = fmt::format("calibrated(adaptive, alpha = {}, gamma = {}, lo = {}, hi = {})",
+                                  threshold->alpha, moves.gamma, moves.lo, moves.hi);
     return threshold;
 }
 

@@ -13,12 +13,11 @@ namespace etlc::check {
 /// Returns the threshold with method and alpha, and epsilon NaN; nothing after an error.
 std::optional<Threshold> check_calibrated(Context& context, const ast::Calibrated& written);
 
-/// Checks the calibration of a whole monitor, whose arguments are alpha and against.
-std::optional<MonitorCalibration> check_monitor_calibrated(Context& context,
-                                                           const ast::Calibrated& written);
+/// Checks the calibration of a whole monitor, which says against which error it is.
+std::optional<Threshold> check_monitor_calibrated(Context& context, const ast::Calibrated& written);
 
-/// Says what to write in place of an alpha above 0.5.
-std::string large_alpha_note(const std::string& alpha);
+/// Says what to write in place of an alpha or beta above 0.5.
+std::string large_alpha_note(const std::string& alpha, std::string_view key = "alpha");
 
 /// Returns the name of the method in specs and thresholds files, "conformal"; empty for literal
 /// thresholds.

@@ -8,12 +8,16 @@
 #include <limits>
 #include <numeric>
 
+#include "check/guarantees/calibrated.hpp"
 #include "check/numbers/decimal.hpp"
 #include "data/files/hash.hpp"
 
 namespace etlc::check {
 
 namespace {
+
+/// Losses are compared as multiples of 2^-kLossBits.
+constexpr int kLossBits = 36;
 
 /// Returns floor(alpha * factor), multiplied digit by digit from the last: with alpha = 0.d1 d2 ...
 /// the carry out of d1 is the part before the point.
@@ -61,9 +65,32 @@ std::optional<float> halfway(float low, float high) {
     return static_cast<float>((static_cast<double>(low) + static_cast<double>(high)) / 2);
 }
 
+float infinite(bool above) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    return above ? kInfinity : -kInfinity;
+}
+
+bool keeps_risk(const std::vector<double>& losses, std::string_view alpha) {
+    constexpr std::uint64_t kOne = std::uint64_t{1} << kLossBits;
+    if (losses.size() >= kOne >> 13U) return false;  // the product below would overflow
+    std::uint64_t sum = kOne;
+    for (const double loss : losses)
+        sum += static_cast<std::uint64_t>(std::ceil(loss * static_cast<double>(kOne)));
+    return sum <= whole_part_of_product(Decimal::parse(alpha), (losses.size() + 1) * kOne);
+}
+
+Both both(float against_misses, float against_false_positives, bool upper_bound) {
+    const float low = std::min(against_misses, against_false_positives);
+    const float high = std::max(against_misses, against_false_positives);
+    const bool overlap = (against_misses == high) == upper_bound && low < high;
+    if (overlap) return {against_misses, against_false_positives};
+    return {halfway(low, high).value_or(against_misses), std::nullopt};
+}
+
 namespace {
 
 using thresholds::Entry;
+using thresholds::Side;
 using Found = std::optional<Contradiction>;
 
 /// Returns alpha in canonical form, shortened to fit a line.
@@ -73,33 +100,86 @@ std::string short_text(const std::string& alpha) {
     return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
 }
 
-Found counts(const Entry& entry, const std::string& place) {
-    const bool is_pair = entry.method == "f1" && entry.scores.size() == 2;
-    const std::uint64_t kept = takes_groups(entry.method) ? entry.n : is_pair ? 2 : 1;
-    if (entry.n == 0 || entry.n > kMaxScores)
-        return Contradiction{
-            fmt::format("'{}.n' is {}, expected a number of scores from 1", place, entry.n)};
-    if (entry.scores.size() != kept)
-        return Contradiction{fmt::format(
-            "'{}.scores' has {}, expected {}", place, diag::counted(entry.scores.size(), "element"),
-            takes_groups(entry.method) ? fmt::format("n of them, which is {}", kept)
-            : entry.method == "f1"     ? "1 or 2: the chosen score and the next"
-                                       : "1: the chosen score")};
-    for (std::size_t i = 1; i < entry.scores.size(); ++i)
-        if (entry.scores[i] < entry.scores[i - 1])
+/// One threshold of an entry, and what it has to be.
+struct Checked {
+    const Side& side;
+    const std::string& method;
+    const std::string& rate;
+    std::string rate_name;  ///< "alpha"
+    std::string place;      ///< "predicates.at_a.inner"
+    bool above;             ///< is_above
+    bool of_two;            ///< it may be infinite
+};
+
+Found in_order(const Checked& of) {
+    const std::vector<double>& scores = of.side.scores;
+    for (std::size_t i = 1; i < scores.size(); ++i)
+        if (scores[i] < scores[i - 1])
             return Contradiction{
                 fmt::format("'{0}.scores[{1}]' is {2}, expected at least {3}, the score before it",
-                            place, i, entry.scores[i], entry.scores[i - 1])};
-    if (entry.method == "f1") return std::nullopt;
-    const std::uint64_t k = rank(entry.alpha, entry.n);
-    if (k > entry.n)
+                            of.place, i, scores[i], scores[i - 1])};
+    return std::nullopt;
+}
+
+Found losses(const Checked& of) {
+    const std::uint64_t n = of.method == "risk" ? of.side.n : 0;
+    for (const auto& [key, list] : {std::pair{"losses", &of.side.losses},
+                                    std::pair{"losses_before", &of.side.losses_before}}) {
+        const bool may_be_empty = list == &of.side.losses_before;
+        if (list->size() != n && !(may_be_empty && list->empty()))
+            return Contradiction{fmt::format("'{}.{}' has {}, expected {}", of.place, key,
+                                             diag::counted(list->size(), "element"), n)};
+        for (std::size_t i = 0; i < list->size(); ++i)
+            if (!((*list)[i] >= 0 && (*list)[i] <= 1))
+                return Contradiction{fmt::format("'{}.{}[{}]' is {}, expected a share from 0 to 1",
+                                                 of.place, key, i, (*list)[i])};
+    }
+    if (n == 0 && !of.of_two && of.method == "risk")
         return Contradiction{
-            fmt::format("'{}.n' is {}, expected at least {}, which alpha = {} needs", place,
-                        entry.n, scores_needed(entry.alpha), short_text(entry.alpha))};
-    if (k != entry.k)
+            fmt::format("'{}.n' is 0, expected a number of scores from 1", of.place)};
+    if (of.method != "risk" || std::isinf(of.side.epsilon)) return std::nullopt;
+    if (!keeps_risk(of.side.losses, of.rate))
         return Contradiction{
-            fmt::format("'{}.k' is {}, expected {}: the rank of alpha = {} among {}", place,
-                        entry.k, k, short_text(entry.alpha), diag::counted(entry.n, "score"))};
+            fmt::format("'{}.losses' are too great for {} = {}: expected n / (n + 1) mean + 1 / (n "
+                        "+ 1) of them, which is at most that",
+                        of.place, of.rate_name, short_text(of.rate))};
+    if (!of.side.losses_before.empty() && keeps_risk(of.side.losses_before, of.rate))
+        return Contradiction{
+            fmt::format("'{}.losses_before' are small enough for {} = {}, so that the threshold "
+                        "would be a tighter one",
+                        of.place, of.rate_name, short_text(of.rate))};
+    return std::nullopt;
+}
+
+Found counts(const Checked& of) {
+    const auto& [side, method, rate, rate_name, place, above, of_two] = of;
+    const bool is_infinite = std::isinf(side.epsilon);
+    const bool is_pair = method == "f1" && side.scores.size() == 2;
+    const std::uint64_t kept = takes_scores(method)              ? side.n
+                               : method == "risk" && is_infinite ? 0
+                               : is_pair                         ? 2
+                                                                 : 1;
+    if ((side.n == 0 && !of_two) || side.n > kMaxScores)
+        return Contradiction{
+            fmt::format("'{}.n' is {}, expected a number of scores from 1", place, side.n)};
+    if (side.scores.size() != kept)
+        return Contradiction{fmt::format(
+            "'{}.scores' has {}, expected {}", place, diag::counted(side.scores.size(), "element"),
+            takes_scores(method) ? fmt::format("n of them, which is {}", kept)
+            : method == "f1"     ? "1 or 2: the chosen score and the next"
+                                 : fmt::format("{}: the chosen score", kept))};
+    if (Found found = in_order(of)) return found;
+    if (Found found = losses(of)) return found;
+    if (method == "f1" || method == "risk") return std::nullopt;
+    const std::uint64_t k = rank(rate, side.n);
+    if (k > side.n && !of_two)
+        return Contradiction{fmt::format("'{}.n' is {}, expected at least {}, which {} = {} needs",
+                                         place, side.n, scores_needed(rate), rate_name,
+                                         short_text(rate))};
+    if (k != side.k)
+        return Contradiction{fmt::format("'{}.k' is {}, expected {}: the rank of {} = {} among {}",
+                                         place, side.k, k, rate_name, short_text(rate),
+                                         diag::counted(side.n, "score"))};
     return std::nullopt;
 }
 
@@ -119,19 +199,20 @@ std::optional<std::size_t> first_again(const std::vector<std::uint64_t>& hashes)
 
 Found episodes_of(const Entry& entry, const std::string& place,
                   const std::vector<std::uint64_t>& episodes, const thresholds::GroupNames& names) {
-    const std::string list = entry.against.empty() ? "episodes" : place + ".episodes";
-    const std::uint64_t least = takes_groups(entry.method) ? entry.n : 1;
+    const std::string list = place.starts_with("monitors") ? place + ".episodes" : "episodes";
+    const std::uint64_t n = std::max(entry.n, entry.inner ? entry.inner->n : 0);
+    const std::uint64_t least = takes_groups(entry.method) ? n : 1;
     if (episodes.size() < least)
         return Contradiction{fmt::format(
             "'{}' has {}, expected at least {}{}", list, diag::counted(episodes.size(), "element"),
             least,
             takes_groups(entry.method) ? fmt::format(": one for each score of '{}'", place) : "")};
     const thresholds::GroupCount count = thresholds::count_groups(episodes, names);
-    if (takes_groups(entry.method) && count.groups < entry.n)
+    if (takes_groups(entry.method) && count.groups < n)
         return Contradiction{fmt::format(
             "'{}.n' is {}, expected at most {}, the number of groups that '{}' are in: each has "
             "one score",
-            place, entry.n, count.groups, list)};
+            place, n, count.groups, list)};
     const std::optional<std::size_t> again = first_again(episodes);
     if (!again) return std::nullopt;
     return Contradiction{
@@ -140,7 +221,7 @@ Found episodes_of(const Entry& entry, const std::string& place,
 }
 
 /// Returns the derivation of an F1-optimal threshold in words, and its value.
-std::pair<std::string, float> f1_threshold(const Entry& entry, const std::string& place) {
+std::pair<std::string, float> f1_threshold(const Side& entry, const std::string& place) {
     const auto score = static_cast<float>(entry.scores[0]);
     if (entry.scores.size() == 1)
         return {fmt::format("that is '{}.scores[0]', {:.9g}", place, score), score};
@@ -150,20 +231,34 @@ std::pair<std::string, float> f1_threshold(const Entry& entry, const std::string
         halfway(score, next).value_or(score)};
 }
 
-Found threshold(const Entry& entry, const std::string& place, bool upper_bound) {
-    const auto from = [&]() -> std::pair<std::string, float> {
-        if (entry.method == "f1") return f1_threshold(entry, place);
-        const std::uint64_t at =
-            takes_groups(entry.method) ? at_rank(entry.k, entry.n, upper_bound) : 0;
-        const double score = entry.scores[at];
+Found threshold(const Checked& of) {
+    const auto& [side, method, rate, rate_name, place, above, of_two] = of;
+    const auto from = [&, &side = side, &method = method, &place = place,
+                       above = above]() -> std::pair<std::string, float> {
+        if (method == "f1") return f1_threshold(side, place);
+        const bool too_few = method == "risk" ? side.scores.empty() : side.k > side.n;
+        if (too_few)
+            return {
+                fmt::format("infinite, since the {} are too few", diag::counted(side.n, "score")),
+                infinite(above)};
+        const std::uint64_t at = takes_scores(method) ? at_rank(side.k, side.n, above) : 0;
+        const double score = side.scores[at];
         return {fmt::format("the first float32 beyond '{}.scores[{}]', {:.17g}", place, at, score),
-                beyond(score, upper_bound)};
+                beyond(score, above)};
     };
     const auto [words, expected] = from();
-    if (entry.epsilon == expected) return std::nullopt;
+    if (side.epsilon == expected) return std::nullopt;
     return Contradiction{fmt::format("'{}.epsilon' is {:.9g}, expected {:.9g}: {}", place,
-                                     entry.epsilon, expected, words),
+                                     side.epsilon, expected, words),
                          true};
+}
+
+/// Returns what `against` says in the file.
+Against against_of(const Entry& entry) {
+    for (const Against against :
+         {Against::false_positives, Against::missed_alarm, Against::missed_success, Against::both})
+        if (entry.against == word(against)) return against;
+    return Against::misses;
 }
 
 }  // namespace
@@ -171,9 +266,23 @@ Found threshold(const Entry& entry, const std::string& place, bool upper_bound) 
 Found contradiction(const Entry& entry, const std::string& place, bool upper_bound,
                     const std::vector<std::uint64_t>& episodes,
                     const thresholds::GroupNames& groups) {
-    if (Found found = counts(entry, place)) return found;
+    const bool of_two = entry.inner.has_value();
+    const bool above = is_above(against_of(entry), upper_bound);
+    std::vector<Checked> sides{{entry, entry.method, entry.alpha, "alpha", place, above, of_two}};
+    if (of_two)
+        sides.push_back({*entry.inner, entry.method, entry.beta.empty() ? entry.alpha : entry.beta,
+                         entry.beta.empty() ? "alpha" : "beta", place + ".inner", !above, true});
+    for (const Checked& side : sides)
+        if (Found found = counts(side)) return found;
     if (Found found = episodes_of(entry, place, episodes, groups)) return found;
-    return threshold(entry, place, upper_bound);
+    for (const Checked& side : sides)
+        if (Found found = threshold(side)) return found;
+    if (!of_two || !std::isinf(entry.epsilon) || !std::isinf(entry.inner->epsilon))
+        return std::nullopt;
+    return Contradiction{
+        fmt::format("both thresholds of '{}' are infinite, expected one that is "
+                    "finite: the scores are too few",
+                    place)};
 }
 
 }  // namespace etlc::check

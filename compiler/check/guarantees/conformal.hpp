@@ -10,13 +10,29 @@
 #include <vector>
 
 #include "artifacts/thresholds.hpp"
+#include "check/model/model.hpp"
 
 namespace etlc::check {
 
 /// Whether the method takes one score of each group of episodes, and keeps them all. The others
-/// pool frames, and keep the chosen score, f1 also the next.
-constexpr bool takes_groups(std::string_view method) {
+/// keep the chosen score, f1 also the next.
+constexpr bool takes_scores(std::string_view method) {
     return method == "conformal" || method == "adaptive";
+}
+
+/// Whether the method counts groups of episodes; the others pool frames.
+constexpr bool takes_groups(std::string_view method) {
+    return takes_scores(method) || method == "risk";
+}
+
+/// Whether the threshold is above the scores that it accepts, where it bounds misses, or below
+/// those that it leaves out, where it bounds false positives; mirrored for >= and >. A shift bounds
+/// rho from below: `upper_bound` is false. Against both it is about the threshold against misses;
+/// the inner one is on the other side.
+constexpr bool is_above(Against against, bool upper_bound) {
+    const bool of_positives = against == Against::misses || against == Against::missed_success ||
+                              against == Against::both;
+    return upper_bound == of_positives;
 }
 
 /// Limit up to which ranks are exact; more scores fit in no memory.
@@ -46,6 +62,22 @@ constexpr std::uint64_t at_rank(std::uint64_t k, std::uint64_t n, bool upper_bou
     return upper_bound ? k - 1 : n - k;
 }
 
+/// Returns the infinite threshold of a side whose scores are too few: nothing is beyond it.
+float infinite(bool above);
+
+/// Whether thresholds with these losses, one a group, keep the expected loss of a new one at alpha
+/// (Angelopoulos et al., "Conformal Risk Control", 2022): n / (n + 1) mean + 1 / (n + 1) <= alpha,
+/// in integers, rounded to the safe side.
+bool keeps_risk(const std::vector<double>& losses, std::string_view alpha);
+
+/// The thresholds against both errors, from that against misses and that against false positives.
+/// Where they do not overlap the demonstrations are separated: one threshold is halfway.
+struct Both {
+    float value = 0;
+    std::optional<float> inner;
+};
+Both both(float against_misses, float against_false_positives, bool upper_bound);
+
 /// The first inconsistent number: "'predicates.at_a.k' is 1, expected 37: the rank of alpha = 0.1
 /// among 40 scores".
 struct Contradiction {
@@ -53,9 +85,8 @@ struct Contradiction {
     bool by_hand = false;  ///< the threshold itself, which somebody may have edited
 };
 
-/// `place` is the key of the entry, "predicates.at_a". `upper_bound`: the threshold is above the
-/// accepted scores, as for <= and < and for a shift against missed alarms. `episodes` were used for
-/// calibration.
+/// `place` is the key of the entry, "predicates.at_a". `upper_bound`: of a predicate with <= or <,
+/// not of a monitor. `episodes` were used for calibration.
 std::optional<Contradiction> contradiction(const thresholds::Entry& entry, const std::string& place,
                                            bool upper_bound,
                                            const std::vector<std::uint64_t>& episodes,

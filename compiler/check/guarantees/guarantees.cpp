@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "check/guarantees/calibrated.hpp"
 #include "check/numbers/decimal.hpp"
 
 namespace etlc::check {
@@ -113,6 +114,7 @@ std::string_view uncovered(const Model& model, Index predicate) {
         case ThresholdOrigin::adaptive:
             return "has an adaptive threshold, which bounds the rate of missed frames, not of "
                    "episodes";
+        case ThresholdOrigin::risk: return "is calibrated for a share of the frames, not for each";
         case ThresholdOrigin::conformal: return "";
         case ThresholdOrigin::literal: break;
     }
@@ -136,58 +138,170 @@ const Let* judged_let(const Model& model, Index formula) {
 
 void count_groups(const Threshold& threshold, Claim& claim) {
     if (!threshold.by_group) return;
-    claim.groups = claim.groups == 0 ? threshold.n : std::min(claim.groups, threshold.n);
+    for (const std::uint64_t n : {threshold.n, threshold.inner_n})
+        if (n > 0) claim.groups = claim.groups == 0 ? n : std::min(claim.groups, n);
 }
 
-Claim claim(const Model& model, Literal part, Values values) {
-    Claim result;
-    result.formula = part.formula;
-    result.negated = part.negated;
+bool bounds_misses(const Threshold& threshold) {
+    return threshold.against != Against::false_positives;
+}
+bool bounds_false_positives(const Threshold& threshold) {
+    return threshold.against != Against::misses;
+}
+
+/// One of the two errors of a verdict: the bounds that it rests on, and what voids it.
+struct Line {
+    std::vector<std::string> rates;
+    Index without = kNone;  ///< a predicate that lacks a bound
+    Index missing = kNone;  ///< one whose `missing` voids its bound
+
+    bool holds() const { return without == kNone && missing == kNone; }
+};
+
+/// The bounds of the predicates in a formula.
+struct Bounds {
+    Line satisfied;  ///< satisfied wrongly
+    Line violated;   ///< violated wrongly
+    std::vector<std::string> all;
+    bool of_both = false;  ///< some predicate is calibrated against both errors
+
+    /// Adds what a literal contributes. A negated one is true where the predicate is called false.
+    void add(const Model& model, Index index, bool negated) {
+        const Predicate& predicate = model.predicates[index];
+        const Threshold& threshold = predicate.threshold;
+        const auto take = [&](Line& line, bool bounded, const std::string& rate, bool missing) {
+            if (!bounded) {
+                line.without = index;
+                return;
+            }
+            line.rates.push_back(rate);
+            // A bound on successes alone excludes the steps with missing samples.
+            if (predicate.missing == missing && (of_both || &line == &satisfied))
+                line.missing = index;
+        };
+        take(negated ? satisfied : violated, bounds_misses(threshold), threshold.alpha, false);
+        take(negated ? violated : satisfied, bounds_false_positives(threshold),
+             threshold.rate_of_false_positives(), true);
+    }
+};
+
+Bounds bounds_of(const Model& model, const std::map<Index, Polarity>& predicates) {
+    Bounds result;
+    const auto is_calibrated = [&](Index predicate) {
+        return model.predicates[predicate].threshold.origin == ThresholdOrigin::conformal;
+    };
+    for (const auto& [predicate, polarity] : predicates)
+        result.of_both |= is_calibrated(predicate) &&
+                          model.predicates[predicate].threshold.against == Against::both;
+    for (const auto& [predicate, polarity] : predicates) {
+        if (!is_calibrated(predicate)) continue;
+        if (polarity.positive) result.add(model, predicate, false);
+        if (polarity.negative) result.add(model, predicate, true);
+        const Threshold& threshold = model.predicates[predicate].threshold;
+        if (bounds_misses(threshold)) result.all.push_back(threshold.alpha);
+        if (bounds_false_positives(threshold))
+            result.all.push_back(threshold.rate_of_false_positives());
+    }
+    return result;
+}
+
+/// Returns why neither error is bounded.
+std::string why_nothing(const Model& model, const Bounds& bounds) {
+    const auto name = [&](Index predicate) { return model.predicates[predicate].shown(); };
+    for (const Line* const line : {&bounds.satisfied, &bounds.violated})
+        if (line->missing != kNone)
+            return fmt::format("'{}' is {} when its sample is missing", name(line->missing),
+                               *model.predicates[line->missing].missing);
+    const Index plain = bounds.satisfied.without;
+    const Index negated = bounds.violated.without;
+    if (plain == negated) return fmt::format("'{}' occurs both plain and negated", name(plain));
+    const auto misses_only = [&](Index predicate) {
+        return bounds_misses(model.predicates[predicate].threshold);
+    };
+    if (misses_only(plain) && misses_only(negated))
+        return fmt::format("'{}' occurs plain and '{}' negated", name(plain), name(negated));
+    return fmt::format("'{}' may make it satisfied wrongly and '{}' violated wrongly", name(plain),
+                       name(negated));
+}
+
+/// Returns the claims about a formula or conjunct, at least one.
+std::vector<Claim> claims_about(const Model& model, Literal part, Values values) {
+    Claim base;
+    base.formula = part.formula;
+    base.negated = part.negated;
     if (const Let* let = judged_let(model, part.formula)) {
-        result.why = fmt::format(
-            "'{}' has a truth of its own, to which no threshold was calibrated", let->name);
+        base.why = fmt::format("'{}' has a truth of its own, to which no threshold was calibrated",
+                               let->name);
+        return {base};
+    }
+    const std::map<Index, Polarity> predicates = predicates_in(model, part);
+    bool no_at_zero = false;
+    for (const auto& [predicate, polarity] : predicates) {
+        const Predicate& of = model.predicates[predicate];
+        const std::string_view why = uncovered(model, predicate);
+        if (!why.empty() && base.why.empty()) base.why = fmt::format("'{}' {}", of.shown(), why);
+        if (of.threshold.origin == ThresholdOrigin::conformal)
+            count_groups(of.threshold, base);
+        else
+            no_at_zero |= fails_at_zero(of, polarity);
+    }
+    if (!base.why.empty()) return {base};
+    std::vector<Claim> result;
+    const auto add = [&](Claim::Kind kind, const std::vector<std::string>& rates) {
+        Claim claim = base;
+        claim.kind = kind;
+        claim.bound = sum(rates);
+        const bool of_violations =
+            kind != Claim::Kind::missed_success && kind != Claim::Kind::violated_wrongly;
+        claim.zero_aside = of_violations && no_at_zero && values != Values::boolean;
+        if (Decimal::parse(claim.bound) >= Decimal::parse("1"))
+            base.why = fmt::format("the alphas of its predicates add up to {}", claim.bound);
+        else
+            result.push_back(std::move(claim));
+    };
+    const Bounds bounds = bounds_of(model, predicates);
+    const auto& [satisfied, violated, all, of_both] = bounds;
+    if (all.empty()) {
+        add(Claim::Kind::exact, {});
+    } else if (!of_both && satisfied.holds() != violated.holds()) {
+        add(violated.holds() ? Claim::Kind::missed_success : Claim::Kind::missed_alarm, all);
+    } else if (satisfied.holds() || violated.holds()) {
+        if (satisfied.holds()) add(Claim::Kind::satisfied_wrongly, satisfied.rates);
+        if (violated.holds()) add(Claim::Kind::violated_wrongly, violated.rates);
+        if (satisfied.holds() && violated.holds()) add(Claim::Kind::wrong, all);
+    } else {
+        base.why = why_nothing(model, bounds);
+    }
+    if (result.empty()) result.push_back(base);
+    return result;
+}
+
+/// Returns the claims of a monitor that is calibrated as a whole.
+std::vector<Claim> claims_as_a_whole(const Monitor& monitor) {
+    const Threshold& threshold = *monitor.calibration;
+    const bool by_share = threshold.origin == ThresholdOrigin::risk;
+    std::vector<Claim> result;
+    const auto add = [&](Claim::Kind kind, const std::vector<std::string>& rates) {
+        Claim& claim = result.emplace_back();
+        claim.kind = kind;
+        claim.formula = monitor.formula;
+        claim.bound = sum(rates);
+        count_groups(threshold, claim);
+    };
+    const std::string& of_alarms = threshold.rate_of_false_positives();
+    if (threshold.against == Against::both && !by_share) {
+        add(Claim::Kind::satisfied_wrongly, {of_alarms});
+        add(Claim::Kind::violated_wrongly, {threshold.alpha});
+        add(Claim::Kind::wrong, {of_alarms, threshold.alpha});
+        // One error is bounded by its rate in any case; both together may be certain.
+        if (Decimal::parse(result.back().bound) >= Decimal::parse("1")) result.pop_back();
         return result;
     }
-    bool no_at_zero = false;
-    Polarity all;
-    std::vector<std::string> alphas;
-    std::string positive;
-    std::string negative;
-    for (const auto& [predicate, polarity] : predicates_in(model, part)) {
-        const std::string_view why = uncovered(model, predicate);
-        if (!why.empty() && result.why.empty())
-            result.why = fmt::format("'{}' {}", model.predicates[predicate].shown(), why);
-        if (model.predicates[predicate].threshold.origin != ThresholdOrigin::conformal) {
-            no_at_zero |= fails_at_zero(model.predicates[predicate], polarity);
-            continue;
-        }
-        // Without a sample it may miss its truth, and with it an alarm.
-        if (polarity.negative && model.predicates[predicate].missing == false)
-            result.why = fmt::format("'{}' is false when its sample is missing",
-                                     model.predicates[predicate].shown());
-        alphas.push_back(model.predicates[predicate].threshold.alpha);
-        count_groups(model.predicates[predicate].threshold, result);
-        if (polarity.positive) positive = model.predicates[predicate].shown();
-        if (polarity.negative) negative = model.predicates[predicate].shown();
-        all.positive |= polarity.positive;
-        all.negative |= polarity.negative;
-    }
-    if (!result.why.empty()) return result;
-    result.bound = sum(alphas);
-    if (all.positive && all.negative) {
-        result.why = positive == negative
-                         ? fmt::format("'{}' occurs both plain and negated", positive)
-                         : fmt::format("'{}' occurs plain and '{}' negated", positive, negative);
-    } else if (alphas.empty()) {
-        result.kind = Claim::Kind::exact;
-    } else if (Decimal::parse(result.bound) >= Decimal::parse("1")) {
-        result.why = fmt::format("the alphas of its predicates add up to {}", result.bound);
-    } else {
-        result.kind = all.positive ? Claim::Kind::missed_success : Claim::Kind::missed_alarm;
-    }
-    const bool of_violations =
-        result.kind == Claim::Kind::exact || result.kind == Claim::Kind::missed_alarm;
-    result.zero_aside = of_violations && no_at_zero && values != Values::boolean;
+    if (threshold.against != Against::missed_success)
+        add(by_share ? Claim::Kind::satisfied_share : Claim::Kind::missed_alarm, {of_alarms});
+    if (threshold.against != Against::missed_alarm)
+        add(by_share ? Claim::Kind::violated_share : Claim::Kind::missed_success,
+            {threshold.alpha});
     return result;
 }
 
@@ -221,62 +335,148 @@ bool is_own_truth(const Model& model, Index predicate) {
 }
 
 std::vector<Claim> claims(const Model& model, const Monitor& monitor, Values values) {
-    if (monitor.calibration) {
-        const bool alarms = monitor.calibration->against == Against::missed_alarm;
-        Claim whole;
-        whole.kind = alarms ? Claim::Kind::missed_alarm : Claim::Kind::missed_success;
-        whole.formula = monitor.formula;
-        whole.bound = Decimal::parse(monitor.calibration->threshold.alpha).text();
-        count_groups(monitor.calibration->threshold, whole);
-        return {whole};
-    }
-    std::vector<Claim> result{claim(model, {monitor.formula, false}, values)};
+    if (monitor.calibration) return claims_as_a_whole(monitor);
+    std::vector<Claim> result = claims_about(model, {monitor.formula, false}, values);
     if (result.front().kind != Claim::Kind::nothing) return result;
     const std::vector<Literal> conjuncts = conjuncts_of(model, {monitor.formula, false});
     if (conjuncts.size() < 2) return result;
-    for (const Literal conjunct : conjuncts) {
-        Claim part = claim(model, conjunct, values);
-        part.part = shown(model, conjunct.formula);
-        if (conjunct.negated) part.part = fmt::format("!({})", part.part);
-        result.push_back(std::move(part));
-    }
+    for (const Literal conjunct : conjuncts)
+        for (Claim& part : claims_about(model, conjunct, values)) {
+            part.part = shown(model, conjunct.formula);
+            if (conjunct.negated) part.part = fmt::format("!({})", part.part);
+            result.push_back(std::move(part));
+        }
     return result;
 }
 
+namespace {
+
+/// Returns what some verdict does with at most that probability.
+std::string_view what(Claim::Kind kind) {
+    switch (kind) {
+        case Claim::Kind::missed_success: return "misses a success";
+        case Claim::Kind::missed_alarm: return "misses an alarm";
+        case Claim::Kind::satisfied_wrongly: return "is satisfied wrongly";
+        case Claim::Kind::violated_wrongly: return "is violated wrongly";
+        default: return "is wrong";
+    }
+}
+
+/// Returns a rate in percent, exactly: "10" for 0.1.
+std::string percent(const std::string& rate) {
+    Decimal decimal = Decimal::parse(rate);
+    decimal.exponent += 2;
+    return decimal.text();
+}
+
+}  // namespace
+
 std::string text(const Claim& claim) {
     const std::string_view aside = claim.zero_aside ? ", except at robustness 0" : "";
+    const std::string groups =
+        claim.groups > 0 ? ", from " + diag::counted(claim.groups, "group") : "";
+    const auto share = [&](const char* said, const char* is) {
+        return fmt::format(
+            "on average over calibrations and {}, {} at no more than {} % of the steps at which it "
+            "is truly {}{}",
+            claim.groups > 0 ? "episodes of new groups" : "new episodes", said,
+            percent(claim.bound), is, groups);
+    };
     switch (claim.kind) {
+        case Claim::Kind::nothing: return "no guarantee: " + claim.why;
         case Claim::Kind::exact:
             return fmt::format("exact{}: no predicate is calibrated, and each is its own truth",
                                aside);
-        case Claim::Kind::missed_success:
-        case Claim::Kind::missed_alarm:
-            return fmt::format(
-                "P(some verdict of {} misses {}) <= {}{}{}",
-                claim.groups > 0 ? "an episode of a new group" : "a new episode",
-                claim.kind == Claim::Kind::missed_success ? "a success" : "an alarm", claim.bound,
-                claim.groups > 0 ? ", from " + diag::counted(claim.groups, "group") : "", aside);
-        case Claim::Kind::nothing: break;
+        case Claim::Kind::satisfied_share: return share("satisfied", "violated");
+        case Claim::Kind::violated_share: return share("violated", "satisfied");
+        default: break;
     }
-    return "no guarantee: " + claim.why;
+    return fmt::format("P(some verdict of {} {}) <= {}{}{}",
+                       claim.groups > 0 ? "an episode of a new group" : "a new episode",
+                       what(claim.kind), claim.bound, groups, aside);
 }
 
-std::string place(const Threshold& threshold) {
-    return fmt::format("{} of {}{}", threshold.k, threshold.n,
+std::string place(const Threshold& threshold, bool inner) {
+    const std::uint64_t n = inner ? threshold.inner_n : threshold.n;
+    const std::uint64_t k = inner ? threshold.inner_k : threshold.k;
+    return fmt::format("{} of {}{}", k > n ? "none" : fmt::format("{}", k), n,
                        !threshold.by_group ? ""
-                       : threshold.n == 1  ? " group"
+                       : n == 1            ? " group"
                                            : " groups");
 }
+
+std::string numbers(const Threshold& threshold) {
+    const Range range = threshold.range();
+    return threshold.inner ? fmt::format("{} to {}", range.low, range.high)
+                           : fmt::format("{}", threshold.value);
+}
+
+namespace {
+
+/// Returns "score 17 of 18, coverage 0.838 to 0.997"; nothing by risk.
+std::string score(const Threshold& threshold, bool inner) {
+    const std::uint64_t n = inner ? threshold.inner_n : threshold.n;
+    const std::uint64_t k = inner ? threshold.inner_k : threshold.k;
+    if (threshold.origin == ThresholdOrigin::risk) return "";
+    if (k > n) return fmt::format("{}, too few", diag::counted(n, "score"));
+    return fmt::format("score {}, coverage {:.3f} to {:.3f}", place(threshold, inner),
+                       coverage_quantile(n, k, 0.05), coverage_quantile(n, k, 0.95));
+}
+
+/// Describes the one or two thresholds: of a predicate where it is true and false, of a monitor
+/// where it is satisfied and violated. `is_upper`: true is below.
+std::string parts(const Threshold& threshold, const char* yes, const char* no, bool is_upper) {
+    const auto scored = [&](bool inner) {
+        const std::string text = score(threshold, inner);
+        return text.empty() ? text : fmt::format(" ({})", text);
+    };
+    const auto one = [&](const char* word, float at, const char* below, const char* above,
+                         bool inner) {
+        return std::isinf(at)
+                   ? fmt::format("never {}{}", word, scored(inner))
+                   : fmt::format("{} {} {}{}", word, is_upper ? below : above, at, scored(inner));
+    };
+    if (threshold.against != Against::both) return score(threshold, false);
+    if (!threshold.inner)
+        return fmt::format("halfway between {}{} and {}{}, never unknown", yes, scored(true), no,
+                           scored(false));
+    return fmt::format("{}, {}, unknown between", one(yes, *threshold.inner, "up to", "from", true),
+                       one(no, threshold.value, "beyond", "below", false));
+}
+
+/// Describes a threshold by conformal or risk.
+std::string origin_of_episodes(const Threshold& threshold) {
+    std::string text =
+        fmt::format("{}, alpha = {}", method_name(threshold.origin), threshold.alpha);
+    if (!threshold.beta.empty()) text += ", beta = " + threshold.beta;
+    if (threshold.against != Against::misses)
+        text += fmt::format(", against {}", word(threshold.against));
+    if (threshold.within > 0)
+        text += fmt::format(", within {} of a change", diag::counted(threshold.within, "step"));
+    const bool is_upper = threshold.inner && *threshold.inner < threshold.value;
+    const std::string described = parts(threshold, "true", "false", is_upper);
+    if (!described.empty()) text += "; " + described;
+    if (threshold.origin != ThresholdOrigin::risk) return text;
+    text += "; on average over calibrations and episodes";
+    const auto add = [&](bool bounded, const std::string& rate, const char* frames) {
+        if (bounded)
+            text +=
+                fmt::format(", at most {} % of the frames at which it {}", percent(rate), frames);
+    };
+    add(bounds_misses(threshold), threshold.alpha, "holds are called false");
+    add(bounds_false_positives(threshold), threshold.rate_of_false_positives(),
+        "does not hold are called true");
+    return text + "; no guarantee for verdicts";
+}
+
+}  // namespace
 
 std::string origin(const Threshold& threshold) {
     switch (threshold.origin) {
         case ThresholdOrigin::literal: return "written in the spec; no guarantee";
         case ThresholdOrigin::f1: return "calibrated for F1; no guarantee";
         case ThresholdOrigin::conformal:
-            return fmt::format("conformal, alpha = {}; score {}, coverage {:.3f} to {:.3f}",
-                               threshold.alpha, place(threshold),
-                               coverage_quantile(threshold.n, threshold.k, 0.05),
-                               coverage_quantile(threshold.n, threshold.k, 0.95));
+        case ThresholdOrigin::risk: return origin_of_episodes(threshold);
         case ThresholdOrigin::class_conditional:
             return fmt::format(
                 "class-conditional, alpha = {}; score {} of {} frames; no guarantee for episodes",
@@ -288,6 +488,12 @@ std::string origin(const Threshold& threshold) {
                 threshold.adaptation->hi, place(threshold));
     }
     return "";
+}
+
+std::string of_shift(const Threshold& shift) {
+    const std::string text = parts(shift, "satisfied", "violated", false);
+    if (shift.inner) return "rho: " + text;
+    return fmt::format("rho minus {}{}{}", shift.value, text.empty() ? "" : ", ", text);
 }
 
 std::string miss_bound(const Predicate& predicate) {

@@ -5,6 +5,12 @@
 // There is no claim about a predicate without conformal calibration that is not its own truth. A
 // robustness of 0 counts as satisfied even if the comparison is false; claims about violations
 // mention this exception.
+//
+// A predicate against both errors has a bound on each, and says neither between its thresholds.
+// While every frame keeps its bounds, the truth of a predicate lies in its value, so by induction
+// over min, max and negation that of a verdict lies in the verdict, for a formula of any polarity:
+// it is satisfied wrongly only if a plain predicate is called true wrongly or a negated one false,
+// and violated wrongly the other way round.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +28,13 @@ struct Claim {
         exact,           ///< nothing is calibrated, and every predicate is its own truth
         missed_success,  ///< P(some verdict of a new episode misses a success) <= bound
         missed_alarm,    ///< P(some verdict of a new episode misses an alarm) <= bound
+        // where predicates or the monitor are calibrated against both errors; unknown is neither
+        satisfied_wrongly,  ///< P(some verdict is satisfied while its truth is violated) <= bound
+        violated_wrongly,   ///< P(some verdict is violated while its truth is satisfied) <= bound
+        wrong,              ///< P(one or the other) <= bound
+        // of a monitor calibrated by risk
+        satisfied_share,  ///< E(share of the truly violated steps that are satisfied) <= bound
+        violated_share,   ///< E(share of the truly satisfied steps that are violated) <= bound
     };
     Kind kind = Kind::nothing;
     std::string part;      ///< the conjunct as canonical text; empty for the whole formula
@@ -32,13 +45,14 @@ struct Claim {
     /// has groups, whose demonstrations count one by one.
     std::uint64_t groups = 0;
     std::string why;  ///< the reason for `nothing`
-    /// For exact and missed_alarm: a comparison that is its own truth is false at its threshold,
-    /// where robustness is 0.
+    /// For exact, missed_alarm, satisfied_wrongly and wrong: a comparison that is its own truth is
+    /// false at its threshold, where robustness is 0.
     bool zero_aside = false;
 };
 
-/// Returns the guarantee of a monitor calibrated as a whole; otherwise the claim about the whole
-/// formula and, if that is `nothing`, about its conjuncts. `values` are those that the monitor
+/// Returns the guarantees of a monitor calibrated as a whole; otherwise the claims about the whole
+/// formula (up to three where predicates are calibrated against both errors) and, if that is
+/// `nothing`, about its conjuncts. `values` are those that the monitor
 /// computes with; truths are decided by the comparisons themselves.
 std::vector<Claim> claims(const Model& model, const Monitor& monitor,
                           Values values = Values::robustness);
@@ -46,11 +60,18 @@ std::vector<Claim> claims(const Model& model, const Monitor& monitor,
 /// Returns the claim in words: "P(some verdict of a new episode misses a success) <= 0.1".
 std::string text(const Claim& claim);
 
-/// Returns "37 of 40", the rank of a conformal threshold, or "4 of 4 groups".
-std::string place(const Threshold& threshold);
+/// Returns "37 of 40", the rank of a conformal threshold, or "4 of 4 groups"; "none of 3" if the
+/// scores are too few and the threshold is infinite. `inner`: of the one against false positives.
+std::string place(const Threshold& threshold, bool inner = false);
+
+/// Returns the thresholds: "0.35", or "0.27 to 0.35" if there are two.
+std::string numbers(const Threshold& threshold);
 
 /// Describes the origin of a threshold and its own guarantee: "calibrated for F1; no guarantee".
 std::string origin(const Threshold& threshold);
+
+/// Describes what is subtracted from the robustness of a monitor that is calibrated as a whole.
+std::string of_shift(const Threshold& shift);
 
 /// Returns the bound on the misses of an adaptive predicate among the first T labelled positive
 /// frames, "0.1 T + 35.7 + 0.9 H", where H is the number of misses at which the end of its range

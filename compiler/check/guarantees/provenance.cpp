@@ -63,7 +63,8 @@ public:
 
     void add_monitor(const Monitor& monitor) {
         // The entry has method, alpha and `against`; the shift is the result.
-        const auto& [name, formula, sliding, restarts, horizon, calibration, span, truth] = monitor;
+        const auto& [name, formula, sliding, restarts, horizon, ahead, calibration, span, truth] =
+            monitor;
         add("monitor " + name,
             fmt::format("{}{}", word(restarts),
                         sliding ? fmt::format("sliding, horizon {}", horizon) : "monitor"));
@@ -177,9 +178,10 @@ private:
     static std::string text_of(const Threshold& threshold) {
         // The entry of a calibrated threshold describes its origin. Adaptive thresholds are not
         // used in such formulas.
-        const auto& [origin, text, alpha, value64, value, n, k, by_group, adaptation, span] =
-            threshold;
+        const auto& [origin, text, alpha, beta, against, within, value64, value, inner, n, k,
+                     inner_n, inner_k, by_group, adaptation, span] = threshold;
         if (origin == ThresholdOrigin::literal) return Decimal::parse(text).text();
+        if (inner) return fmt::format("{} and {} from {}", *inner, value, text);
         return fmt::format("{} from {}", value, text);
     }
 

@@ -25,7 +25,7 @@ void refuse_what_cannot_change(Context& c) {
                    "what it has learnt is about the distance to the original targets");
     for (const Monitor& monitor : c.model.monitors)
         if (monitor.calibration)
-            refuse(c, monitor.calibration->threshold.span,
+            refuse(c, monitor.calibration->span,
                    fmt::format("'{}' is calibrated as a whole", monitor.name),
                    "its shift is valid only for episodes with one set of parameters from beginning "
                    "to end");

@@ -75,6 +75,16 @@ std::vector<std::string> changes(const Threshold& threshold, const thresholds::E
         found.push_back(changed("the method", entry.method, method));
     else if (!same_number(entry.alpha, threshold.alpha))
         found.push_back(changed("the alpha", entry.alpha, threshold.alpha));
+    else if (!same_number(entry.beta, threshold.beta))
+        found.push_back(changed("the beta", entry.beta.empty() ? "alpha" : entry.beta,
+                                threshold.beta.empty() ? "alpha" : threshold.beta));
+    const std::string_view against = entry.against.empty() ? "misses" : entry.against;
+    if (against != word(threshold.against))
+        found.push_back(
+            fmt::format("it was against: {}; it is: {}", against, word(threshold.against)));
+    if (entry.within != threshold.within)
+        found.push_back(changed("within", diag::counted(entry.within, "step"),
+                                diag::counted(threshold.within, "step")));
     const std::vector<std::string> read = differences(entry.reads, now);
     found.insert(found.end(), read.begin(), read.end());
     return found;
@@ -87,7 +97,7 @@ constexpr std::string_view kAgain = "calibrate again with 'etlc calibrate'";
 const thresholds::Entry* find_entry(Context& c, const std::string& name, const Threshold& threshold,
                                     const std::string& path,
                                     const std::map<std::string, thresholds::Entry>& entries,
-                                    const Reads& now, std::string_view against = "") {
+                                    const Reads& now) {
     const auto found = entries.find(name);
     if (found == entries.end()) {
         report_missing(c, Code::threshold_missing, threshold.span,
@@ -96,13 +106,10 @@ const thresholds::Entry* find_entry(Context& c, const std::string& name, const T
         return nullptr;
     }
     const thresholds::Entry& entry = found->second;
-    std::vector<std::string> all = changes(threshold, entry, now);
-    if (entry.against != against)
-        all.push_back(fmt::format("it was against: {}; it is: {}", entry.against, against));
     const bool is_current = is_up_to_date(
         c, Code::threshold_stale, threshold.span,
         fmt::format("the threshold of '{}' in {} was calibrated for something else", name, path),
-        all, kAgain);
+        changes(threshold, entry, now), kAgain);
     if (!is_current) return nullptr;
     if (replaces_truths(entry.reads))
         c.model.reservations.push_back(
@@ -127,7 +134,14 @@ void take(Context& c, const thresholds::Entry& entry, const std::string& place,
         return;
     }
     threshold.value = entry.epsilon;
-    threshold.value64 = static_cast<double>(entry.epsilon);
+    if (entry.inner) {
+        const Both found = both(entry.epsilon, entry.inner->epsilon, upper_bound);
+        threshold.value = found.value;
+        threshold.inner = found.inner;
+        threshold.inner_n = entry.inner->n;
+        threshold.inner_k = entry.inner->k;
+    }
+    threshold.value64 = static_cast<double>(threshold.value);
     threshold.n = entry.n;
     threshold.k = entry.k;
     threshold.by_group =
@@ -196,10 +210,9 @@ std::optional<std::uint64_t> shared_episode(const std::vector<std::uint64_t>& ep
 }
 
 void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
-    MonitorCalibration& calibration = *monitor.calibration;
-    Threshold& shift = calibration.threshold;
-    const thresholds::Entry* entry = find_entry(c, monitor.name, shift, file.path, file.monitors,
-                                                reads(c.model, monitor), word(calibration.against));
+    Threshold& shift = *monitor.calibration;
+    const thresholds::Entry* entry =
+        find_entry(c, monitor.name, shift, file.path, file.monitors, reads(c.model, monitor));
     if (entry == nullptr) return;
     const std::string place = "monitors." + monitor.name;
     if (const auto shared = shared_episode(entry->episodes, file)) {
@@ -217,8 +230,7 @@ void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
                 "were calibrated on");
         return;
     }
-    take(c, *entry, place, shift, calibration.against == Against::missed_alarm, file,
-         entry->episodes);
+    take(c, *entry, place, shift, false, file, entry->episodes);
 }
 
 std::vector<Monitor*> calibrated_monitors(Context& c) {
@@ -243,11 +255,10 @@ void check_thresholds(Context& c) {
     const std::vector<Monitor*> monitors =
         c.options.allow_uncalibrated_monitors ? std::vector<Monitor*>{} : calibrated_monitors(c);
     if (predicates.empty() && monitors.empty()) return;
-    const auto file =
-        predicates.empty()
-            ? read_thresholds(c, monitors[0]->name, monitors[0]->calibration->threshold)
-            : read_thresholds(c, c.model.predicates[predicates[0]].name,
-                              c.model.predicates[predicates[0]].threshold);
+    const auto file = predicates.empty()
+                          ? read_thresholds(c, monitors[0]->name, monitors[0]->calibration.value())
+                          : read_thresholds(c, c.model.predicates[predicates[0]].name,
+                                            c.model.predicates[predicates[0]].threshold);
     if (!file) return;
     for (const thresholds::Allowance& allowance : file->allowances)
         c.model.reservations.push_back(thresholds::text(allowance));

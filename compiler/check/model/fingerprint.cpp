@@ -30,15 +30,18 @@ std::string data_lines(const Model& model) {
 }
 
 /// Returns the name of each named predicate and calibrated monitor, with the shortest decimal that
-/// reads back to its float32 threshold, one per line. Unnamed thresholds are part of the spec.
+/// reads back to its float32 threshold, and of a second one, one per line. Unnamed thresholds are
+/// part of the spec.
 std::string threshold_lines(const Model& model) {
     std::string lines;
+    const auto add = [&](const std::string& name, const Threshold& threshold) {
+        lines += fmt::format("{} {}", name, threshold.value);
+        lines += threshold.inner ? fmt::format(" {}\n", *threshold.inner) : "\n";
+    };
     for (const Predicate& predicate : model.predicates)
-        if (!predicate.name.empty())
-            lines += fmt::format("{} {}\n", predicate.name, predicate.threshold.value);
+        if (!predicate.name.empty()) add(predicate.name, predicate.threshold);
     for (const Monitor& monitor : model.monitors)
-        if (monitor.calibration)
-            lines += fmt::format("{} {}\n", monitor.name, monitor.calibration->threshold.value);
+        if (monitor.calibration) add(monitor.name, *monitor.calibration);
     return lines;
 }
 

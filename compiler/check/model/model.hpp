@@ -268,7 +268,19 @@ bool holds(Comparison comparison, Number delta, Number epsilon) {
 /// are +inf or -inf. Sourced, for `--explain`: robustness with the sample that determines it.
 enum class Values : std::uint8_t { robustness, boolean, sourced };
 
-enum class ThresholdOrigin : std::uint8_t { literal, f1, conformal, class_conditional, adaptive };
+enum class ThresholdOrigin : std::uint8_t {
+    literal,
+    f1,
+    conformal,
+    class_conditional,
+    adaptive,
+    risk,
+};
+
+/// The error that a calibration bounds: of a predicate a miss or a false positive, of a monitor a
+/// missed success (violated where its truth is satisfied) or a missed alarm (satisfied where its
+/// truth is violated), or both of these kinds.
+enum class Against : std::uint8_t { misses, false_positives, missed_alarm, missed_success, both };
 
 /// Updates of an adaptive threshold: `widen` towards more detections after a missed positive frame,
 /// `tighten` the other way after a detected one, within `range`. All are multiples of `grid`, a
@@ -288,17 +300,32 @@ struct Threshold {
     ThresholdOrigin origin = ThresholdOrigin::literal;
     /// decimal text of a literal, or canonical text "calibrated(conformal, alpha = 0.10)"
     std::string text;
-    std::string alpha;                     ///< decimal text; empty for methods without alpha
-    double value64 = 0;                    ///< literal rounded to double, for truth formulas only
-    float value = 0;                       ///< epsilon; NaN before calibration
-    std::uint64_t n = 0;                   ///< calibrated: number of scores
-    std::uint64_t k = 0;                   ///< rank among them; 0 for f1
+    std::string alpha;  ///< decimal text; empty for methods without alpha
+    std::string beta;   ///< likewise, of false positives or missed alarms if it is not alpha
+    Against against = Against::misses;
+    std::uint32_t within = 0;  ///< steps around a change of the truth at which labels are unknown
+    double value64 = 0;        ///< literal rounded to double, for truth formulas only
+    float value = 0;           ///< epsilon; NaN before calibration
+    /// The second threshold, against both errors: what lies within `inner` is called true, what
+    /// lies beyond `value` false, and neither between them. Either may be infinite, but not both.
+    std::optional<float> inner;
+    std::uint64_t n = 0;  ///< calibrated: number of scores
+    std::uint64_t k = 0;  ///< rank among them; 0 for f1 and risk, n + 1 if `value` is infinite
+    std::uint64_t inner_n = 0;  ///< the same of the threshold against false positives, if both
+    std::uint64_t inner_k = 0;
     bool by_group = false;                 ///< conformal: a score for each group of episodes
     std::optional<Adaptation> adaptation;  ///< of adaptive thresholds, which start at `value`
     Span span;
 
+    /// Returns the threshold within which the predicate is called true.
+    float low() const { return inner.value_or(value); }
+    /// Returns the rate of false positives or missed alarms that a calibration against them allows.
+    const std::string& rate_of_false_positives() const { return beta.empty() ? alpha : beta; }
     /// Returns the range of all values that it may take.
-    Range range() const { return adaptation ? adaptation->range : Range{value, value}; }
+    Range range() const {
+        if (adaptation) return adaptation->range;
+        return {std::min(low(), value), std::max(low(), value)};
+    }
 };
 
 /// Definition "Embedding Predicate": (Z_target, d, epsilon, CMP, a), or EXPR CMP epsilon in
@@ -421,16 +448,6 @@ struct Fitted {
     Span span;
 };
 
-/// The error that the calibration of a monitor bounds.
-enum class Against : std::uint8_t { missed_alarm, missed_success };
-
-/// `calibrated(conformal, alpha = 0.1, against = missed_alarm)` after a formula: subtracts
-/// threshold.value from rho, lower and upper.
-struct MonitorCalibration {
-    Threshold threshold;
-    Against against = Against::missed_alarm;
-};
-
 /// When a prefix monitor moves from position 0 to another.
 enum class Restarts : std::uint8_t {
     never,
@@ -444,7 +461,13 @@ struct Monitor {
     bool sliding = false;
     Restarts restarts = Restarts::never;
     std::uint32_t horizon = 0;  ///< delay of a sliding monitor in steps; otherwise 0
-    std::optional<MonitorCalibration> calibration{};
+    /// Number of steps that the formula of a repeating monitor looks ahead, after which a verdict is
+    /// final even if it is unknown; kUnbounded of other monitors and without a limit.
+    std::uint32_t ahead = kUnbounded;
+    /// `calibrated(conformal, alpha = 0.1, against = missed_alarm)` after the formula: a threshold
+    /// of rho. Its `value` is subtracted from the high end of rho and from `upper`, its low() from
+    /// the low end and from `lower`.
+    std::optional<Threshold> calibration{};
     Span span;
     /// The formula with the truths of lets in place of these lets; kNone: the formula itself.
     Index truth = kNone;

@@ -362,8 +362,10 @@ private:
             auto* const name = std::get_if<ast::Name>(&argument.value);
             if (name != nullptr && argument.key.text != "against" &&
                 c_.scope.find(name->text) != nullptr)
-                argument.value = ast::Number{name->text, name->span, name->text};
-            replace(argument.value);
+                argument.value = ast::Bound{{name->text, name->span, name->text}, "", name->span};
+            auto* const bound = std::get_if<ast::Bound>(&argument.value);
+            if (bound != nullptr)
+                argument.key.text == "within" ? replace(*bound) : replace(bound->number);
         }
     }
 

@@ -178,6 +178,12 @@ void print_exact_distance(Printer& out, const Context& context, Index d, const s
 
 namespace {
 
+/// Names a number if it is a threshold of the predicate.
+void name_threshold(const check::Predicate& of, float at, std::string& text) {
+    if (of.threshold.value == at) text = fmt::format("threshold_{}()", of.name);
+    if (of.threshold.inner == at) text = fmt::format("inner_threshold_{}()", of.name);
+}
+
 template <class Name>
 std::string cut_list(const std::vector<plan::Cut>& cuts, const Name& name) {
     std::string text;
@@ -200,16 +206,13 @@ std::string cuts(const Context& context, const plan::NarrowSet& set) {
             const check::Predicate& predicate = context.model.predicates[p];
             const bool compared =
                 predicate.plain_distance() && predicate.expression.index == set.distance;
-            if (compared && predicate.threshold.value == at)
-                text = fmt::format("threshold_{}()", predicate.name);
+            if (compared) name_threshold(predicate, at, text);
         }
     });
 }
 
 std::string cuts(const std::vector<plan::Cut>& cuts, const check::Predicate& of) {
-    return cut_list(cuts, [&](float at, std::string& text) {
-        if (of.threshold.value == at) text = fmt::format("threshold_{}()", of.name);
-    });
+    return cut_list(cuts, [&](float at, std::string& text) { name_threshold(of, at, text); });
 }
 
 }  // namespace etlc::emit

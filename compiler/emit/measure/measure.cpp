@@ -3,6 +3,7 @@
 // (etlmon/temporal/demand.hpp).
 
 #include <algorithm>
+#include <cmath>
 
 #include "emit/context.hpp"
 #include "emit/measure/measurements.hpp"
@@ -49,6 +50,21 @@ std::string expression(const Context& context, const Expr& e) {
         case Expr::Kind::max: return apply("greater");
     }
     return "";
+}
+
+/// Returns the threshold of a predicate, or "inner, outer" of two. An infinite number is not the
+/// result of a function, since some compilers assume that there is none.
+std::string thresholds(const Context& context, Index p, bool named) {
+    const check::Predicate& predicate = context.model.predicates[p];
+    const auto one = [&](float value, const char* function) {
+        return named && !std::isinf(value) ? fmt::format("{}_{}()", function, predicate.name)
+                                           : float_literal(value);
+    };
+    const std::string outer = one(predicate.threshold.value, "threshold");
+    if (!predicate.threshold.inner) return outer;
+    if (context.retargetable())
+        return fmt::format("{}, {}", context.threshold(p, true), context.threshold(p, false));
+    return fmt::format("{}, {}", one(*predicate.threshold.inner, "inner_threshold"), outer);
 }
 
 /// Returns the runtime function that computes the robustness.
@@ -133,8 +149,7 @@ private:
         const std::string& variable =
             kept ? telemetry->second : context_.names.predicate_local.at(p);
         const std::string& atom = context_.names.predicate_atom.at(p);
-        const std::string threshold = kept ? fmt::format("threshold_{}()", predicate.name)
-                                           : float_literal(predicate.threshold.value);
+        const std::string threshold = thresholds(context_, p, kept);
         out_.gap();
         print_comment(out_, "//", context_.place(predicate.span), 4);
         const bool is_contrast = !plan::contrast_cuts(context_.plan, predicate).empty();

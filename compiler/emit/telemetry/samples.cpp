@@ -1,5 +1,8 @@
 // Prints explanations: values that carry their sample, and why_NAME().
 
+#include <algorithm>
+#include <cmath>
+
 #include "emit/context.hpp"
 #include "source/text.hpp"
 
@@ -19,6 +22,12 @@ std::string shown(const Context& context, const Place& place) {
                               : context.model.inputs[place.index].name;
 }
 
+/// Returns a number in a constant expression.
+std::string constant(float value) {
+    if (!std::isinf(value)) return float_literal(value);
+    return value < 0 ? "-etlmon::kInfinite" : "etlmon::kInfinite";
+}
+
 const char* kind(const Context& context, const Place& place) {
     if (!place.is_predicate) return "truth";
     switch (context.model.predicates[place.index].comparison) {
@@ -30,10 +39,15 @@ const char* kind(const Context& context, const Place& place) {
     }
 }
 
+/// Whether the place has two thresholds.
+bool has_inner(const Context& context, const Place& place) {
+    return place.is_predicate && context.model.predicates[place.index].threshold.inner.has_value();
+}
+
 std::string threshold(const Context& context, const Place& place) {
     if (!place.is_predicate) return "etlmon::kMissing";
     const check::Threshold& threshold = context.model.predicates[place.index].threshold;
-    return threshold.adaptation ? "etlmon::kMissing" : float_literal(threshold.value);
+    return threshold.adaptation ? "etlmon::kMissing" : constant(threshold.value);
 }
 
 }  // namespace
@@ -90,14 +104,33 @@ void print_why_of(Printer& out, const Context& context) {
     print_doc(out, "Returns the sample that decides the verdict of monitor m.");
     out.open("etlmon::Sample why(uint32_t m) const noexcept {");
     out.line("using Kind = etlmon::Place::Kind;");
-    out.line("// name, comparison, threshold, first code, number of rows that codes distinguish");
+    const bool of_two = std::any_of(places.begin(), places.end(),
+                                    [&](const Place& place) { return has_inner(context, place); });
+    out.line("// name, comparison, threshold, first code, number of rows that codes distinguish{}",
+             of_two ? ", inner one of two thresholds" : "");
     out.open("static constexpr etlmon::Place places[] = {");
     for (std::size_t i = 0; i < places.size(); ++i)
-        out.line("{{{}, Kind::{}, {}, {}, {}}}{}", source::json_string(shown(context, places[i])),
+        out.line("{{{}, Kind::{}, {}, {}, {}{}}}{}", source::json_string(shown(context, places[i])),
                  kind(context, places[i]), threshold(context, places[i]), places[i].first,
-                 places[i].rows, i + 1 < places.size() ? "," : "");
+                 places[i].rows,
+                 has_inner(context, places[i])
+                     ? ", " + constant(*context.model.predicates[places[i].index].threshold.inner)
+                     : "",
+                 i + 1 < places.size() ? "," : "");
     out.close("};");
-    out.line("return etlmon::sample_of<{}>(deciding_[m], places);", context.sampled.codes);
+    const auto& monitors = context.plan.monitors;
+    const bool shifts = std::any_of(monitors.begin(), monitors.end(),
+                                    [](const plan::Monitor& m) { return m.shifted; });
+    if (of_two && shifts) {
+        std::string keys;
+        for (const plan::Monitor& m : monitors)
+            keys += fmt::format("{}{}", keys.empty() ? "" : ", ",
+                                etlmon::key_of(m.inner_shift.value_or(m.shift)));
+        print_with_comment(out, fmt::format("static constexpr etlmon::Key least[] = {{{}}};", keys),
+                           "from which on each monitor is satisfied");
+    }
+    out.line("return etlmon::sample_of<{}>(deciding_[m], places{});", context.sampled.codes,
+             of_two && shifts ? ", least[m]" : "");
     out.close();
     out.line();
 }
@@ -162,16 +195,22 @@ void print_lets(Printer& out, const Context& context) {
 
 namespace {
 
-/// Prints threshold_P() of a predicate that is not adaptive.
+/// Prints threshold_P() of a predicate that is not adaptive, and inner_threshold_P().
 void print_threshold(Printer& out, const Context& context, Index p) {
     const check::Predicate& predicate = context.model.predicates[p];
-    if (!context.retargetable())
-        return out.line("static constexpr float threshold_{}() noexcept {{ return {}; }}",
-                        predicate.name, float_literal(predicate.threshold.value));
-    out.open(fmt::format("float threshold_{}() const noexcept {{", predicate.name));
-    out.line("return ready() ? {} : etlmon::kMissing;",
-             context.parameter(plan::Parameter::Kind::threshold, p));
-    out.close();
+    for (const bool inner : {true, false}) {
+        if (inner && !predicate.threshold.inner) continue;
+        const std::string function =
+            fmt::format("{}threshold_{}()", inner ? "inner_" : "", predicate.name);
+        if (!context.retargetable()) {
+            out.line("static constexpr float {} noexcept {{ return {}; }}", function,
+                     constant(inner ? *predicate.threshold.inner : predicate.threshold.value));
+            continue;
+        }
+        out.open(fmt::format("float {} const noexcept {{", function));
+        out.line("return ready() ? {} : etlmon::kMissing;", context.threshold(p, inner));
+        out.close();
+    }
 }
 
 }  // namespace

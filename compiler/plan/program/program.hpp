@@ -22,12 +22,19 @@ struct Monitor {
     check::Restarts restarts = check::Restarts::never;
     bool counts_steps = false;  ///< for monitors that restart: some part counts steps from there
     std::uint32_t horizon = 0;
-    std::uint32_t reading = kNone;  ///< prefix monitors
-    Slot stream = kNone;            ///< sliding monitors: the verdicts, lagging by the horizon
-    Index index = 0;                ///< of the model's monitors
-    NodeId node = 0;                ///< node of its formula
+    std::uint32_t ahead = kUnbounded;  ///< of a repeating monitor: as in the model
+    std::uint32_t reading = kNone;     ///< prefix monitors
+    Slot stream = kNone;               ///< sliding monitors: the verdicts, lagging by the horizon
+    Index index = 0;                   ///< of the model's monitors
+    NodeId node = 0;                   ///< node of its formula
     bool shifted = false;  ///< calibrated as a whole: `shift` is subtracted from all its numbers
     float shift = 0;
+    std::optional<float> inner_shift{};  ///< of two shifts: that of the low end and of `lower`
+
+    /// Returns what it begins with, as a reading says it; `own`: its index.
+    std::uint32_t begins_with(std::uint32_t own) const {
+        return restarts == check::Restarts::never ? kNone : own;
+    }
 };
 
 /// A let whose verdict is telemetry.

@@ -49,7 +49,15 @@ using check::Values;
 using etlmon::Value;
 
 etlmon::Truth comparison(const check::Predicate& predicate, float delta, float epsilon,
-                         etlmon::Truth range) {
+                         const std::optional<float>& inner, etlmon::Truth range) {
+    if (inner) switch (predicate.comparison) {
+            case check::Comparison::less_equal:
+                return etlmon::is_at_most(delta, *inner, epsilon, range);
+            case check::Comparison::less: return etlmon::is_below(delta, *inner, epsilon, range);
+            case check::Comparison::greater_equal:
+                return etlmon::is_at_least(delta, *inner, epsilon, range);
+            default: return etlmon::is_above(delta, *inner, epsilon, range);
+        }
     switch (predicate.comparison) {
         case check::Comparison::less_equal: return etlmon::is_at_most(delta, epsilon, range);
         case check::Comparison::less: return etlmon::is_below(delta, epsilon, range);
@@ -93,19 +101,23 @@ Value missing_value(const check::Input& input) {
     return input.missing ? constant(*input.missing) : Value{etlmon::kBottom, etlmon::kTop};
 }
 
-Value value_of(const check::Predicate& predicate, float delta, float epsilon, Values values) {
+Value value_of(const check::Predicate& predicate, float delta, float epsilon,
+               const std::optional<float>& inner, Values values) {
     const Value missing = missing_value(predicate, values);
     if (values == Values::boolean || predicate.equality()) {
         const etlmon::Truth otherwise{missing.low == etlmon::kTop, missing.high == etlmon::kTop};
-        return value_of(comparison(predicate, delta, epsilon, otherwise));
+        return value_of(comparison(predicate, delta, epsilon, inner, otherwise));
     }
+    if (inner)
+        return predicate.upper_bound() ? etlmon::at_most(delta, *inner, epsilon, missing)
+                                       : etlmon::at_least(delta, *inner, epsilon, missing);
     return predicate.upper_bound() ? etlmon::at_most(delta, epsilon, missing)
                                    : etlmon::at_least(delta, epsilon, missing);
 }
 
 float observed(const check::Predicate& predicate, float epsilon, float distance) {
     const check::Adaptation& adaptation = *predicate.threshold.adaptation;
-    return etlmon::adapted(epsilon, comparison(predicate, distance, epsilon, etlmon::kPerhaps),
+    return etlmon::adapted(epsilon, comparison(predicate, distance, epsilon, {}, etlmon::kPerhaps),
                            runtime_adaptation(adaptation, predicate.upper_bound()));
 }
 
@@ -117,6 +129,9 @@ etlmon::Adaptation runtime_adaptation(const check::Adaptation& adaptation, bool 
 
 Value value_of(const check::Predicate& predicate, const etlmon::Enclosed& delta, float epsilon) {
     const Value missing = missing_value(predicate, Values::robustness);
+    if (const std::optional<float>& inner = predicate.threshold.inner)
+        return predicate.upper_bound() ? etlmon::at_most(delta, *inner, epsilon, missing)
+                                       : etlmon::at_least(delta, *inner, epsilon, missing);
     return predicate.upper_bound() ? etlmon::at_most(delta, epsilon, missing)
                                    : etlmon::at_least(delta, epsilon, missing);
 }

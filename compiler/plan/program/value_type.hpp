@@ -47,9 +47,13 @@ etlmon::Value missing_value(const check::Predicate& predicate, check::Values val
 /// Returns the value of a bool input at a step without its sample.
 etlmon::Value missing_value(const check::Input& input);
 
-/// Returns the value of a predicate for a delta and the threshold of this step.
+/// Returns the value of a predicate for a delta and the threshold of this step, or two thresholds.
 etlmon::Value value_of(const check::Predicate& predicate, float delta, float epsilon,
-                       check::Values values);
+                       const std::optional<float>& inner, check::Values values);
+inline etlmon::Value value_of(const check::Predicate& predicate, float delta, float epsilon,
+                              check::Values values) {
+    return value_of(predicate, delta, epsilon, predicate.threshold.inner, values);
+}
 /// Returns the robustness for a distance known within bounds.
 etlmon::Value value_of(const check::Predicate& predicate, const etlmon::Enclosed& delta,
                        float epsilon);

@@ -161,21 +161,28 @@ private:
 /// monitor calibrated as a whole, negated or not: only there status and finality change. Around a
 /// shift the float32 subtractions leave a few roundings open.
 void add_cuts(const Plan& plan, const check::Predicate& predicate, std::vector<Cut>& cuts) {
-    const float epsilon = predicate.threshold.value;
     const auto add = [&](Cut cut) {
         const auto same = [&](const Cut& c) { return c.low == cut.low && c.high == cut.high; };
         if (std::none_of(cuts.begin(), cuts.end(), same)) cuts.push_back(cut);
     };
-    add({epsilon, epsilon});
-    for (const Monitor& monitor : plan.monitors) {
-        if (!monitor.shifted) continue;
-        const double slack = (std::abs(static_cast<double>(monitor.shift)) +
-                              std::abs(static_cast<double>(epsilon))) *
-                                 4 * static_cast<double>(FLT_EPSILON) +
-                             4 * static_cast<double>(FLT_MIN);
-        for (const float shift : {monitor.shift, -monitor.shift}) {
+    const auto add_shifted = [&](float epsilon, float of) {
+        if (std::isinf(of)) return;
+        const double slack =
+            (std::abs(static_cast<double>(of)) + std::abs(static_cast<double>(epsilon))) * 4 *
+                static_cast<double>(FLT_EPSILON) +
+            4 * static_cast<double>(FLT_MIN);
+        for (const float shift : {of, -of}) {
             const double at = static_cast<double>(epsilon) + static_cast<double>(shift);
             add({-check::round_up(-(at - slack)), check::round_up(at + slack)});
+        }
+    };
+    for (const float epsilon : {predicate.threshold.value, predicate.threshold.low()}) {
+        if (std::isinf(epsilon)) continue;
+        add({epsilon, epsilon});
+        for (const Monitor& monitor : plan.monitors) {
+            if (!monitor.shifted) continue;
+            add_shifted(epsilon, monitor.shift);
+            if (monitor.inner_shift) add_shifted(epsilon, *monitor.inner_shift);
         }
     }
 }

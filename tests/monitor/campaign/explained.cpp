@@ -146,7 +146,7 @@ private:
 
     float shift() const {
         const auto& calibration = model_.monitors[0].calibration;
-        return calibration ? calibration->threshold.value : 0;
+        return calibration ? calibration->value : 0;
     }
 
     bool turned(Said then) const {
@@ -290,7 +290,7 @@ std::optional<std::string> mismatch_of(check::Model model, const reference::Trac
                                        check::Values values, std::uint64_t seed, Tally* tally) {
     if (values == check::Values::robustness && seed % 3 == 0) {
         model.monitors[0].calibration.emplace();
-        model.monitors[0].calibration->threshold.value =
+        model.monitors[0].calibration->value =
             0.25F * static_cast<float>(static_cast<int>(seed % 9) - 4);
     }
     const ir::Program program = ir::lower(model);

@@ -41,15 +41,17 @@ std::optional<Why> expected(const Observations& observations, const Explanation&
     const explain::Atom& atom = observations.atoms()[sample.atom];
     Why why{.step = static_cast<std::uint32_t>(sample.step),
             .distance = observations.measured(sample)};
+    const etlmon::Value value = observations.value(sample);
+    const bool is_false = atom.is_predicate && value.high < 0;
     if (!observations.is_missing(sample))
-        why.robustness = etlmon::float_of(observations.value(sample).low);
+        why.robustness = etlmon::float_of(is_false ? value.high : value.low);
     if (!atom.is_predicate) {
         why.predicate = observations.model().inputs[atom.index].name;
         return why;
     }
     const check::Predicate& predicate = observations.predicate(sample.atom);
     why.predicate = predicate.shown();
-    why.threshold = predicate.threshold.value;
+    why.threshold = is_false ? predicate.threshold.value : predicate.threshold.low();
     const bool has_rows = predicate.plain_distance() &&
                           !check::measured_targets(observations.model(), predicate).empty();
     if (has_rows && !observations.is_missing(sample)) why.row = observations.nearest(sample, 0);

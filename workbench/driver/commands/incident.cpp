@@ -173,7 +173,7 @@ std::string incident_table(const plan::Plan& plan, const Incident& incident) {
     for (const RecorderColumns::OfPredicate& column : rows.columns().predicates) {
         const check::Predicate& predicate = model.predicates[column.predicate];
         text += fmt::format("{}: {}{}\n", plan::column_name(model, column.predicate),
-                            predicate.text, predicate.threshold.value);
+                            predicate.text, check::numbers(predicate.threshold));
     }
     std::vector<Cells> lines{rows.head("", "")};
     for (const Incident::Row& row : rows.all()) lines.push_back(rows.cells(row, kInTable));

@@ -90,7 +90,13 @@ std::string comparison(const check::Model& model, const check::Predicate& predic
     const std::string_view sign = text.substr(0, end).substr(text.rfind(' ', end - 1) + 1);
     const std::uint32_t behind = predicate.threshold.span.end;
     const bool is_written = behind > predicate.span.begin;
-    return fmt::format("{} {} {}{}", input, sign, predicate.threshold.value,
+    // No literal says two thresholds.
+    const std::string inner =
+        predicate.threshold.inner
+            ? fmt::format(" /* true only {} {} */", predicate.upper_bound() ? "up to" : "from",
+                          *predicate.threshold.inner)
+            : "";
+    return fmt::format("{} {} {}{}{}", input, sign, predicate.threshold.value, inner,
                        is_written ? model.file.text(source::Span{behind, predicate.span.end}) : "");
 }
 
@@ -126,7 +132,7 @@ std::string measured_spec(const plan::Plan& plan) {
     }
     for (const plan::Monitor& monitor : plan.monitors)
         if (monitor.shifted) {
-            const source::Span clause = model.monitors[monitor.index].calibration->threshold.span;
+            const source::Span clause = model.monitors[monitor.index].calibration->span;
             changes[clause.begin] = {
                 clause, fmt::format("/* calibrated as a whole: less by {} */", monitor.shift)};
         }

@@ -329,6 +329,22 @@ diag::Result<std::unique_ptr<data::Trace>> open_labelled(
     return std::unique_ptr<data::Trace>(std::move(labelled));
 }
 
+void open_near_changes(std::vector<Label>& labels, std::uint32_t within) {
+    const std::vector<Label> exact = labels;
+    const std::size_t none = exact.size();
+    std::size_t last = none;  // the last known label
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+        if (exact[i] == Label::unknown) continue;
+        if (last != none && exact[last] != exact[i]) {
+            const std::size_t from = last + 1 - std::min<std::size_t>(within, last + 1);
+            const std::size_t end = i + std::min<std::size_t>(within, exact.size() - i);
+            std::fill(labels.begin() + static_cast<std::ptrdiff_t>(from),
+                      labels.begin() + static_cast<std::ptrdiff_t>(end), Label::unknown);
+        }
+        last = i;
+    }
+}
+
 std::vector<std::string> groups_of(const std::vector<std::string>& episodes,
                                    const ReadOptions& options) {
     std::vector<std::string> groups(episodes.size());

@@ -145,6 +145,10 @@ diag::Result<std::unique_ptr<data::Trace>> open_labelled(
     const std::string& path, const std::vector<data::Channel>& channels, const ReadOptions& options,
     std::shared_ptr<KnownIdentities>* identities = nullptr);
 
+/// Makes labels unknown in the `within` steps before a change and in those from it on. Unknown
+/// labels between two that differ are a change along their length; the ends are none.
+void open_near_changes(std::vector<Label>& labels, std::uint32_t within);
+
 /// Returns the groups of episodes, in order; empty where an episode has none.
 std::vector<std::string> groups_of(const std::vector<std::string>& episodes,
                                    const ReadOptions& options);

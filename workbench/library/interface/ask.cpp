@@ -92,6 +92,17 @@ etlc_status etlc_measure(etlc_session session, uint32_t predicate, etlc_measured
     });
 }
 
+etlc_status etlc_inner_threshold(etlc_session session, uint32_t predicate, float* threshold) {
+    return with_any(session, [&](Session& opened) -> etlc_status {
+        if (threshold == nullptr) return refuse_null("threshold");
+        const std::vector<check::Predicate>& predicates = opened.model().predicates;
+        if (predicate >= predicates.size())
+            return refuse_index("predicate", predicate, predicates.size());
+        *threshold = predicates[predicate].threshold.inner.value_or(etlmon::kMissing);
+        return ETLC_OK;
+    });
+}
+
 etlc_status etlc_let(etlc_session session, uint32_t let, etlc_verdict* verdict) {
     return with_session(session, [&](Session& opened) -> etlc_status {
         if (verdict == nullptr) return refuse_null("verdict");

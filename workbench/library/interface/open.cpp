@@ -114,8 +114,11 @@ std::unique_ptr<Session> open(const etlc_options& options, const Wish& wish, sou
 }
 
 /// The size of etlc_options in each version of etlc.h.
-constexpr std::uint32_t kSizes[ETLC_API_VERSION + 1] = {0, offsetof(etlc_options, recorder),
-                                                        sizeof(etlc_options), sizeof(etlc_options),
+constexpr std::uint32_t kSizes[ETLC_API_VERSION + 1] = {0,
+                                                        offsetof(etlc_options, recorder),
+                                                        sizeof(etlc_options),
+                                                        sizeof(etlc_options),
+                                                        sizeof(etlc_options),
                                                         sizeof(etlc_options)};
 
 /// Converts the caller's options to those of this version.

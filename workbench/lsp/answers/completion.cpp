@@ -163,9 +163,11 @@ bool fits(const Declared& declared, Role role, const std::string& declaration) {
 
 /// Returns the words that the grammar does not list: check/ defines them.
 std::vector<std::string> words_of(Role role) {
-    if (role == Role::calibration_argument) return {"alpha", "against", "gamma", "lo", "hi"};
+    if (role == Role::calibration_argument)
+        return {"alpha", "beta", "against", "within", "gamma", "lo", "hi"};
     if (role == Role::fitting_argument) return {"k", "r", "away"};
-    if (role == Role::calibration) return {"conformal", "class_conditional", "f1", "adaptive"};
+    if (role == Role::calibration)
+        return {"conformal", "risk", "class_conditional", "f1", "adaptive"};
     if (role == Role::fitting)
         return {"mean", "medoids", "kmeans", "pca", "whitened_pca", "discriminant", "logpzo"};
     return {};
@@ -353,11 +355,11 @@ Sentences about(const Model& model, Index index) {
     Sentences facts;
     const bool known = !std::isnan(threshold.value);
     facts.push_back(fmt::format("Predicate: {}{}.", predicate.text,
-                                known ? shown(threshold.value) : threshold.text));
-    facts.push_back(
-        known ? fmt::format("Threshold {}: {}.", shown(threshold.value), check::origin(threshold))
-              : fmt::format("Threshold: {}, not there yet; 'etlc calibrate' finds it.",
-                            threshold.text));
+                                known ? check::numbers(threshold) : threshold.text));
+    facts.push_back(known ? fmt::format("Threshold {}: {}.", check::numbers(threshold),
+                                        check::origin(threshold))
+                          : fmt::format("Threshold: {}, not there yet; 'etlc calibrate' finds it.",
+                                        threshold.text));
     if (known && threshold.adaptation)
         facts.push_back(fmt::format("Of T labelled positive frames it misses at most {}.",
                                     check::miss_bound(predicate)));
@@ -398,9 +400,8 @@ Sentences about(const Model& model, const check::Monitor& monitor, bool complete
         }
     }
     if (monitor.calibration && complete)
-        facts.push_back(fmt::format("Robustness less {}: {}.",
-                                    shown(monitor.calibration->threshold.value),
-                                    check::origin(monitor.calibration->threshold)));
+        facts.push_back(
+            fmt::format("Calibrated as a whole: {}.", check::of_shift(*monitor.calibration)));
     if (planned == nullptr || !planned->compiled) return facts;
     const plan::Plan& plan = planned->compiled->plan;
     for (std::size_t m = 0; m < plan.monitors.size() && m < plan.monitor_costs.size(); ++m)

@@ -172,5 +172,17 @@ ETLMON_INLINE Value at_least(const Enclosed& delta, const float& epsilon, Value 
   return between(detail::rounded(delta.low - epsilon), detail::rounded(delta.high - epsilon));
 }
 
+// The same of two thresholds.
+ETLMON_INLINE Value at_most(const Enclosed& delta, const float& inner, const float& outer,
+                            Value range) noexcept {
+  if (is_nan(delta.measured.delta)) return range;
+  return {detail::up_to(inner, delta.high), detail::up_to(outer, delta.low)};
+}
+ETLMON_INLINE Value at_least(const Enclosed& delta, const float& inner, const float& outer,
+                             Value range) noexcept {
+  if (is_nan(delta.measured.delta)) return range;
+  return {-detail::up_to(inner, delta.low), -detail::up_to(outer, delta.high)};
+}
+
 }  // namespace ETLMON_BUILD
 }  // namespace etlmon

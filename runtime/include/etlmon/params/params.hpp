@@ -69,13 +69,14 @@ struct MadeFrom {
 
 /// A contiguous part of the parameters.
 struct ParamsPart {
-  /// The rule for each number, which is also finite.
+  /// The rule for each number, which is also finite unless it is one of two thresholds.
   enum Rule : uint8_t {
     any,           ///< no other rule
     not_negative,  ///< a threshold on a distance
     positive,      ///< the diagonal of a metric
     unit_rows,     ///< rows of length 1, up to rounding
-    symmetric      ///< a square matrix with a positive diagonal: a metric
+    symmetric,     ///< a square matrix with a positive diagonal: a metric
+    ascending      ///< two thresholds, not both of them infinite
   };
   uint32_t begin;  ///< in floats from the first byte
   uint32_t count;
@@ -141,6 +142,11 @@ inline bool is_symmetric(const float* matrix, uint32_t width) noexcept {
 
 inline bool is_sound(const float* numbers, const ParamsPart& part) noexcept {
   const float* first = numbers + part.begin;
+  if (part.rule == ParamsPart::ascending) {
+    if (is_nan(first[0]) || is_nan(first[1])) return false;
+    return ordered(observe(first[0])) <= ordered(observe(first[1])) &&
+           (is_finite(first[0]) || is_finite(first[1]));
+  }
   for (uint32_t i = 0; i < part.count; ++i) {
     if (!is_finite(first[i])) return false;
     if (part.rule == ParamsPart::not_negative && first[i] < 0.0f) return false;

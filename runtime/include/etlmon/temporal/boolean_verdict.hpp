@@ -19,10 +19,11 @@ struct BooleanVerdict : Answers<BooleanVerdict> {
 
 static_assert(sizeof(BooleanVerdict) == 1, "a Boolean verdict is its status");
 
-inline BooleanVerdict prefix_verdict(Truth holds, bool surely, bool perhaps) noexcept {
+inline BooleanVerdict prefix_verdict(Truth holds, bool surely, bool perhaps,
+                                     bool complete = false) noexcept {
   const unsigned satisfied = holds.low ? BooleanVerdict::kSatisfied : 0u;
   const unsigned violated = holds.high ? 0u : BooleanVerdict::kViolated;
-  const unsigned settled = surely || !perhaps ? BooleanVerdict::kFinal : 0u;
+  const unsigned settled = surely || !perhaps || complete ? BooleanVerdict::kFinal : 0u;
   return {{}, static_cast<uint8_t>(satisfied | violated | settled | BooleanVerdict::kDecided)};
 }
 

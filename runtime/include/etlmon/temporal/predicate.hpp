@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The comparison of a predicate: from a distance or expression to robustness. Takes: delta (a
-// distance or an expression), NaN if unknown; epsilon; the value for that case: the range of the
-// robustness, or the one that the spec declares. Gives: epsilon - delta or delta - epsilon as a
-// value, or that value. Keeps true: one float32 subtraction; a NaN is detected by its bits and
-// never becomes a verdict.
+// distance or an expression), NaN if unknown; epsilon, or two thresholds; the value for that case:
+// the range of the robustness, or the one that the spec declares. Gives: epsilon - delta or delta -
+// epsilon as a value, or that value. Keeps true: one float32 subtraction for each threshold; a NaN
+// is detected by its bits and never becomes a verdict.
 #pragma once
 
 #include "etlmon/bits.hpp"
@@ -45,6 +45,27 @@ ETLMON_INLINE Value at_least(const float& delta, const float& epsilon, Value ran
   return {robustness, robustness};
 }
 
+namespace detail {
+/// Returns the key of threshold - x. Nothing is beyond an infinite threshold: it stays infinite
+/// whatever x is.
+ETLMON_INLINE Key up_to(const float& threshold, const float& x) noexcept {
+  return is_finite(threshold) ? key_of(rounded(threshold - x)) : key_of(threshold);
+}
+}  // namespace detail
+
+// Of two thresholds: what is within `inner` is true, what is beyond `outer` false. What is between
+// them is neither: the range of its robustness contains 0.
+ETLMON_INLINE Value at_most(const float& delta, const float& inner, const float& outer,
+                            Value range) noexcept {
+  if (is_nan(delta)) return range;
+  return {detail::up_to(inner, delta), detail::up_to(outer, delta)};
+}
+ETLMON_INLINE Value at_least(const float& delta, const float& inner, const float& outer,
+                             Value range) noexcept {
+  if (is_nan(delta)) return range;
+  return {-detail::up_to(inner, delta), -detail::up_to(outer, delta)};
+}
+
 /// Returns the value of a bool input: +inf for true, -inf for false, `missing` (by default the
 /// whole range) if missing.
 ETLMON_INLINE Value value_of(Flag flag, Value missing = {kBottom, kTop}) noexcept {
@@ -52,7 +73,7 @@ ETLMON_INLINE Value value_of(Flag flag, Value missing = {kBottom, kTop}) noexcep
   return flag.value() ? kTrue : kFalse;
 }
 
-/// Returns whether a sample of the value was missing.
+/// Returns whether the robustness is a range: of a missing sample, or between two thresholds.
 constexpr bool unknown(Value value) noexcept { return value.low != value.high; }
 
 }  // namespace ETLMON_BUILD

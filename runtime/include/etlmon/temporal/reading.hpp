@@ -57,8 +57,8 @@ struct Lattice<BasicReading<Value>> {
 };
 
 template <class Value>
-auto prefix_verdict(BasicReading<Value> reading) noexcept {
-  return prefix_verdict(reading.rho, reading.lower, reading.upper);
+auto prefix_verdict(BasicReading<Value> reading, bool complete = false) noexcept {
+  return prefix_verdict(reading.rho, reading.lower, reading.upper, complete);
 }
 
 }  // namespace ETLMON_BUILD

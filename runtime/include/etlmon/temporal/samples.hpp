@@ -32,17 +32,19 @@ struct Sample {
 struct Place {
   enum class Kind : uint8_t { at_most, at_least, truth };
   const char* name;
-  Kind kind;        ///< truth: a bool, == or !=
-  float threshold;  ///< NaN if adaptive
-  uint32_t first;   ///< first code: of row 0 if codes distinguish rows
-  uint32_t rows;    ///< number of these codes; the next one is of a missing sample
+  Kind kind;               ///< truth: a bool, == or !=
+  float threshold;         ///< NaN if adaptive
+  uint32_t first;          ///< first code: of row 0 if codes distinguish rows
+  uint32_t rows;           ///< number of these codes; the next one is of a missing sample
+  float inner = kMissing;  ///< of two thresholds the one within which it is true, else NaN
 
-  /// Returns the distance at which the predicate has this robustness, NaN if that is unknown.
-  float distance_at(Key robustness) const noexcept {
-    if (kind == Kind::truth) return !is_nan(threshold) ? kMissing : robustness > 0 ? 1.0f : 0.0f;
-    if (is_nan(threshold) || robustness == kTop || robustness == kBottom) return kMissing;
+  /// Returns the distance at which the predicate has this robustness, measured from a threshold,
+  /// NaN if that is unknown.
+  float distance_at(Key robustness, const float& from) const noexcept {
+    if (kind == Kind::truth) return !is_nan(from) ? kMissing : robustness > 0 ? 1.0f : 0.0f;
+    if (is_nan(from) || robustness == kTop || robustness == kBottom) return kMissing;
     const float rho = float_of(robustness);
-    return detail::rounded(kind == Kind::at_most ? threshold - rho : threshold + rho);
+    return detail::rounded(kind == Kind::at_most ? from - rho : from + rho);
   }
 };
 
@@ -66,12 +68,18 @@ class Deciding {
     for (SourcedKey& key : keys_) key = SourcedKey(0);
   }
 
-  ETLMON_STEP Verdict prefix(uint32_t m, const BasicReading<Sourced>& of) noexcept {
-    return prefix(m, of, unsourced(of));
-  }
+  // complete: the prefix has all that the formula looks ahead.
   ETLMON_STEP Verdict prefix(uint32_t m, const BasicReading<Sourced>& of,
-                             const float& shift) noexcept {
-    return prefix(m, of, shifted(unsourced(of), shift));
+                             bool complete = false) noexcept {
+    return prefix(m, of, unsourced(of), complete);
+  }
+  ETLMON_STEP Verdict prefix(uint32_t m, const BasicReading<Sourced>& of, const float& shift,
+                             bool complete = false) noexcept {
+    return prefix(m, of, shifted(unsourced(of), shift), complete);
+  }
+  ETLMON_STEP Verdict prefix(uint32_t m, const BasicReading<Sourced>& of, const float& least,
+                             const float& most, bool complete = false) noexcept {
+    return prefix(m, of, shifted(unsourced(of), least, most), complete);
   }
 
   ETLMON_STEP Verdict sliding(uint32_t m, Sourced of) noexcept {
@@ -79,6 +87,10 @@ class Deciding {
   }
   ETLMON_STEP Verdict sliding(uint32_t m, Sourced of, const float& shift) noexcept {
     return sliding(m, of, shifted(unsourced(of), shift));
+  }
+  ETLMON_STEP Verdict sliding(uint32_t m, Sourced of, const float& least,
+                              const float& most) noexcept {
+    return sliding(m, of, shifted(unsourced(of), least, most));
   }
   ETLMON_STEP Verdict undecided(uint32_t m) noexcept {
     keys_[m] = SourcedKey(0);
@@ -89,11 +101,12 @@ class Deciding {
 
  private:
   /// Stores the bound that makes a verdict final, and nothing for an unknown verdict.
-  ETLMON_STEP Verdict prefix(uint32_t m, const BasicReading<Sourced>& of, Reading said) noexcept {
+  ETLMON_STEP Verdict prefix(uint32_t m, const BasicReading<Sourced>& of, Reading said,
+                             bool complete) noexcept {
     const int64_t holds = said.lower >= 0 ? of.lower.order : of.rho.low.order;
     const int64_t fails = said.upper < 0 ? of.upper.order : of.rho.high.order;
     decide(m, said.rho, holds, fails);
-    return prefix_verdict(said.rho, said.lower, said.upper);
+    return prefix_verdict(said.rho, said.lower, said.upper, complete);
   }
   ETLMON_STEP Verdict sliding(uint32_t m, Sourced of, Value said) noexcept {
     decide(m, said, of.low.order, of.high.order);
@@ -107,9 +120,9 @@ class Deciding {
 };
 
 /// Returns the sample of a value. `places`: predicates and bools in the order of the spec, with
-/// `Codes` codes in all.
+/// `Codes` codes in all. `least`: the key from which on the verdict is satisfied.
 template <uint32_t Codes, uint32_t Places>
-Sample sample_of(SourcedKey value, const Place (&places)[Places]) noexcept {
+Sample sample_of(SourcedKey value, const Place (&places)[Places], Key least = 0) noexcept {
   using Order = Ranks<Codes>;
   Sample result;
   const Rank rank = value.rank();
@@ -120,13 +133,15 @@ Sample sample_of(SourcedKey value, const Place (&places)[Places]) noexcept {
   const Place& place = places[at];
   result.predicate = place.name;
   result.step = step < Order::kLastStep ? step : UINT32_MAX;
-  result.threshold = place.threshold;
+  // A verdict is satisfied by low ends and violated by high ones, and a negation exchanges them.
+  const bool within = !is_nan(place.inner) && (value.key() >= least) != Order::is_negated(rank);
+  result.threshold = within ? place.inner : place.threshold;
   const uint32_t row = code - place.first;
   const bool names_rows = place.rows > 0;
   if (row == (names_rows ? place.rows : 1)) return result;  // the sample was missing
   const Key key = Order::is_negated(rank) ? -value.key() : value.key();
   result.robustness = float_of(key);
-  result.distance = place.distance_at(key);
+  result.distance = place.distance_at(key, result.threshold);
   if (names_rows) result.row = row;
   return result;
 }

@@ -46,9 +46,9 @@ constexpr bool max_of(bool a, bool b) noexcept { return a || b; }
 ETLMON_INLINE float min_of(float a, float b) noexcept { return key_of(b) < key_of(a) ? b : a; }
 ETLMON_INLINE float max_of(float a, float b) noexcept { return key_of(a) < key_of(b) ? b : a; }
 
-/// The range of a robustness: low == high unless a sample that it depends on is missing. Min and
-/// max apply to both ends alike, since formulas are in negation normal form (only predicates
-/// negate).
+/// The range of a robustness: low == high unless a sample that it depends on is missing, or between
+/// two thresholds. Min and max apply to both ends alike, since formulas are in negation normal form
+/// (only predicates negate).
 struct Value {
   Key low;
   Key high;

@@ -33,11 +33,12 @@ struct Answers {
   // means "not yet": G F[0,6] p is violated at every step at which p does not hold.
   constexpr bool satisfied() const noexcept { return has(kSatisfied); }
   constexpr bool violated() const noexcept { return has(kViolated); }
-  /// A missing sample leaves it undetermined.
+  /// Undetermined, by a missing sample or a number between two thresholds.
   constexpr bool unknown() const noexcept { return decided() && !satisfied() && !violated(); }
   /// False only before a sliding monitor has seen its horizon.
   constexpr bool decided() const noexcept { return has(kDecided); }
-  /// No continuation of the trace changes it between satisfied and violated.
+  /// No continuation of the trace changes it. That of a sliding or repeating monitor may be unknown
+  /// for good, where the formula looks no further ahead.
   constexpr bool final() const noexcept { return has(kFinal); }
 
  private:
@@ -61,7 +62,8 @@ struct Named {
 
 /// The verdict of a monitor after a step. If it is undecided, the numbers are NaN.
 struct Verdict : Answers<Verdict> {
-  float robustness = kMissing;  ///< rho; the lowest possible if a sample is missing
+  float robustness = kMissing;  ///< rho; the lowest possible if a sample is missing or between two
+                                ///< thresholds
   float lower = kMissing;       ///< lower bound of rho over every continuation
   float upper = kMissing;       ///< upper bound of rho over every continuation
   uint32_t status = 0;          ///< bits of Answers
@@ -70,17 +72,16 @@ struct Verdict : Answers<Verdict> {
 static_assert(sizeof(Verdict) == 16, "a verdict is three floats and its status");
 
 /// Returns the verdict about position 0 of the prefix. rho: its robustness; lower, upper: its
-/// bounds over every continuation.
-inline Verdict prefix_verdict(Value rho, Key lower, Key upper) noexcept {
+/// bounds over every continuation; complete: the prefix has all that the formula looks ahead.
+inline Verdict prefix_verdict(Value rho, Key lower, Key upper, bool complete = false) noexcept {
   uint32_t status = Verdict::kDecided;
   if (rho.low >= 0) status += Verdict::kSatisfied;
   if (rho.high < 0) status += Verdict::kViolated;
-  if ((~lower | upper) < 0) status += Verdict::kFinal;  // lower >= 0 || upper < 0
+  if (complete || (~lower | upper) < 0) status += Verdict::kFinal;  // lower >= 0 || upper < 0
   return {{}, float_of(rho.low), float_of(lower), float_of(upper), status};
 }
 
-/// Returns the verdict about a position whose horizon is complete; only a missing sample leaves
-/// doubt.
+/// Returns the verdict about a position whose horizon is complete.
 inline Verdict sliding_verdict(Value rho) noexcept {
   const uint32_t satisfied = ~static_cast<uint32_t>(rho.low) >> 31;
   const uint32_t violated = static_cast<uint32_t>(rho.high) >> 31;

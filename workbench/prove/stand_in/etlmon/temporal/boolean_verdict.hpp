@@ -13,8 +13,9 @@ struct BooleanVerdict : Answers<BooleanVerdict> {
 };
 
 /// The conditions of the runtime's file.
-inline BooleanVerdict prefix_verdict(Truth holds, Bit surely, Bit perhaps) noexcept {
-    return {{}, {holds.low, !holds.high, surely || !perhaps}};
+inline BooleanVerdict prefix_verdict(Truth holds, Bit surely, Bit perhaps,
+                                     bool complete = false) noexcept {
+    return {{}, {holds.low, !holds.high, complete || surely || !perhaps}};
 }
 inline BooleanVerdict sliding_verdict(Truth holds) noexcept {
     return prefix_verdict(holds, true, true);

@@ -22,6 +22,7 @@ struct Place {
     float threshold;
     uint32_t first;
     uint32_t rows;
+    float inner = kMissing;
 };
 
 ETLMON_INLINE uint32_t code_of(uint32_t, const float&, uint32_t = 0, uint32_t = 1) noexcept {
@@ -37,14 +38,22 @@ public:
     constexpr void reset() noexcept {
         for (SourcedKey& key : keys_) key = SourcedKey(kBottom);
     }
-    Verdict prefix(uint32_t, const BasicReading<Sourced>& of) noexcept {
-        return prefix_verdict(unsourced(of));
+    Verdict prefix(uint32_t, const BasicReading<Sourced>& of, bool complete = false) noexcept {
+        return prefix_verdict(unsourced(of), complete);
     }
-    Verdict prefix(uint32_t m, const BasicReading<Sourced>& of, const float&) noexcept {
-        return prefix(m, of);
+    Verdict prefix(uint32_t m, const BasicReading<Sourced>& of, const float&,
+                   bool complete = false) noexcept {
+        return prefix(m, of, complete);
+    }
+    Verdict prefix(uint32_t m, const BasicReading<Sourced>& of, const float&, const float&,
+                   bool complete = false) noexcept {
+        return prefix(m, of, complete);
     }
     Verdict sliding(uint32_t, Sourced of) noexcept { return sliding_verdict(unsourced(of)); }
     Verdict sliding(uint32_t m, Sourced of, const float&) noexcept { return sliding(m, of); }
+    Verdict sliding(uint32_t m, Sourced of, const float&, const float&) noexcept {
+        return sliding(m, of);
+    }
     Verdict undecided(uint32_t) noexcept { return {}; }
     SourcedKey operator[](uint32_t m) const noexcept { return keys_[m]; }
 
@@ -53,7 +62,7 @@ private:
 };
 
 template <uint32_t Codes, uint32_t Places>
-Sample sample_of(SourcedKey, const Place (&)[Places]) noexcept {
+Sample sample_of(SourcedKey, const Place (&)[Places], int32_t = 0) noexcept {
     return {};
 }
 

@@ -15,6 +15,12 @@ inline Value shifted(Value value, const float&) noexcept {
 inline Reading shifted(Reading reading, const float&) noexcept {
     return reading;
 }
+inline Value shifted(Value value, const float&, const float&) noexcept {
+    return value;
+}
+inline Reading shifted(Reading reading, const float&, const float&) noexcept {
+    return reading;
+}
 
 }  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -103,14 +103,15 @@ struct Verdict : Answers<Verdict> {
 };
 
 /// The conditions of the runtime's file.
-inline Verdict prefix_verdict(Value rho, Key lower, Key upper) noexcept {
+inline Verdict prefix_verdict(Value rho, Key lower, Key upper, bool complete = false) noexcept {
     const auto at_least_0 = [](Key key) { return etlprove::Bit::of(key.at_zero()); };
     return {{},
             rho.low,
             lower,
             upper,
             rho.high,
-            {at_least_0(rho.low), !at_least_0(rho.high), at_least_0(lower) || !at_least_0(upper)}};
+            {at_least_0(rho.low), !at_least_0(rho.high),
+             complete || at_least_0(lower) || !at_least_0(upper)}};
 }
 inline Verdict sliding_verdict(Value rho) noexcept {
     Verdict verdict = prefix_verdict(rho, rho.low, rho.high);
