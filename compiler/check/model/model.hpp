@@ -358,6 +358,14 @@ struct Predicate {
     bool strict() const {
         return comparison == Comparison::less || comparison == Comparison::greater;
     }
+    /// Returns what it is called where its left side is `delta`: nothing between two thresholds, or
+    /// if delta is NaN.
+    std::optional<bool> called(float delta) const {
+        if (std::isnan(delta)) return std::nullopt;
+        if (holds(comparison, delta, threshold.low())) return true;
+        if (!holds(comparison, delta, threshold.value)) return false;
+        return std::nullopt;
+    }
     /// Returns its name, or the comparison, for messages.
     std::string shown() const { return name.empty() ? text + threshold.text : name; }
     /// Whether the expression is a single aggregated distance.
