@@ -188,11 +188,11 @@ def variant_line(evaluated, name, kind):
         if kind == "success":
             errors = verdicts["false_positives"]
             counts.append((errors, errors + verdicts["true_negatives"] +
-                           verdicts["unsaid_negatives"]))
+                           verdicts["unknown_negatives"]))
         else:
             errors = verdicts["false_negatives"]
             counts.append((errors, errors + verdicts["true_positives"] +
-                           verdicts["unsaid_positives"]))
+                           verdicts["unknown_positives"]))
     errors, cases, share = shown(counts)
     words = ("satisfied", "violated") if kind == "success" else ("violated", "satisfied")
     kinds = ", ".join(f"{variant} {number}" for variant, number in made.items() if number > 0)
@@ -206,5 +206,5 @@ def pairs_of(evaluated, name):
     return ([(True, True)] * steps["true_positives"] + [(True, False)] * steps["false_positives"] +
             [(False, True)] * steps["false_negatives"] +
             [(False, False)] * steps["true_negatives"] +
-            [(None, True)] * steps["unsaid_positives"] +
-            [(None, False)] * steps["unsaid_negatives"])
+            [(None, True)] * steps["unknown_positives"] +
+            [(None, False)] * steps["unknown_negatives"])

@@ -49,14 +49,14 @@ def flat(value, *path):
         return {"_".join(path): value}
     return {k: v for name, inner in value.items() for k, v in flat(inner, *path, name).items()}
 rows, figures = list(csv.DictReader(open("1.csv"))), flat(json.load(open("1.json")))
-assert len(rows) == 114 and len({(*row.values(),) for row in rows}) == 114
+assert len(rows) == 143 and len({(*row.values(),) for row in rows}) == 143
 for row in rows:
     level = "" if row["level"] == "frames" else row["level"] + "_"
     if row["figure"].startswith(("turns", "delay")):
         level = "detection_"
     figure = row["figure"].replace("delay_", "").replace("turns_", "")
     key = f"{row['kind']}s_{row['name']}_{level}{figure}"
-    assert float(row["value"]) == figures[key], row
+    assert (float(row["value"]) if row["value"] else None) == figures[key], row
     interval = [row["low"], row["high"]]
     assert interval == ["", ""] or list(map(float, interval)) == figures[key + "_interval"], row
 END
@@ -214,3 +214,35 @@ print(json.load(sys.stdin)["predicates"]["near"]["epsilon"])'
 done | sort -g >thresholds
 grep -q "^    near: $(head -1 thresholds) to $(tail -1 thresholds); held out, 5 of 5 " \
     folds.txt || fail "$(cat folds.txt thresholds)"
+
+# Between two thresholds a claim is unknown: no error, and none of the errors' denominators shrinks.
+cat >between.etl <<'SPEC'
+spec between;
+input x : f32;
+predicate p = x <= calibrated(conformal, alpha = 0.2, against = both);
+monitor done = F p;
+SPEC
+mkdir shown new
+for e in 0 1 2 3 4; do
+    printf 'x,truth.p\n2,0\n0.%s,1\n1.2,1\n0.9,0\n' $e >shown/$e.csv
+done
+for e in 0 1 2 3 4; do
+    printf 'x,truth.p\n2,0\n1.0%s,1\n1.1,0\n0.5,0\n0.6,1\n2,0\n3,1\n' $e >new/$e.csv
+done
+"$etlc" calibrate between.etl --data shown 2>/dev/null >between.txt
+"$etlc" evaluate between.etl --data new --json between.json >between.txt 2>between.err
+python3 - <<'END'
+import json
+of = json.load(open("between.json"))
+p, done = of["predicates"]["p"], of["monitors"]["done"]
+counts = [p[f"{name}_{of}"] for of in ("positives", "negatives")
+          for name in ("true", "false", "unknown")]
+assert counts == [5, 5, 5, 10, 5, 5], counts
+assert (p["unknown"], p["wrong_when_decided"]) == (10 / 35, 10 / 25), p
+assert (p["false_negative_rate"], p["false_positive_rate"]) == (5 / 15, 5 / 20), p
+assert (p["coverage"], p["coverage_of_negatives"], p["unmeasured"]) == (0, 0, 0), p
+# F p is unknown from step 1 on, where it is true, and satisfied at step 3.
+assert (done["steps"]["unknown_positives"], done["steps"]["coverage"]) == (10, 1), done
+assert done["episodes"]["true_positives"] == 5, done
+END
+grep -q '^unknown, which agrees with nothing ' between.txt || fail "$(cat between.txt)"

@@ -62,6 +62,14 @@ TEST(Rates, AreTheSharesThatTheirNamesSay) {
         expect_near(found.precision, precision);
         expect_near(found.recall, recall);
         expect_near(found.agreement, share(pairs, any, agree));
+        const auto negative = [](Label, Label is) { return is == Label::no; };
+        const auto unknown = [](Label said, Label) { return said == Label::unknown; };
+        const auto decided = [](Label said, Label) { return said != Label::unknown; };
+        const auto wrong = [&](Label said, Label is) { return decided(said, is) && said != is; };
+        expect_near(found.unknown, share(pairs, any, unknown));
+        expect_near(found.wrong_when_decided, share(pairs, decided, wrong));
+        expect_near(found.false_negative_rate, share(pairs, positive, wrong));
+        expect_near(found.false_positive_rate, share(pairs, negative, wrong));
         // F1 is the harmonic mean of the two, or 0 if both are 0.
         if (precision && recall)
             expect_near(found.f1, *precision + *recall == 0

@@ -251,17 +251,17 @@ void EpisodeScorer::note_frame(const episodes::Recording& recording, std::size_t
     const check::Predicate& predicate = model().predicates[subject_.labelled[i]];
     const Label is = recording.label(subject_.labelled[i]);
     const float delta = distance(subject_.labelled[i]);
-    const bool holds = check::holds(predicate.comparison, delta, predicate.threshold.value);
-    const Label said = std::isnan(delta) ? Label::unknown : holds ? Label::yes : Label::no;
+    const std::optional<bool> called = predicate.called(delta);
+    const Label said = !called ? Label::unknown : *called ? Label::yes : Label::no;
     result.frames.add(said, is);
     result.truth.add(is);
     if (is == Label::unknown) return;
-    if (said != is && !result.first_error) result.first_error = recording.frames() - 1;
-    if (said == Label::unknown) {
+    if (is_wrong(said, is) && !result.first_error) result.first_error = recording.frames() - 1;
+    if (std::isnan(delta)) {
         ++result.unmeasured;
         return;
     }
-    const float score = predicate.equality()      ? static_cast<float>(holds)
+    const float score = predicate.equality()      ? static_cast<float>(*called)
                         : predicate.upper_bound() ? -delta
                                                   : delta;
     result.scored.push_back({score, 0, is == Label::yes});
@@ -274,7 +274,7 @@ void EpisodeScorer::note_let(std::size_t i, std::uint64_t frame, PredicateEpisod
     result.frames.add(said, is);
     result.truth.add(is);
     if (is == Label::unknown) return;
-    if (said != is && !result.first_error) result.first_error = frame;
+    if (is_wrong(said, is) && !result.first_error) result.first_error = frame;
     if (said == Label::unknown)
         ++result.unmeasured;
     else
@@ -307,8 +307,7 @@ MonitorEpisode EpisodeScorer::conclude(const MonitorSubject& subject, const Trac
     for (std::size_t i = 0; i < tracks.said.size(); ++i) {
         result.steps.add(tracks.said[i], tracks.is[i]);
         result.truth.add(tracks.is[i]);
-        const bool errs = tracks.is[i] != Label::unknown && tracks.said[i] != tracks.is[i];
-        if (errs && !result.first_error) result.first_error = i;
+        if (is_wrong(tracks.said[i], tracks.is[i]) && !result.first_error) result.first_error = i;
     }
     result.episode = verdict(subject, tracks);
     result.turn = turn_of(tracks.said, tracks.is);

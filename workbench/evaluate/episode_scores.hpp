@@ -60,7 +60,7 @@ struct MonitorEpisode {
     std::optional<Turn> turn;
     std::optional<Counts> ordering;  ///< one claim: sequential formulas, all stages truly visited
     LabelRuns truth;                 ///< true labels of the steps
-    /// The first step (sliding monitors: position) that disagrees with a known truth.
+    /// The first step (sliding monitors: position) at which the claim is wrong.
     std::optional<std::uint64_t> first_error;
     /// Per requested kind, the verdicts on variants of the episode, as in `episode`.
     std::vector<Counts> variants;

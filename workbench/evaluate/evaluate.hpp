@@ -98,6 +98,13 @@ struct Judgement {
     }
 };
 
+/// Shares of the episodes with a case in which none is called wrong, for which calibration
+/// guarantees P >= 1 - alpha.
+struct Coverage {
+    Figure of_positives;
+    Figure of_negatives;
+};
+
 /// Counts of claims, with intervals over episodes.
 struct Score : ByRate<Figure> {
     Counts counts;
@@ -113,8 +120,8 @@ struct PredicateScore {
     std::string name;
     bool adaptive = false;  ///< evaluated with its initial threshold, as there is no feedback here
     Score frames;
-    Figure auroc;                  ///< of the distance, or of a let's robustness
-    Figure coverage;               ///< share of the episodes with a positive frame that miss none
+    Figure auroc;  ///< of the distance, or of a let's robustness
+    Coverage coverage;
     std::uint64_t unmeasured = 0;  ///< labelled frames of unknown distance, counted as misses
     std::uint64_t arrays = 0;      ///< episodes with an array of labels
 };
@@ -132,6 +139,7 @@ struct MonitorScore {
     std::string name;
     std::vector<std::string> lacking;  ///< predicates without truth; then nothing else is set
     Score steps;
+    Coverage coverage;
     Score episodes;
     Detection detection;
     std::optional<Score> ordering;  ///< sequential formulas: episodes with all stages truly visited
@@ -139,7 +147,7 @@ struct MonitorScore {
 };
 
 struct EpisodeRow {
-    /// The first step at which a predicate, or else a monitor, disagrees with a known truth.
+    /// The first step at which a predicate, or else a monitor, is called wrong.
     struct Error {
         std::uint64_t step = 0;  ///< for a sliding monitor the position
         std::string name;

@@ -20,7 +20,7 @@ void Counts::add(Label said, Label is) {
     if (is == Label::unknown)
         ++unlabelled;
     else if (said == Label::unknown)
-        ++(is == Label::yes ? unsaid_positives : unsaid_negatives);
+        ++(is == Label::yes ? unknown_positives : unknown_negatives);
     else if (said == Label::yes)
         ++(is == Label::yes ? true_positives : false_positives);
     else
@@ -35,7 +35,9 @@ Rates rates(const Counts& c) {
     const std::uint64_t hits = c.true_positives;
     Rates result{{share(2 * hits, hits + c.false_positives + c.positives()),
                   share(hits, hits + c.false_positives), share(hits, c.positives()),
-                  share(hits + c.true_negatives, c.total())},
+                  share(hits + c.true_negatives, c.total()), share(c.unknown(), c.total()),
+                  share(c.wrong(), c.total() - c.unknown()),
+                  share(c.false_negatives, c.positives()), share(c.false_positives, c.negatives())},
                  {}};
     const auto always_true = share(2 * c.positives(), c.positives() + c.total());
     if (result.f1 && always_true) result.gain = *result.f1 - *always_true;

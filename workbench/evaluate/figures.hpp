@@ -1,5 +1,5 @@
-// Counts of claims that agree or disagree with the truth, and their rates (precision, recall, F1
-// and agreement). A claim that a missing sample leaves open is a miss and never agrees; a rate
+// Counts of claims that agree or disagree with the truth, and their rates. An unknown claim,
+// between two thresholds or of a missing sample, is no error, but never agrees either; a rate
 // without a case is undefined.
 #pragma once
 
@@ -30,20 +30,27 @@ struct Counts {
     std::uint64_t false_positives = 0;
     std::uint64_t false_negatives = 0;
     std::uint64_t true_negatives = 0;
-    std::uint64_t unsaid_positives = 0;  ///< true, and left open by the monitor
-    std::uint64_t unsaid_negatives = 0;
+    std::uint64_t unknown_positives = 0;  ///< true, and the claim is unknown
+    std::uint64_t unknown_negatives = 0;
     std::uint64_t unlabelled = 0;  ///< cases of unknown truth, which no other count includes
 
     void add(Label said, Label is);
     /// Adds the other counts, `times` over.
     void add(const Counts& other, std::uint64_t times = 1);
 
-    std::uint64_t positives() const { return true_positives + false_negatives + unsaid_positives; }
-    std::uint64_t negatives() const { return true_negatives + false_positives + unsaid_negatives; }
+    std::uint64_t positives() const { return true_positives + false_negatives + unknown_positives; }
+    std::uint64_t negatives() const { return true_negatives + false_positives + unknown_negatives; }
     std::uint64_t total() const { return positives() + negatives(); }
+    std::uint64_t wrong() const { return false_positives + false_negatives; }
+    std::uint64_t unknown() const { return unknown_positives + unknown_negatives; }
 
     bool operator==(const Counts&) const = default;
 };
+
+/// Returns whether a claim is an error.
+constexpr bool is_wrong(Label said, Label is) {
+    return said != is && said != Label::unknown && is != Label::unknown;
+}
 
 /// All counts with their names.
 inline constexpr std::pair<const char*, std::uint64_t Counts::*> kCounts[] = {
@@ -51,8 +58,8 @@ inline constexpr std::pair<const char*, std::uint64_t Counts::*> kCounts[] = {
     {"false_positives", &Counts::false_positives},
     {"false_negatives", &Counts::false_negatives},
     {"true_negatives", &Counts::true_negatives},
-    {"unsaid_positives", &Counts::unsaid_positives},
-    {"unsaid_negatives", &Counts::unsaid_negatives},
+    {"unknown_positives", &Counts::unknown_positives},
+    {"unknown_negatives", &Counts::unknown_negatives},
     {"unlabelled", &Counts::unlabelled}};
 
 template <class Archive>
@@ -65,17 +72,29 @@ template <class T>
 struct ByRate {
     /// 2 TP / (2 TP + FP + misses); undefined where nothing is true or claimed.
     T f1;
-    T precision;  ///< TP / (TP + FP)
-    T recall;     ///< TP / positives
-    T agreement;  ///< (TP + TN) / total
+    T precision;            ///< TP / (TP + FP)
+    T recall;               ///< TP / positives
+    T agreement;            ///< (TP + TN) / total
+    T unknown;              ///< (unknown positives + unknown negatives) / total
+    T wrong_when_decided;   ///< (FP + FN) / (TP + FP + FN + TN)
+    T false_negative_rate;  ///< FN / positives
+    T false_positive_rate;  ///< FP / negatives
 
-    /// Calls `visit(name, value)` for each.
+    /// Calls `visit(name, value)` for the rates of agreement.
     template <class Visit>
     void for_each(Visit&& visit) const {
         visit("f1", f1);
         visit("precision", precision);
         visit("recall", recall);
         visit("agreement", agreement);
+    }
+    /// Calls `visit(name, value)` for the share of unknown claims and the rates of errors.
+    template <class Visit>
+    void for_each_error(Visit&& visit) const {
+        visit("unknown", unknown);
+        visit("wrong_when_decided", wrong_when_decided);
+        visit("false_negative_rate", false_negative_rate);
+        visit("false_positive_rate", false_positive_rate);
     }
 };
 
@@ -87,7 +106,14 @@ using Rate = std::optional<double> Rates::*;
 /// Calls `get(rate)` for each rate.
 template <class Get>
 ByRate<std::invoke_result_t<Get, Rate>> by_rate(const Get& get) {
-    return {get(&Rates::f1), get(&Rates::precision), get(&Rates::recall), get(&Rates::agreement)};
+    return {get(&Rates::f1),
+            get(&Rates::precision),
+            get(&Rates::recall),
+            get(&Rates::agreement),
+            get(&Rates::unknown),
+            get(&Rates::wrong_when_decided),
+            get(&Rates::false_negative_rate),
+            get(&Rates::false_positive_rate)};
 }
 
 Rates rates(const Counts& counts);

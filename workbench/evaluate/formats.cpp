@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <tuple>
 
 #include "evaluate/evaluate.hpp"
 #include "source/text.hpp"
@@ -96,28 +97,63 @@ void add(std::vector<Row>& rows, const std::string& name, const Score& score) {
     add_baselines(rows, score);
 }
 
-/// Adds a line each for cases without a known truth and for claims that a missing sample leaves
-/// open.
+/// Adds a line for cases without a known truth.
 void add_remarks(std::string& text, const std::string& name, const Counts& counts,
                  const std::string& unit) {
     if (counts.unlabelled > 0)
         text += fmt::format("{}: {} of unknown truth left out\n", name,
                             diag::counted(counts.unlabelled, unit));
-    if (const std::uint64_t open = counts.unsaid_positives + counts.unsaid_negatives; open > 0)
-        text += fmt::format("{}: {} left open by a missing sample, counted as disagreeing\n", name,
-                            diag::counted(open, unit));
 }
+
+/// The unknown claims beside both errors. Nothing is printed where every claim is known.
+class Errors {
+public:
+    void add(const std::string& name, const Score& score, const Coverage* coverage = nullptr) {
+        const Counts& c = score.counts;
+        any_ |= c.unknown() > 0;
+        Row row{name};
+        score.for_each_error([&](const char*, const Figure& rate) { row.push_back(figure(rate)); });
+        if (coverage)
+            for (const Figure* share : {&coverage->of_positives, &coverage->of_negatives})
+                row.push_back(figure(*share));
+        else
+            for (const auto& [right, wrong, unknown] :
+                 {std::tuple(c.true_positives, c.false_negatives, c.unknown_positives),
+                  std::tuple(c.true_negatives, c.false_positives, c.unknown_negatives)})
+                row.push_back(fmt::format("{} right, {} wrong, {} unknown", right, wrong, unknown));
+        rows_.push_back(std::move(row));
+        of_episodes_ = coverage != nullptr;
+    }
+
+    std::string text() const {
+        if (!any_) return "";
+        std::vector<Row> rows{{"unknown, which agrees with nothing", "unknown",
+                               "wrong when decided", "false where true", "true where false"}};
+        for (const char* of : {"true", "false"})
+            rows[0].push_back(of_episodes_ ? fmt::format("episodes, none wrong where {}", of)
+                                           : fmt::format("truly {}", of));
+        rows.insert(rows.end(), rows_.begin(), rows_.end());
+        return aligned(rows);
+    }
+
+private:
+    std::vector<Row> rows_;
+    bool any_ = false;
+    bool of_episodes_ = false;
+};
 
 std::string predicates_part(const Evaluation& evaluation) {
     std::vector<Row> rows = {heading("predicate, by frames", "frames inside")};
     rows[0].push_back("AUROC");
     rows[0].push_back("episodes without a miss");
     std::string remarks;
+    Errors errors;
     for (const PredicateScore& p : evaluation.predicates) {
         const std::size_t first = rows.size();
         add(rows, p.name, p.frames);
         rows[first].push_back(figure(p.auroc));
-        rows[first].push_back(figure(p.coverage));
+        rows[first].push_back(figure(p.coverage.of_positives));
+        errors.add(p.name, p.frames, &p.coverage);
         add_remarks(remarks, p.name, p.frames.counts, "frame");
         if (p.adaptive)
             remarks += fmt::format(
@@ -127,7 +163,7 @@ std::string predicates_part(const Evaluation& evaluation) {
                 fmt::format("{}: {} of the episodes have an array or a table of its labels\n",
                             p.name, p.arrays);
     }
-    return "\n" + aligned(rows) + remarks;
+    return "\n" + aligned(rows) + errors.text() + remarks;
 }
 
 std::string monitors_part(const Evaluation& evaluation, const std::string& what,
@@ -135,12 +171,14 @@ std::string monitors_part(const Evaluation& evaluation, const std::string& what,
                           const char* unit) {
     std::vector<Row> rows = {heading(what, positive)};
     std::string remarks;
+    Errors errors;
     for (const MonitorScore& m : evaluation.monitors) {
         if (!m.lacking.empty()) continue;
         add(rows, m.name, m.*level);
+        errors.add(m.name, m.*level, level == &MonitorScore::steps ? &m.coverage : nullptr);
         add_remarks(remarks, m.name, (m.*level).counts, unit);
     }
-    return rows.size() == 1 ? "" : "\n" + aligned(rows) + remarks;
+    return rows.size() == 1 ? "" : "\n" + aligned(rows) + errors.text() + remarks;
 }
 
 /// Lists how many variants there are, and the rates of each kind under those of all.
@@ -155,10 +193,12 @@ std::string variants_part(const Evaluation& evaluation) {
     }
     std::vector<Row> rows = {heading("monitor, by broken variants", "satisfied")};
     std::string remarks;
+    Errors errors;
     for (const MonitorScore& m : evaluation.monitors) {
         if (m.variants.empty()) continue;
         const Score& all = m.variants.back();
         add_figures(rows, m.name, all);
+        errors.add(m.name, all);
         for (std::size_t v = 0; v < evaluation.variants.size(); ++v)
             add_figures(rows,
                         fmt::format("  {}", episodes::name_of(evaluation.variants[v].variant)),
@@ -172,7 +212,7 @@ std::string variants_part(const Evaluation& evaluation) {
     if (!left_out.empty())
         text += fmt::format("episodes too short, or without a change of a truth: {}\n",
                             fmt::join(left_out, ", "));
-    return text + aligned(rows) + remarks;
+    return text + aligned(rows) + errors.text() + remarks;
 }
 
 std::string ordering_part(const Evaluation& evaluation) {
@@ -433,6 +473,7 @@ template <class To>
 void list(To&& to, const Score& score) {
     const Counts& c = score.counts;
     score.for_each(to);
+    score.for_each_error(to);
     if constexpr (std::is_same_v<To, Object&>) {
         const auto total = static_cast<double>(c.total());
         to("positive_rate",
@@ -456,10 +497,16 @@ void for_each_variant(const Evaluation& evaluation, const MonitorScore& monitor,
 }
 
 template <class To>
+void list(To&& to, const Coverage& coverage) {
+    to("coverage", coverage.of_positives);
+    to("coverage_of_negatives", coverage.of_negatives);
+}
+
+template <class To>
 void list(To&& to, const PredicateScore& score) {
     list(to, score.frames);
     to("auroc", score.auroc);
-    to("coverage", score.coverage);
+    list(to, score.coverage);
     if constexpr (std::is_same_v<To, Object&>) {
         to("unmeasured", score.unmeasured);
         to("episodes_labelled_by_array", score.arrays);
@@ -471,6 +518,7 @@ void list(To&& to, const Difference& difference) {
     to("episodes_of_other_truth", difference.other_truths);
     if (difference.other_truths > 0) return;
     difference.for_each(to);
+    difference.for_each_error(to);
     if (difference.auroc) to("auroc", *difference.auroc);
 }
 
@@ -494,7 +542,10 @@ void fill(Object& to, const MonitorScore& m, const Evaluation& evaluation) {
     to("step_agreement", m.steps.agreement);
     to("episode_agreement", m.episodes.agreement);
     if (m.ordering) to("ordering_agreement", m.ordering->agreement);
-    add_score("steps", m.steps);
+    to.nested("steps", [&](Object& object) {
+        list(object, m.steps);
+        list(object, m.coverage);
+    });
     add_score("episodes", m.episodes);
     if (m.ordering) add_score("ordering", *m.ordering);
     if (!m.variants.empty())
@@ -575,6 +626,7 @@ void add_rows(std::string& text, const std::string& prefix, const Evaluation& ev
     for (const MonitorScore& m : evaluation.monitors) {
         if (!m.lacking.empty()) continue;
         list(rows("monitor", m.name, "steps"), m.steps);
+        list(rows("monitor", m.name, "steps"), m.coverage);
         Rows episodes = rows("monitor", m.name, "episodes");
         list(episodes, m.episodes);
         episodes("turns", m.detection.turns);

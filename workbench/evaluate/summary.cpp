@@ -76,15 +76,17 @@ Detection detection(const Bootstrap& bootstrap, const std::vector<std::optional<
     return result;
 }
 
-/// Returns the share of the episodes with a positive frame that miss none, for which conformal
-/// calibration guarantees P >= 1 - alpha.
-Figure coverage(const Bootstrap& bootstrap, const std::vector<Counts>& each) {
-    std::vector<Fraction> covered;
-    covered.reserve(each.size());
-    for (const Counts& counts : each)
-        covered.push_back({counts.true_positives == counts.positives() ? 1 : 0,
-                           counts.positives() > 0 ? std::uint64_t{1} : 0});
-    return share(bootstrap, covered);
+Coverage coverage(const Bootstrap& bootstrap, const std::vector<Counts>& each) {
+    std::vector<Fraction> positives;
+    std::vector<Fraction> negatives;
+    const auto covered = [](std::uint64_t wrong, std::uint64_t all) {
+        return Fraction{all > 0 && wrong == 0 ? 1 : 0, all > 0 ? std::uint64_t{1} : 0};
+    };
+    for (const Counts& counts : each) {
+        positives.push_back(covered(counts.false_negatives, counts.positives()));
+        negatives.push_back(covered(counts.false_positives, counts.negatives()));
+    }
+    return {share(bootstrap, positives), share(bootstrap, negatives)};
 }
 
 /// Computes the rates on variants, resampled with their episodes.
@@ -124,8 +126,9 @@ MonitorScore monitor_score(const Bootstrap& bootstrap, const Judgement& judgemen
     const auto judged = [&](const std::vector<Counts>& each) {
         return score(bootstrap, each, by_length(judgement, each));
     };
-    result.steps = score(bootstrap, of_each([](const MonitorEpisode& e) { return e.steps; }),
-                         truths(judgement, monitor.episodes));
+    const std::vector<Counts> steps = of_each([](const MonitorEpisode& e) { return e.steps; });
+    result.steps = score(bootstrap, steps, truths(judgement, monitor.episodes));
+    result.coverage = coverage(bootstrap, steps);
     result.episodes = judged(of_each([](const MonitorEpisode& e) { return e.episode; }));
     result.detection =
         detection(bootstrap, of_each([](const MonitorEpisode& e) { return e.turn; }));
@@ -145,14 +148,10 @@ MonitorScore monitor_score(const Bootstrap& bootstrap, const Judgement& judgemen
     return result;
 }
 
-/// Returns the share of the claims with known truth that are wrong.
-double share_wrong(const Counts& claims) {
+/// Returns the share of the claims with known truth that are wrong or unknown.
+double share_not_right(const Counts& claims) {
     const auto agreement = rates(claims).agreement;
     return agreement ? 1 - *agreement : 0;
-}
-
-bool is_wrong(const Counts& verdict) {
-    return verdict.total() > 0 && rates(verdict).agreement == 0.0;
 }
 
 /// Keeps the earlier error; ties keep the first.
@@ -179,7 +178,7 @@ EpisodeRow row_of(const Judgement& judgement, std::size_t e) {
     for (std::size_t m = 0; m < judgement.monitors.size(); ++m) {
         const MonitorEpisode monitor = judgement.monitors[m].episodes[place];
         const std::string& name = judgement.monitors[m].name;
-        if (is_wrong(monitor.episode)) row.wrong.push_back(name);
+        if (monitor.episode.wrong() > 0) row.wrong.push_back(name);
         if (judgement.predicates.empty()) row.claims.add(monitor.steps);
         if (!predicates_err) note(row.first_error, monitor.first_error, name, true);
     }
@@ -266,8 +265,8 @@ std::vector<EpisodeRow> by_episode(const Judgement& judgement) {
     std::vector<EpisodeRow> rows;
     for (std::size_t e = 0; e < judgement.place.size(); ++e) rows.push_back(row_of(judgement, e));
     std::stable_sort(rows.begin(), rows.end(), [](const EpisodeRow& a, const EpisodeRow& b) {
-        return std::pair(a.wrong.size(), share_wrong(a.claims)) >
-               std::pair(b.wrong.size(), share_wrong(b.claims));
+        return std::pair(a.wrong.size(), share_not_right(a.claims)) >
+               std::pair(b.wrong.size(), share_not_right(b.claims));
     });
     return rows;
 }
