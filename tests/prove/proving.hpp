@@ -24,12 +24,15 @@ inline int effort() {
     return text == nullptr ? 1 : std::max(1, std::atoi(text));
 }
 
+inline std::optional<Compiled> compiled(check::Model model, check::Values values) {
+    diag::Sink sink;
+    return compile(std::move(model),
+                   {.limits = {16U << 20U, 16U << 20U, 64U << 20U}, .values = values}, sink);
+}
+
 inline std::optional<Compiled> compiled(const std::string& text, check::Values values) {
     auto model = load(text);
-    if (!model) return std::nullopt;
-    diag::Sink sink;
-    return compile(std::move(*model),
-                   {.limits = {16U << 20U, 16U << 20U, 64U << 20U}, .values = values}, sink);
+    return model ? compiled(std::move(*model), values) : std::nullopt;
 }
 
 inline std::string header_of(const plan::Plan& plan) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <iterator>
 #include <string>
+#include <utility>
 
 #include "prove/prove.hpp"
 #include "proving.hpp"
@@ -63,6 +64,36 @@ TEST(Prove, RestartsOfSeveralMonitors) {
     const auto wrong = prove::prove(spec->plan, {header, "proved", kLongest});
     ASSERT_TRUE(wrong && wrong->fault);
     EXPECT_EQ(wrong->fault->restarts.size(), 2U);
+}
+
+/// Between two thresholds a predicate is unknown; a repeating monitor goes on where its formula
+/// looks no further ahead, even if its verdict is unknown, which counts as nothing.
+TEST(Prove, TwoThresholds) {
+    for (const auto values : {check::Values::robustness, check::Values::boolean}) {
+        auto model = load(
+            "spec between;\ninput x, y : f32;\n"
+            "predicate near = x <= 1;\npredicate far = y > 1 missing true;\n"
+            "repeating monitor cycle = F[0, 3] near;\n"
+            "monitor either = G[0, 2] near iff F[0, 1] far;\n");
+        ASSERT_TRUE(model);
+        model->predicates[0].threshold.inner = 0.5F;
+        model->predicates[1].threshold.inner = 2.0F;
+        const auto spec = compiled(std::move(*model), values);
+        ASSERT_TRUE(spec);
+        const auto proof = proof_of(spec->plan, 8);
+        ASSERT_TRUE(proof) << proof.failure().message;
+        EXPECT_FALSE(proof->fault) << proof->fault->number << " " << proof->fault->step;
+        for (const auto& [right, wrong] :
+             {std::pair<std::string, std::string>("cycle_position_ >= 3", "cycle_position_ >= 2"),
+              {"cycle.alarm() &&", "cycle.final() &&"}}) {
+            std::string header = header_of(spec->plan);
+            const std::size_t at = header.find(right);
+            ASSERT_NE(at, std::string::npos) << header;
+            header.replace(at, right.size(), wrong);
+            const auto found = prove::prove(spec->plan, {header, "proved", 8});
+            EXPECT_TRUE(!found || found->fault) << wrong;
+        }
+    }
 }
 
 // ---- classes of truth values

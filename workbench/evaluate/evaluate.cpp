@@ -135,14 +135,15 @@ constexpr std::uint64_t kFewEpisodes = 5;
 /// Warns where both labels occur, and nearly no resample is better than saying true at every frame,
 /// or all are worse than a rule that looks at the number of the frame alone. Only predicates: a
 /// monitor that must not miss an alarm raises many on purpose. So does a predicate whose threshold
-/// has a guarantee, where time is the better judge of F1 only.
+/// has a guarantee, where time is the better judge of F1 only. F1 says little where a predicate with
+/// two thresholds leaves frames unknown.
 void warn_of_no_gain(const check::Predicate& predicate, const Score& score, diag::Sink& sink) {
     using enum check::ThresholdOrigin;
     const std::string& name = predicate.name;
     const source::Span span = predicate.threshold.span;
     const bool for_f1 = predicate.threshold.origin == literal || predicate.threshold.origin == f1;
     const bool both = score.counts.positives() > 0 && score.counts.negatives() > 0;
-    if (!both || !score.f1.interval) return;
+    if (!both || !score.f1.interval || predicate.threshold.inner) return;
     const auto warn = [&](double other, const std::string& of) -> diag::Diagnostic& {
         return episodes::warn_of_data(
             diag::Code::no_better_than_true,

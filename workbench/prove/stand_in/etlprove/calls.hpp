@@ -92,6 +92,7 @@ struct Answer {
     uint32_t decided = 0;
     Diagram numbers[7] = {};  ///< low, high, lower, upper, satisfied, violated, final
 
+    Diagram satisfied() const { return numbers[4]; }
     Diagram violated() const { return numbers[5]; }
     Diagram final() const { return numbers[6]; }
     bool operator==(const Answer& other) const { return memcmp(this, &other, sizeof *this) == 0; }
@@ -347,20 +348,28 @@ private:
         return true;
     }
 
-    /// Whether each restarted monitor, and no other, counts an alarm or that it was fulfilled.
+    /// Whether each restarted monitor, and no other, counts an alarm where its verdict is violated,
+    /// that it was fulfilled where it is satisfied, and nothing where it is unknown.
     static bool counts(const State& from, const Way& way, Set restarted, const Answers& answers) {
         for (uint32_t m = 0; m < answers.size(); ++m) {
             if (!Subject::repeats(m)) continue;
             const auto [alarms, fulfilled] = Subject::counts(*way.state, m);
             const auto [alarms_before, fulfilled_before] = Subject::counts(*from, m);
             const uint32_t more = alarms - alarms_before, others = fulfilled - fulfilled_before;
-            const bool is = (restarted >> m & 1) != 0;
-            if (more + others != (is ? 1u : 0u) || (more > 1) || (others > 1)) return false;
+            if ((restarted >> m & 1) == 0 && (more > 0 || others > 0)) return false;
+            if ((restarted >> m & 1) == 0) continue;
             Diagrams& all = diagrams();
             const Diagram when = all.both(way.condition, answers[m].final());
-            const Diagram against =
-                more == 1 ? all.complement(answers[m].violated()) : answers[m].violated();
-            if (is && all.both(when, against) != kNever) return false;
+            const auto never = [&](Diagram of) { return all.both(when, of) == kNever; };
+            const Diagram satisfied = answers[m].satisfied(), violated = answers[m].violated();
+            if (more > 1 || others > 1) return false;
+            if (!never(more == 1 ? all.complement(violated) : violated)) return false;
+            // What its bounds make final is satisfied if it is not violated. No diagram says so,
+            // nor that nothing is both.
+            const bool by_bounds = answers[m].final() != kAlways;
+            if (others == 1 ? !never(all.complement(satisfied)) && !(by_bounds && never(violated))
+                            : !never(all.both(satisfied, all.complement(violated))))
+                return false;
         }
         return true;
     }

@@ -30,6 +30,15 @@ template <class Measured>
 Value at_least(const Measured&, const float&, Value) noexcept {
     return etlprove::next_value();
 }
+/// Two thresholds.
+template <class Measured>
+Value at_most(const Measured&, const float&, const float&, Value) noexcept {
+    return etlprove::next_value();
+}
+template <class Measured>
+Value at_least(const Measured&, const float&, const float&, Value) noexcept {
+    return etlprove::next_value();
+}
 inline Value value_of(Flag, Value = {kBottom, kTop}) noexcept {
     return etlprove::next_value();
 }

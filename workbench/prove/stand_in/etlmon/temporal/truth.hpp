@@ -56,13 +56,26 @@ inline Truth truth_of(Flag flag, Truth missing = kPerhaps) noexcept {
 inline Truth is_at_most(const float&, const float&, Truth range = kPerhaps) noexcept {
     return range;
 }
+inline Truth is_at_most(const float&, const float&, const float&, Truth range = kPerhaps) noexcept {
+    return range;
+}
 inline Truth is_below(const float&, const float&, Truth range = kPerhaps) noexcept {
+    return range;
+}
+inline Truth is_below(const float&, const float&, const float&, Truth range = kPerhaps) noexcept {
     return range;
 }
 inline Truth is_at_least(const float&, const float&, Truth range = kPerhaps) noexcept {
     return range;
 }
+inline Truth is_at_least(const float&, const float&, const float&,
+                         Truth range = kPerhaps) noexcept {
+    return range;
+}
 inline Truth is_above(const float&, const float&, Truth range = kPerhaps) noexcept {
+    return range;
+}
+inline Truth is_above(const float&, const float&, const float&, Truth range = kPerhaps) noexcept {
     return range;
 }
 
