@@ -300,6 +300,21 @@ class Commands(unittest.TestCase):
         with self.assertRaisesRegex(etlc.SpecError, "no monitor|not a monitor|sooner"):
             etlc.explain(self.spec, trace, monitor="sooner")
 
+    def test_two_thresholds(self):
+        both = "calibrated(conformal, alpha = 0.2, against = both)"
+        self.spec.write_text(SPEC.replace("calibrated(f1)", both))
+        self.calibrated()
+        monitor = etlc.Monitor(self.spec)
+        status = []
+        found = monitor.measure("near")
+        self.assertLess(found.inner_threshold, found.threshold)
+        for distance in (0, (found.inner_threshold + found.threshold) / 2, 9):
+            monitor.reset()
+            verdicts = monitor.step(z=[distance, 0])
+            status.append((verdicts.arrives.satisfied, verdicts.arrives.violated))
+        self.assertEqual(status, [(True, False), (False, False), (False, True)])
+        self.assertIn("inner_threshold", repr(found))
+
     def test_crossvalidate(self):
         found = etlc.crossvalidate(self.spec, self.path / "data", folds=3)
         self.assertEqual(len(found.data["folds"]), 3)

@@ -135,8 +135,8 @@ constexpr std::uint64_t kFewEpisodes = 5;
 /// Warns where both labels occur, and nearly no resample is better than saying true at every frame,
 /// or all are worse than a rule that looks at the number of the frame alone. Only predicates: a
 /// monitor that must not miss an alarm raises many on purpose. So does a predicate whose threshold
-/// has a guarantee, where time is the better judge of F1 only. F1 says little where a predicate with
-/// two thresholds leaves frames unknown.
+/// has a guarantee, where time is the better judge of F1 only. F1 says little where a predicate
+/// with two thresholds leaves frames unknown.
 void warn_of_no_gain(const check::Predicate& predicate, const Score& score, diag::Sink& sink) {
     using enum check::ThresholdOrigin;
     const std::string& name = predicate.name;

@@ -470,8 +470,8 @@ struct Monitor {
     bool sliding = false;
     Restarts restarts = Restarts::never;
     std::uint32_t horizon = 0;  ///< delay of a sliding monitor in steps; otherwise 0
-    /// Number of steps that the formula of a repeating monitor looks ahead, after which a verdict is
-    /// final even if it is unknown; kUnbounded of other monitors and without a limit.
+    /// Number of steps that the formula of a repeating monitor looks ahead, after which a verdict
+    /// is final even if it is unknown; kUnbounded of other monitors and without a limit.
     std::uint32_t ahead = kUnbounded;
     /// `calibrated(conformal, alpha = 0.1, against = missed_alarm)` after the formula: a threshold
     /// of rho. Its `value` is subtracted from the high end of rho and from `upper`, its low() from
