@@ -28,6 +28,18 @@ monitor arrives = F near;
 monitor never_far = G near;
 sliding monitor sooner = F[0, 2] near;
 """
+# Labels of `seldom` are false in one demonstration only: too few to say where it is true.
+OF_TWO = """
+spec two;
+input d : f32;
+predicate near = d <= calibrated(conformal, alpha = 0.4, against = both);
+predicate far = d >= calibrated(conformal, alpha = 0.4, against = both);
+predicate seldom = d <= calibrated(conformal, alpha = 0.4, against = both);
+predicate usual = d <= calibrated(risk, alpha = 0.5);
+monitor arrives = F near;
+sliding monitor now = near;
+monitor rest = F (far && seldom && usual);
+"""
 STEPS = 40
 LONG = 100_000
 MANY = 1200
@@ -204,6 +216,93 @@ def pictures_of_a_trace(call, folder):
     assert len(paths) >= 6 and "nan" not in "".join(paths), paths
 
 
+def make_two(call, folder):
+    (folder / "two.etl").write_text(OF_TWO)
+    (folder / "demos").mkdir()
+    for demo in range(5):
+        near = np.array([True, False, True, False])
+        np.savez(folder / "demos" / f"{demo}.npz", **{
+            "d": np.array([0.2, 0.5 - 0.02 * demo, 1 + 0.02 * demo, 2], np.float32),
+            "truth.near": near, "truth.far": ~near, "truth.usual": near,
+            "truth.seldom": near if demo == 0 else near | True})
+    call("calibrate", "two.etl", "--data", "demos")
+    np.savez(folder / "band.npz", **{
+        "d": np.array([2, 0.7, 0.2], np.float32), "truth.near": np.array([False, True, True])})
+    call("report", "two.etl", "--data", "band.npz", "-o", "band.html")
+    call("run", "two.etl", "--trace", "band.npz", "--svg", "band.svg")
+
+
+def look_at_two(browser, folder):
+    """Between its two thresholds a predicate is unknown: a band, hatched, and not wrong."""
+    page = browser.page(folder / "band.html")
+    page.wait("view.episode !== null")
+
+    def codes(of, index):
+        return page.value(f"Array.from(view.episode.tracks.{of}[{index}][0])")
+
+    def of_lane(name, expression):
+        return page.value(f"(lane => {expression})(document.querySelector('[data-lane={name}]'))")
+
+    def count(name, selector):
+        return of_lane(name, f"lane.querySelectorAll('{selector}').length")
+
+    no, yes, unknown, final = 0, 1, 2, 4
+    assert codes("holds", 0) == [no, unknown, yes], codes("holds", 0)
+    assert codes("holds", 1) == [yes, unknown, no], codes("holds", 1)
+    assert codes("status", 0) == [no, unknown, yes + final], codes("status", 0)
+    assert codes("status", 1) == [no + final, unknown + final, yes + final], codes("status", 1)
+    assert count("near", "line.threshold") == 2 and count("near", ".between") == 1
+    ends = of_lane("near", "[+lane.querySelector('.between').getAttribute('y'), "
+                   "...Array.from(lane.querySelectorAll('line.threshold'), l => +l.attributes.y1"
+                   ".value)]")
+    assert ends[0] == min(ends[1:]) and ends[1] != ends[2], ends
+    # Where nothing is called true, the band goes on to the edge of the chart.
+    assert count("seldom", "line.threshold") == 1 and unknown in codes("holds", 2)
+    edge = of_lane("seldom", "['y', 'height'].reduce((sum, of) => sum + "
+                   "+lane.querySelector('.between').getAttribute(of), 0)")
+    assert edge == page.value("laneSize.predicate"), edge
+    assert count("usual", "line.threshold") == 1 and count("usual", ".between") == 0
+    for lane in ("near", "now", "arrives"):
+        fill = of_lane(lane, "getComputedStyle(lane.querySelector('.strip.said.unknown')).fill")
+        assert "#unknown" in fill, fill
+    assert count("near", ".strip.wrong") == 0, "what is unknown is not wrong"
+    hatched = page.value("getComputedStyle(document.querySelector('#timelines .swatch.unknown'))"
+                         ".backgroundImage")
+    assert "gradient" in hatched, hatched
+    assert "unknown" in page.value("document.querySelector('#timelines .key').textContent")
+    listed = page.value("document.querySelector('#rows .row').textContent")
+    assert "33.3 % of frames unknown" in listed and "% of frames wrong" not in listed, listed
+
+    for part in ("monitor", "predicate"):
+        heads = page.value(f"document.querySelector('#{part}-figures thead').textContent")
+        assert "unknownwrong when known" in heads, heads
+    table = page.value("document.getElementById('provenance').textContent")
+    assert "true up to" in table and "never true (1 score, too few)" in table, table
+    assert "score 0" not in table and "0.44 to 1.06" in table, table
+    assert "nearunknownat 33.3 % of the steps" in table, table
+    near = "document.querySelector('.card[data-predicate=near]')"
+    assert page.value(near + ".querySelectorAll('circle.operating').length") == 4  # of two curves
+    assert page.value(near + ".querySelectorAll('.between').length") == 3
+    text = page.value(near + ".textContent")
+    for part in ("0.44 to 1.06, unknown between", "unknown at 33.3 % of the steps",
+                 "against misses: rank 4 of 5", "against false positives: rank 4 of 5"):
+        assert part in text, (part, text)
+    seldom = page.value("document.querySelector('.card[data-predicate=seldom]').textContent")
+    assert "1 are too few" in seldom or "1 is too few" in seldom, seldom
+    # Of `>=` the scores are distances too: the chosen one is at the threshold.
+    chosen, line = page.value(
+        "((card, at) => [+card.querySelector('.chosen').getAttribute('cx'), "
+        "...Array.from(card.querySelector('.chosen').parentNode.querySelectorAll('line.threshold'),"
+        " l => +l.getAttribute('x1'))])(document.querySelector('.card[data-predicate=far]'))")[:2]
+    assert abs(chosen - line) < 1, (chosen, line)
+    assert page.messages == [], page.messages
+
+    drawn = (folder / "band.svg").read_text()
+    xml.etree.ElementTree.fromstring(drawn)
+    assert drawn.count('class="between"') == 3 and drawn.count('class="threshold"') == 9, drawn
+    assert 'rect class="unknown"' in drawn and ">unknown</text>" in drawn and '="inf' not in drawn
+
+
 def main(etlc):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -237,6 +336,7 @@ def main(etlc):
                     "no.html", status=1)
         assert "found 39 pictures, expected 40" in said and not (folder / "no.html").exists(), said
         pictures_of_a_trace(call, folder)
+        make_two(call, folder)
         make_many(folder)
         call("report", "page.etl", "--data", "many", "--size", "1", "-o", "many.html")
         with Browser() as browser:
@@ -249,6 +349,7 @@ def main(etlc):
             assert 0 < tall <= one.value("laneSize.monitor"), tall
             assert one.messages == [], one.messages
             look_at_a_long_one(browser, folder / "long.html")
+            look_at_two(browser, folder)
             for width, height in ((1280, 720), (1920, 1080)):
                 look(browser, folder / "page.html", width, height, judged)
 

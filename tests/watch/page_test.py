@@ -2,8 +2,10 @@
 """page_test.py ETLC BROWSER_FOLDER: the page of `etlc watch` in headless Chromium: the frame and
 the verdict on it belong together at every moment; two pages, a pause of the source, its end."""
 import os
+import pathlib
 import re
 import signal
+import subprocess
 import sys
 import tempfile
 
@@ -73,7 +75,60 @@ class Film:
         assert len(greys) > frames / 2, greys
 
 
+# `seldom` has too few labels that say where it is false: nothing is called true.
+OF_TWO = """spec two;
+input d : f32;
+predicate near = d <= calibrated(conformal, alpha = 0.4, against = both);
+predicate seldom = d <= calibrated(conformal, alpha = 0.4, against = both);
+monitor stays = G near;
+monitor other = F seldom;
+"""
+
+
+def between_two_thresholds(browser):
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        (folder / "two.etl").write_text(OF_TWO)
+        for demo in range(5):
+            rows = [(0.2, 1, 1), (0.5 - 0.02 * demo, 0, 1), (1 + 0.02 * demo, 1, 1),
+                    (2, 0, demo > 0)]
+            (folder / f"{demo}.csv").write_text("d,truth.near,truth.seldom\n" + "".join(
+                f"{d},{near:d},{seldom:d}\n" for d, near, seldom in rows))
+        calibrated = subprocess.run([ETLC, "calibrate", "two.etl", "--data", "?.csv"],
+                                    cwd=folder, capture_output=True, text=True)
+        assert calibrated.returncode == 0, calibrated.stderr
+        watch = subprocess.Popen([ETLC, "watch", "two.etl", "--trace", "-", "--page"], cwd=folder,
+                                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        page = browser.page(watch.stdout.readline().strip())
+        for step, (d, near, seldom, stays) in enumerate((
+                ("d\n0.2", "yes", "unknown", "satisfied"),
+                ("0.7", "unknown", "unknown", "unknown"),
+                ("3", "no", "no", "violated, for good"))):
+            watch.stdin.write(d + "\n")
+            watch.stdin.flush()
+            page.wait(f"document.getElementById('readout').dataset.step === '{step}'")
+            said = page.value("Array.from(document.querySelectorAll('#readout td.said'), "
+                              "cell => cell.textContent)")
+            assert said == [near, seldom, stays, "unknown"], (step, said)
+        cells = page.value("Array.from(document.querySelectorAll('[data-predicate]'), "
+                           "row => row.cells[2].textContent)")
+        assert cells == ["<= 0.44 to 1.06", "<= −∞ to 2"], cells
+        page.wait("document.querySelectorAll('[data-lane=near] .strip.said').length === 3")
+        drawn = page.value("['line.threshold', '.between'].map(one => ['near', 'seldom'].map(lane "
+                           "=> document.querySelectorAll(`[data-lane=${lane}] ${one}`).length))")
+        assert drawn == [[2, 1], [1, 1]], drawn
+        fill = page.value("getComputedStyle(document.querySelector('.strip.said.unknown')).fill")
+        assert "#unknown" in fill, fill
+        assert "unknown" in page.value("document.querySelector('#timelines .key').textContent")
+        messages = [one for one in page.messages if "events" not in one and "ERR_" not in one]
+        assert not messages, messages
+        watch.communicate()
+        assert watch.returncode == 0
+
+
 def main():
+    with Browser() as browser:
+        between_two_thresholds(browser)
     with tempfile.TemporaryDirectory() as folder, Clock(folder) as clock, Browser() as browser:
         make_project(folder, ETLC)
         clock.hold()

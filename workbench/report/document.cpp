@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
+#include "check/guarantees/conformal.hpp"
 #include "check/guarantees/guarantees.hpp"
 #include "report/report.hpp"
 
@@ -42,32 +44,33 @@ std::string provenance(const check::Predicate& predicate) {
     if (threshold.origin == check::ThresholdOrigin::f1)
         return fmt::format("{}, chosen on {}; no guarantee", threshold.text,
                            diag::counted(threshold.n, "labelled frame"));
-    const bool of_frames = threshold.origin == check::ThresholdOrigin::class_conditional;
-    return fmt::format("{}: just beyond score {} of {}, one per {}", threshold.text, threshold.k,
-                       threshold.n,
-                       of_frames            ? "positive frame"
-                       : threshold.by_group ? "group of demonstrations"
-                                            : "demonstration");
+    return check::origin(threshold);
 }
 
-Json scores_of(const Material& material, const check::Predicate& predicate) {
-    if (!material.thresholds) return nullptr;
-    const auto found = material.thresholds->predicates.find(predicate.name);
-    if (found == material.thresholds->predicates.end() || found->second.k == 0) return nullptr;
-    std::vector<double> all = found->second.scores;
-    std::sort(all.begin(), all.end());
-    const std::size_t stride = (all.size() + kMostScores - 1) / kMostScores;
-    Json ranks = Json::array();
+/// Returns the scores of which one gives a threshold, each with its rank.
+Json scores_of(const thresholds::Side& side, bool above) {
+    const std::size_t count = side.scores.size();
+    const std::size_t stride = (count + kMostScores - 1) / kMostScores;
     Json scores = Json::array();
-    for (std::size_t i = 0; i < all.size(); i += stride) {
-        ranks.push_back(i + 1);
-        scores.push_back(number(all[i]));
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t rank = above ? i + 1 : count - i;
+        if (i % stride == 0 || rank == side.k) scores.push_back({number(side.scores[i]), rank});
     }
-    return {{"alpha", found->second.alpha},
-            {"n", found->second.n},
-            {"k", found->second.k},
-            {"ranks", ranks},
-            {"scores", scores}};
+    return {{"n", side.n}, {"k", side.k}, {"scores", scores}};
+}
+
+/// Returns the scores against misses, then those against false positives; or against one of them.
+Json scores_of(const Material& material, const check::Predicate& predicate) {
+    Json all = Json::array();
+    if (!material.thresholds) return all;
+    const auto found = material.thresholds->predicates.find(predicate.name);
+    if (found == material.thresholds->predicates.end()) return all;
+    const thresholds::Entry& entry = found->second;
+    if (!check::takes_scores(entry.method)) return all;
+    const bool above = check::is_above(predicate.threshold.against, predicate.upper_bound());
+    all.push_back(scores_of(entry, above));
+    if (entry.inner) all.push_back(scores_of(*entry.inner, !above));
+    return all;
 }
 
 /// Rates at one threshold.
@@ -123,9 +126,10 @@ bool is_drawn_apart(const Operating& a, const Operating& b) {
 }
 
 /// Returns the histogram of the i-th labelled predicate's distances, its ROC and precision-recall
-/// curve, from the strictest threshold to the widest, and the point of its own threshold. Curves go
-/// through every threshold and are thinned to what the drawing shows; frames of unknown distance
-/// are left out. Null for an equality, and without a labelled frame of finite distance.
+/// curve, from the strictest threshold to the widest, and the points of its own one or two
+/// thresholds, ascending. Curves go through every threshold and are thinned to what the drawing
+/// shows; frames of unknown distance are left out. Null for an equality, and without a labelled
+/// frame of finite distance.
 Json distribution(const evaluate::Judgement& judgement, std::size_t i,
                   const check::Predicate& predicate) {
     if (predicate.equality()) return nullptr;
@@ -133,7 +137,8 @@ Json distribution(const evaluate::Judgement& judgement, std::size_t i,
     if (frames.empty()) return nullptr;
     Json result = histogram(frames, predicate.upper_bound());
     Json curve = Json::array();
-    Json operating;
+    const std::set<float> levels{predicate.threshold.low(), predicate.threshold.value};
+    Json operating = Json::array();
     const auto with_curve = [&] {
         result["curve"] = curve;
         result["operating"] = operating;
@@ -152,7 +157,7 @@ Json distribution(const evaluate::Judgement& judgement, std::size_t i,
     };
     Operating drawn = here();
     curve.push_back(json_of(drawn));
-    operating = json_of(drawn);
+    operating = Json(levels.size(), json_of(drawn));
     for (std::size_t k = 0; k < frames.size(); ++k) {
         (frames[k].positive ? hits : false_alarms) += 1;
         const float score = frames[k].score;
@@ -163,8 +168,10 @@ Json distribution(const evaluate::Judgement& judgement, std::size_t i,
             curve.push_back(json_of(drawn));
         }
         const float delta = predicate.upper_bound() ? -score : score;
-        if (check::holds(predicate.comparison, delta, predicate.threshold.value))
-            operating = json_of(here());
+        std::size_t at = 0;
+        for (const float level : levels)
+            if (Json& point = operating[at++]; check::holds(predicate.comparison, delta, level))
+                point = json_of(here());
     }
     return with_curve();
 }
@@ -187,7 +194,7 @@ Json predicate_json(const Material& material, const Scene& scene, Index index) {
             {"shown", predicate.shown()},
             {"expression", check::print(model, predicate.expression)},
             {"comparison", symbol(predicate.comparison)},
-            {"threshold", number(predicate.threshold.value)},
+            {"thresholds", levels(predicate.threshold)},
             {"provenance", provenance(predicate)},
             {"target", target},
             {"scores", scores_of(material, predicate)},
@@ -199,10 +206,12 @@ Json monitor_json(const check::Model& model, const plan::Monitor& monitor) {
     for (const check::Claim& claim : check::claims(model, model.monitors[monitor.index]))
         guarantees.push_back((claim.part.empty() ? "" : "of its part " + claim.part + ": ") +
                              check::text(claim));
+    const auto& shift = model.monitors[monitor.index].calibration;
     return {{"name", monitor.name},
             {"formula", check::shown(model, model.monitors[monitor.index].formula)},
             {"sliding", monitor.sliding},
             {"horizon", monitor.horizon},
+            {"shift", shift ? check::of_shift(*shift) : ""},
             {"guarantees", guarantees}};
 }
 
@@ -253,14 +262,16 @@ Json pictures_json(const Pictures& pictures) {
 }
 
 /// Returns [path, frames, outcomes, missing, judged, parts, buckets, series, pictures], where
-/// judged is [wrong monitors, f1, agreement, first error] or null.
+/// judged is [wrong monitors, shares of wrong and of unknown claims, first error] or null.
 Json row_json(const Row& row, const evaluate::EpisodeRow* judged) {
     Json of_truth;
     if (judged != nullptr) {
-        const evaluate::Rates rates = evaluate::rates(judged->claims);
+        const evaluate::Counts& claims = judged->claims;
         Json error;
         if (judged->first_error) error = {judged->first_error->step, judged->first_error->name};
-        of_truth = {judged->wrong, optional_json(rates.f1), optional_json(rates.agreement), error};
+        const auto total = static_cast<double>(claims.total());
+        of_truth = {judged->wrong, number(static_cast<double>(claims.wrong()) / total),
+                    number(static_cast<double>(claims.unknown()) / total), error};
     }
     return {row.path,
             row.frames,
@@ -330,6 +341,7 @@ std::string head(const Material& material, const Scene& scene, const std::string
                         {"why_no_truth", material.why_no_truth},
                         {"episodes", totals.episodes},
                         {"steps", totals.steps},
+                        {"unknown", totals.unknown},
                         {"inputs", inputs_json(scene.plan, totals)}};
     Json rest;
     rest["monitors"] = Json::array();

@@ -18,6 +18,7 @@ namespace etlc::report {
 struct Totals {
     std::uint64_t episodes = 0;
     std::uint64_t steps = 0;
+    std::vector<std::int64_t> unknown;  ///< steps, of the scene's predicates, then of the monitors
     std::vector<execute::SampleCounts> sample_counts;  ///< per input of the plan
 };
 

@@ -124,11 +124,16 @@ public:
     struct Packed {
         Row row;
         std::vector<execute::SampleCounts> sample_counts;
+        std::vector<std::int64_t> unknown;
     };
     diag::Result<Packed> score(const std::string& path) {
         const auto tracks = reader_.score(path);
         if (!tracks) return tracks.failure();
-        Packed packed{row_of(*tracks), tracks->sample_counts};
+        Packed packed{row_of(*tracks), tracks->sample_counts, {}};
+        const auto is_unknown = [](std::uint32_t code) { return code % kFinal == kUnknown; };
+        for (const auto& [of, index, codes] : tracks->codes)
+            if (of == "holds" || of == "status")
+                packed.unknown.push_back(std::ranges::count_if(codes, is_unknown));
         packed.row.blob = blob_of(*tracks, shelf_.share());
         if (request_.frames.text.empty()) return packed;
         const double seconds = scene_.plan.model->step_seconds;
@@ -159,6 +164,9 @@ public:
     void add(Packer::Packed packed) {
         ++totals.episodes;
         totals.steps += packed.row.frames;
+        totals.unknown.resize(packed.unknown.size());
+        for (std::size_t i = 0; i < packed.unknown.size(); ++i)
+            totals.unknown[i] += packed.unknown[i];
         for (std::size_t i = 0; i < totals.sample_counts.size(); ++i) {
             totals.sample_counts[i].missing += packed.sample_counts[i].missing;
             totals.sample_counts[i].out_of_range += packed.sample_counts[i].out_of_range;
@@ -241,7 +249,7 @@ std::optional<Page> page(const Material& material, const Request& request, diag:
             {material.file.path(), evaluate::summarise(*material.judgement, request.jobs), {}});
         figures = in_script(evaluate::json(one));
     }
-    const Totals none{0, 0, std::vector<execute::SampleCounts>(plan.inputs.size())};
+    const Totals none{0, 0, {}, std::vector<execute::SampleCounts>(plan.inputs.size())};
     const std::uint64_t bytes = request.megabytes * 1'000'000;
     const std::string shown = predicates(material, scene);
     Frame frame = frame_of(figures);

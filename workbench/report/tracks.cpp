@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
+#include "check/guarantees/guarantees.hpp"
 #include "data/files/file.hpp"
 #include "report/report.hpp"
 #include "source/text.hpp"
@@ -57,6 +59,19 @@ std::uint32_t code_of(const Verdict& verdict) {
     if (!verdict.decided()) return kUndecided;
     const std::uint32_t status = verdict.satisfied() ? kYes : verdict.violated() ? kNo : kUnknown;
     return status + (verdict.final() ? kFinal : 0);
+}
+
+std::uint32_t code_of(const std::optional<bool>& called) {
+    return !called ? kUnknown : *called ? kYes : kNo;
+}
+
+std::vector<std::string> levels(const check::Threshold& threshold) {
+    std::vector<std::string> texts;
+    for (const float level : std::set{threshold.low(), threshold.value})
+        texts.push_back(std::isfinite(level) ? fmt::format("{}", level)
+                        : level > 0          ? "Infinity"
+                                             : "-Infinity");
+    return texts;
 }
 
 std::vector<std::uint64_t> telling_steps(const Tracks& tracks) {
@@ -182,9 +197,8 @@ void TrackReader::add_measurements(Tracks& tracks) const {
         const check::Predicate& predicate = model().predicates[scene_.predicates[i]];
         for (std::uint64_t step = 0; step < steps; ++step) {
             const float delta = observations_->measured({atom, step});
-            const bool is_so = check::holds(predicate.comparison, delta, predicate.threshold.value);
             distance.values.push_back(delta);
-            holds.values.push_back(std::isnan(delta) ? kUnknown : is_so ? kYes : kNo);
+            holds.values.push_back(code_of(predicate.called(delta)));
         }
         if (has_row(predicate, model()))
             for (std::uint64_t step = 0; step < steps; ++step)
@@ -286,9 +300,15 @@ constexpr const char* kStyle =
     ".line{fill:none;stroke:#0b4f7c;stroke-width:1.4}.bounds{fill:#0072b2;fill-opacity:.11}"
     ".threshold{stroke:#b34700;stroke-width:1.3;stroke-dasharray:5 3}"
     ".axis{stroke:#d7dee6}.band{fill:#0072b2;fill-opacity:.13}"
+    ".between{fill:#b34700;fill-opacity:.1}.unknown{fill:url(#unknown)}"
     ".yes{fill:#0072b2}.no{fill:#e4e9ee}.open{fill:#a7b0ba}.violated{fill:#d55e00}"
     ".so-far{fill-opacity:.4}.true{fill:#3d4753}"
     ".mark{fill:#cc79a7;fill-opacity:.3}.critical{fill:none;stroke:#a8447d;stroke-width:2.5}";
+
+constexpr const char* kHatch =
+    "<pattern id=\"unknown\" width=\"4\" height=\"4\" patternUnits=\"userSpaceOnUse\" "
+    "patternTransform=\"rotate(45)\"><rect width=\"4\" height=\"4\" fill=\"#ffffff\"/>"
+    "<line y2=\"4\" stroke=\"#5d6b7c\" stroke-width=\"3\"/></pattern>\n";
 
 struct Lane {
     std::string name;
@@ -298,7 +318,8 @@ struct Lane {
     const Numbers* upper = nullptr;
     const Codes* said = nullptr;
     const Codes* truth = nullptr;
-    float level = 0;
+    float inner = 0;  ///< called true within it
+    float outer = 0;  ///< called false beyond it
     bool of_monitor = false;
     std::size_t index = 0;
 };
@@ -315,10 +336,11 @@ std::vector<Lane> lanes_of(const Scene& scene, const Tracks& tracks) {
     std::vector<Lane> lanes;
     for (std::size_t i = 0; i < scene.predicates.size(); ++i) {
         const check::Predicate& predicate = model.predicates[scene.predicates[i]];
-        lanes.push_back(
-            {predicate.shown(), fmt::format("{}{}", predicate.text, predicate.threshold.value),
-             find(tracks.numbers, "distance", i), nullptr, nullptr, find(tracks.codes, "holds", i),
-             find(tracks.codes, "truth", i), predicate.threshold.value, false, i});
+        const check::Threshold& threshold = predicate.threshold;
+        lanes.push_back({predicate.shown(), predicate.text + check::numbers(threshold),
+                         find(tracks.numbers, "distance", i), nullptr, nullptr,
+                         find(tracks.codes, "holds", i), find(tracks.codes, "truth", i),
+                         threshold.low(), threshold.value, false, i});
     }
     for (std::size_t m = 0; m < scene.plan.monitors.size(); ++m) {
         const plan::Monitor& monitor = scene.plan.monitors[m];
@@ -330,7 +352,7 @@ std::vector<Lane> lanes_of(const Scene& scene, const Tracks& tracks) {
         lanes.push_back({monitor.name, check::shown(model, model.monitors[monitor.index].formula),
                          robustness, bound("lower"), bound("upper"),
                          find(tracks.codes, "status", m), find(tracks.codes, "monitor_truth", m), 0,
-                         true, m});
+                         0, true, m});
     }
     return lanes;
 }
@@ -366,8 +388,8 @@ public:
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:g}\" height=\"{1:g}\" "
             "viewBox=\"0 0 {0:g} {1:g}\">\n<style>{2}</style>\n"
             "<rect width=\"{0:g}\" height=\"{1:g}\" fill=\"#ffffff\"/>\n"
-            "<g transform=\"translate({3:g},0)\">\n{4}</g>\n</svg>\n",
-            kWidth, height, kStyle, kLeft, body_);
+            "{3}<g transform=\"translate({4:g},0)\">\n{5}</g>\n</svg>\n",
+            kWidth, height, kStyle, kHatch, kLeft, body_);
     }
 
 private:
@@ -399,9 +421,11 @@ private:
     };
 
     Scale scale_of(const Lane& lane) const {
-        double low = lane.level;
-        double high = lane.level;
-        for (const float value : lane.numbers->values) {
+        double low = std::numeric_limits<double>::infinity();
+        double high = -low;
+        std::vector<float> values = lane.numbers->values;
+        values.insert(values.end(), {lane.inner, lane.outer});
+        for (const float value : values) {
             if (!std::isfinite(value)) continue;
             low = std::min<double>(low, value);
             high = std::max<double>(high, value);
@@ -422,10 +446,15 @@ private:
             });
         if (lane.lower != nullptr) draw_bounds(lane, y);
         if (!lane.of_monitor) draw_marks(lane, y);
-        body_ += fmt::format(
-            "<line class=\"axis\" y1=\"{0:g}\" y2=\"{1:g}\"/>\n<line "
-            "class=\"threshold\" x2=\"{2:g}\" y1=\"{3:.1f}\" y2=\"{3:.1f}\"/>\n",
-            y.top, y.top + kChart, kInner, y(lane.level));
+        const auto [above, below] = std::minmax({y(lane.inner), y(lane.outer)});
+        if (above < below) rectangle("between", 0, kInner, above, below - above);
+        body_ +=
+            fmt::format("<line class=\"axis\" y1=\"{:g}\" y2=\"{:g}\"/>\n", y.top, y.top + kChart);
+        for (const float level : std::set{lane.inner, lane.outer})
+            if (std::isfinite(level))
+                body_ += fmt::format(
+                    "<line class=\"threshold\" x2=\"{0:g}\" y1=\"{1:.1f}\" y2=\"{1:.1f}\"/>\n",
+                    kInner, y(level));
         body_ += fmt::format("<path class=\"line\" d=\"{}\"/>\n", line(lane.numbers->values, y));
         top_ += kTitle + kChart + 2;
         strip(*lane.said, "said", lane.of_monitor ? "violated" : "no");
@@ -450,7 +479,11 @@ private:
         draw_runs(codes, [&](std::uint32_t code, double from, double to) {
             const std::uint32_t status = code % kFinal;
             const std::string yes = std::string(label) == "true" ? "true" : "yes";
-            std::string kind = status == kYes ? yes : status == kNo ? no : "open";
+            std::string kind = status == kYes       ? yes
+                               : status == kNo      ? no
+                               : status == kUnknown ? "unknown"
+                                                    : "open";
+            shows_unknown_ |= status == kUnknown;
             if (codes.of == "status" && code < kFinal) kind += " so-far";
             rectangle(kind, from, to, top_, kStrip);
         });
@@ -524,12 +557,16 @@ private:
                   part < 4 ? "middle" : "end");  // within the picture
         }
         words(kInner / 2, top_ + 24, seconds > 0 ? "time, s" : "step", "middle");
+        if (!shows_unknown_) return;
+        rectangle("unknown", 0, 14, top_ + 17, kStrip);
+        words(20, top_ + 24, "unknown");
     }
 
     const Scene& scene_;
     const Tracks& tracks_;
     const Why* why_;
     std::string body_;
+    bool shows_unknown_ = false;
     double top_ = 4;
 };
 

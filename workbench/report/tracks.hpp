@@ -74,6 +74,11 @@ inline constexpr std::uint32_t kFinal = 4;  ///< added to a final verdict
 
 /// Returns the code of a verdict.
 std::uint32_t code_of(const etlmon::Verdict& verdict);
+/// Returns the code of what a predicate is called.
+std::uint32_t code_of(const std::optional<bool>& called);
+
+/// Returns the one or two thresholds, ascending, as Number() of JavaScript reads them.
+std::vector<std::string> levels(const check::Threshold& threshold);
 
 /// The outcome of a monitor.
 struct Outcome {

@@ -32,11 +32,6 @@ std::string number(float value) {
     return fmt::format("{}", value);
 }
 
-std::uint32_t code_of_distance(const check::Predicate& predicate, float distance, float threshold) {
-    if (std::isnan(distance)) return report::kUnknown;
-    return check::holds(predicate.comparison, distance, threshold) ? report::kYes : report::kNo;
-}
-
 }  // namespace
 
 std::string page_of(const plan::Plan& plan, const PageText& text) {
@@ -54,7 +49,7 @@ std::string page_of(const plan::Plan& plan, const PageText& text) {
         data["predicates"].push_back({{"shown", predicate.shown()},
                                       {"expression", check::print(model, predicate.expression)},
                                       {"comparison", symbol(predicate.comparison)},
-                                      {"threshold", predicate.threshold.value}});
+                                      {"thresholds", report::levels(predicate.threshold)}});
     }
     for (const plan::Monitor& monitor : plan.monitors)
         data["monitors"].push_back(
@@ -72,8 +67,7 @@ std::string step_json(const plan::Plan& plan, std::uint64_t step,
     std::vector<std::uint32_t> holds, said;
     for (const check::Index p : plan.predicates) {
         distance.push_back(number(evaluator.distance(p)));
-        holds.push_back(code_of_distance(plan.model->predicates[p], evaluator.distance(p),
-                                         evaluator.threshold(p)));
+        holds.push_back(report::code_of(plan.model->predicates[p].called(evaluator.distance(p))));
     }
     for (const etlmon::Verdict& verdict : verdicts) {
         robustness.push_back(number(verdict.robustness));

@@ -26,6 +26,20 @@ function yAxis(g, y, label, ticks = 4) {
       .attr("text-anchor", "middle").text(label);
 }
 
+// Draws one or two thresholds across a chart, and shades what is between them. `ends` are those of
+// the axis, where an infinite threshold lies; `across` is how far the lines go, along x or y.
+function drawLevels(g, levels, at, ends, across, along = "x") {
+  const [to, size] = along === "x" ? ["y", "height"] : ["x", "width"];
+  const places = levels.map((level) =>
+    (Number.isFinite(level) ? at(level) : ends[level > 0 ? 1 : 0]));
+  if (places.length > 1)
+    g.append("rect").attr("class", "between").attr(along === "x" ? "width" : "height", across)
+      .attr(to, Math.min(...places)).attr(size, Math.abs(places[1] - places[0]));
+  levels.filter(Number.isFinite).forEach((level) =>
+    g.append("line").attr("class", "threshold").attr(`${along}2`, across)
+      .attr(`${to}1`, at(level)).attr(`${to}2`, at(level)));
+}
+
 // Draws a line through [x, y] pairs of data, with gaps where y is not finite.
 function path(g, points, x, y, name) {
   const line = d3.svg.line().x((p) => x(p[0])).y((p) => y(p[1]))

@@ -27,18 +27,29 @@ function blindCells(of, key) {
   return ["always_true", "always_false", "duration"].map((name) => baselineCell(of, name, key));
 }
 
+// Columns for what is unknown, where anything is.
+const unknownHeads = [["unknown", "share of the frames or steps at which it is neither"],
+  ["wrong when known", "share of the others at which it is wrong"]];
+const unknownCells = (of) =>
+  [figureCell(of, "unknown"), figureCell(of, "wrong_when_decided")];
+const anyUnknown = (all) => all.some((of) => of.unknown > 0);
+
 function predicateTable() {
+  const all = Object.entries(figures.predicates);
+  const isUnknown = anyUnknown(all.map(([, of]) => of));
   const body = element("tbody", {});
-  for (const [name, of] of Object.entries(figures.predicates))
+  for (const [name, of] of all)
     body.append(element("tr", { "data-predicate": name }, element("th", {}, name),
       figureCell(of, "f1"), figureCell(of, "precision"), figureCell(of, "recall"),
       figureCell(of, "auroc"), ...blindCells(of, "f1"),
+      ...(isUnknown ? unknownCells(of) : []),
       element("td", { class: "number" }, counted(of.positives, "frame"))));
   return element("table", {}, headRow(["", ""], ["F1", "by frames, with its 95 % interval"],
     ["precision", "share of its claims that are true"],
     ["recall", "share of the true cases that it claims"],
     ["AUROC", "how well the distance separates the frames, at any threshold"],
-    ...blindHeads, ["labelled true", "frames at which the truth holds"]), body);
+    ...blindHeads, ...(isUnknown ? unknownHeads : []),
+    ["labelled true", "frames at which the truth holds"]), body);
 }
 
 function delayText(detection) {
@@ -51,6 +62,8 @@ function delayText(detection) {
 }
 
 function monitorTable() {
+  const isUnknown = anyUnknown(Object.values(figures?.monitors ?? {})
+    .filter((of) => of.evaluable).map((of) => of.steps));
   const body = element("tbody", {});
   for (const monitor of data.monitors) {
     const of = figures?.monitors[monitor.name];
@@ -60,12 +73,13 @@ function monitorTable() {
     body.append(row);
     if (!figures) continue;
     if (!of.evaluable) {
-      row.append(element("td", { colspan: 7 },
+      row.append(element("td", { colspan: isUnknown ? 9 : 7 },
         `no labels for ${of.without_truth.join(", ")}: not evaluated`));
       continue;
     }
     row.append(figureCell(of, "episode_agreement"), figureCell(of, "step_agreement"),
       figureCell(of.episodes, "f1"), ...blindCells(of.episodes, "f1"),
+      ...(isUnknown ? unknownCells(of.steps) : []),
       element("td", { class: "number" }, delayText(of.detection)));
   }
   const heads = [["", ""], ["formula", ""]];
@@ -73,22 +87,29 @@ function monitorTable() {
     heads.push(["episodes right", "share of the episodes whose last verdict is correct"],
       ["steps right", "share of the steps whose verdict is correct"],
       ["F1", "by episodes, with its 95 % interval"],
-      ...blindHeads, ["delay", "mean time from the true change to the monitor's"]);
+      ...blindHeads, ...(isUnknown ? unknownHeads : []),
+      ["delay", "mean time from the true change to the monitor's"]);
   return element("table", {}, headRow(...heads), body);
 }
 
 function provenanceTable() {
   const body = element("tbody", {});
-  for (const predicate of data.predicates)
-    body.append(element("tr", {}, element("th", {}, predicate.shown),
-      element("td", { class: "formula" },
-        ...unbroken(
-          `${predicate.expression} ${predicate.comparison} ${measured(predicate.threshold)}`)),
-      element("td", {}, predicate.provenance)));
-  for (const monitor of data.monitors)
-    for (const guarantee of monitor.guarantees)
-      body.append(element("tr", {}, element("th", {}, monitor.name),
-        element("td", { class: "formula" }, "guarantee"), element("td", {}, guarantee)));
+  const add = (name, formula, text) => body.append(element("tr", {}, element("th", {}, name),
+    element("td", { class: "formula" }, ...unbroken(formula)), element("td", {}, text)));
+  const addUnknown = (name, place) => {
+    if (data.unknown[place] > 0)
+      add(name, "unknown", `at ${unknownShare(place)} of the steps of these episodes`);
+  };
+  data.predicates.forEach((predicate, place) => {
+    add(predicate.shown, `${predicate.expression} ${predicate.comparison} ${levelsText(predicate)}`,
+      predicate.provenance);
+    addUnknown(predicate.shown, place);
+  });
+  data.monitors.forEach((monitor, index) => {
+    if (monitor.shift) add(monitor.name, "calibrated", monitor.shift);
+    for (const guarantee of monitor.guarantees) add(monitor.name, "guarantee", guarantee);
+    addUnknown(monitor.name, data.predicates.length + index);
+  });
   return element("table", {}, body);
 }
 

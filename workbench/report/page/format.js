@@ -41,6 +41,12 @@ function measured(value) {
   return String(Number(value.toPrecision(5))).replace("-", "−");
 }
 
+// The one or two thresholds of a predicate, ascending; JSON has no infinities.
+const levelsOf = (predicate) => predicate.thresholds.map(Number);
+const levelsText = (predicate) => levelsOf(predicate).map(measured).join(" to ");
+
+const percent = (share) => `${(100 * share).toFixed(1)} %`;
+
 const counted = (n, noun) => `${n.toLocaleString("en")} ${noun}${n === 1 ? "" : "s"}`;
 
 function when(step) {

@@ -3,13 +3,14 @@
 // Names the members of a row that workbench/report/document.cpp writes.
 const episodes = data.rows.map(
   ([path, frames, outcomes, missing, judged, parts, buckets, series, pictures], place) => {
-    const finite = outcomes.map((of) => of[1]).filter((value) => value !== null);
+    const finite = outcomes.filter((of) => of[0] <= 1).map((of) => of[1])
+      .filter((value) => value !== null);
     const alarms = outcomes.map((of) => of[2]).filter((step) => step !== null);
     return {
       place, path, frames, missing, parts, buckets, series, pictures,
       outcomes: outcomes.map(([status, robustness, alarm, finalAt]) =>
         ({ status, robustness, alarm, finalAt })),
-      wrong: judged?.[0] ?? [], f1: judged?.[1] ?? null, agreement: judged?.[2] ?? null,
+      wrong: judged?.[0] ?? [], wrongShare: judged?.[1] ?? null, unknown: judged?.[2] ?? null,
       firstError: judged?.[3] ?? null,
       margin: finite.length > 0 ? Math.min(...finite.map(Math.abs)) : Infinity,
       alarm: alarms.length > 0 ? Math.min(...alarms) : Infinity,
@@ -38,9 +39,10 @@ function statusDot(outcome, index) {
 function rowElement(episode) {
   const errors = !data.has_truth ? null
     : episode.wrong.length > 0 ? `${episode.wrong.length} wrong: ${episode.wrong.join(", ")}`
-    : episode.agreement === null ? "no truth known"
-    : episode.agreement < 1 ? `${((1 - episode.agreement) * 100).toFixed(1)} % of frames wrong`
-    : "all right";
+    : episode.wrongShare === null ? "no truth known"
+    : [[episode.wrongShare, "wrong"], [episode.unknown, "unknown"]]
+      .filter(([share]) => share > 0).map(([share, what]) => `${percent(share)} of frames ${what}`)
+      .join(", ") || "all right";
   const row = element("div", { class: "row", role: "option", "data-place": episode.place },
     element("span", { class: "name", title: episode.path }, baseName(episode.path)),
     element("span", { class: "dots" }, ...episode.outcomes.map(statusDot)),

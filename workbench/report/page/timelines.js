@@ -44,12 +44,12 @@ class Timelines {
     data.predicates.forEach((predicate, index) => {
       if (!tracks.distance?.[index]) return;
       lanes.push({ kind: "predicate", index, name: predicate.shown,
-        text: `${predicate.expression} ${predicate.comparison} ${measured(predicate.threshold)}`,
-        points: pointsOf(this.episode, tracks.distance[index]), level: predicate.threshold,
+        text: `${predicate.expression} ${predicate.comparison} ${levelsText(predicate)}`,
+        points: pointsOf(this.episode, tracks.distance[index]), levels: levelsOf(predicate),
         said: tracks.holds[index][0], truth: tracks.truth?.[index]?.[0] });
     });
     data.monitors.forEach((monitor, index) => {
-      lanes.push({ kind: "monitor", index, name: monitor.name, text: monitor.formula, level: 0,
+      lanes.push({ kind: "monitor", index, name: monitor.name, text: monitor.formula, levels: [0],
         points: pointsOf(this.episode, tracks.robustness[index]), said: tracks.status[index][0],
         bounds: monitor.sliding ? null : [tracks.lower, tracks.upper].map((of) =>
           pointsOf(this.episode, of?.[index] ?? tracks.robustness[index])),
@@ -75,6 +75,10 @@ class Timelines {
       { left: laneMargin.left, top: 0 }).attr("class", "timelines");
     this.g.append("clipPath").attr("id", "lane-clip").append("rect").attr("width", inner)
       .attr("height", height);
+    const hatch = this.g.append("pattern").attr("id", "unknown").attr("width", 4).attr("height", 4)
+      .attr("patternUnits", "userSpaceOnUse").attr("patternTransform", "rotate(45)");
+    hatch.append("rect").attr("width", 4).attr("height", 4);
+    hatch.append("line").attr("y2", 4);
     for (const lane of this.lanes) this.drawLane(lane, inner);
     const seconds = data.spec.step_seconds;
     const shown = this.x.copy().domain(this.domain.map((step) =>
@@ -93,12 +97,11 @@ class Timelines {
     title.append("tspan").attr("class", "name").text(lane.name);
     title.append("tspan").attr("class", "formula").attr("dx", 8).text(lane.text);
     const chart = g.append("g").attr("transform", `translate(0,${laneSize.title})`);
-    lane.y = scale(spanOf([lane.level, ...lane.points.map((p) => p[1])]), [lane.chart, 0]);
+    lane.y = scale(spanOf([...lane.levels, ...lane.points.map((p) => p[1])]), [lane.chart, 0]);
     const inside = chart.append("g").attr("clip-path", "url(#lane-clip)");
     if (lane.kind === "predicate") this.drawBands(inside, lane);
     else this.drawBounds(inside, lane);
-    inside.append("line").attr("class", "threshold").attr("x2", inner)
-      .attr("y1", lane.y(lane.level)).attr("y2", lane.y(lane.level));
+    drawLevels(inside, lane.levels, lane.y, [lane.chart, 0], inner);
     path(inside, lane.points, this.x, lane.y, "series");
     yAxis(chart, lane.y, "", 3);
     const below = g.append("g").attr("clip-path", "url(#lane-clip)");
@@ -113,7 +116,7 @@ class Timelines {
     if (!lane.truth) return;
     strip(lane.truth, "truth", "true");
     const wrong = Array.from(lane.truth, (is, step) =>
-      is <= 1 && statusOf(lane.said[step]) !== 3 && statusOf(lane.said[step]) !== is ? 1 : 0);
+      is <= 1 && statusOf(lane.said[step]) === 1 - is ? 1 : 0);  // unknown is not wrong
     strip(wrong, "wrong", "wrong");
   }
 

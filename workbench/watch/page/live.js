@@ -21,7 +21,7 @@ function episodeOf(steps) {
   for (const of of numbers)
     makeTracks(of, of === "distance" ? data.predicates : data.monitors,
       () => new Float64Array(count).fill(NaN));
-  makeTracks("holds", data.predicates, () => new Uint8Array(count).fill(2));
+  makeTracks("holds", data.predicates, () => new Uint8Array(count).fill(3));
   makeTracks("status", data.monitors, () => new Uint8Array(count).fill(3));
   return { first, steps: count, buckets: 0, tracks };
 }
@@ -52,7 +52,7 @@ function showReadout(one) {
   const predicates = data.predicates.map((predicate, index) =>
     element("tr", { "data-predicate": predicate.shown }, element("th", {}, predicate.shown),
       valueCell(one.distance[index]),
-      element("td", {}, `${predicate.comparison} ${measured(predicate.threshold)}`),
+      element("td", {}, `${predicate.comparison} ${levelsText(predicate)}`),
       saidOf(one.holds[index], "predicate")));
   const monitors = data.monitors.map((monitor, index) =>
     element("tr", { "data-monitor": monitor.name }, element("th", {}, monitor.name),
