@@ -275,7 +275,7 @@ def look_at_two(browser, folder):
 
     for part in ("monitor", "predicate"):
         heads = page.value(f"document.querySelector('#{part}-figures thead').textContent")
-        assert "unknownwrong when known" in heads, heads
+        assert "unknownwrong when decided" in heads, heads
     table = page.value("document.getElementById('provenance').textContent")
     assert "true up to" in table and "never true (1 score, too few)" in table, table
     assert "score 0" not in table and "0.44 to 1.06" in table, table

@@ -29,7 +29,7 @@ function blindCells(of, key) {
 
 // Columns for what is unknown, where anything is.
 const unknownHeads = [["unknown", "share of the frames or steps at which it is neither"],
-  ["wrong when known", "share of the others at which it is wrong"]];
+  ["wrong when decided", "share of the others at which it is wrong"]];
 const unknownCells = (of) =>
   [figureCell(of, "unknown"), figureCell(of, "wrong_when_decided")];
 const anyUnknown = (all) => all.some((of) => of.unknown > 0);
