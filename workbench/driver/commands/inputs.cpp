@@ -134,7 +134,10 @@ std::string measured_spec(const plan::Plan& plan) {
         if (monitor.shifted) {
             const source::Span clause = model.monitors[monitor.index].calibration->span;
             changes[clause.begin] = {
-                clause, fmt::format("/* calibrated as a whole: less by {} */", monitor.shift)};
+                clause, fmt::format("/* calibrated as a whole: less by {}{} */", monitor.shift,
+                                    monitor.inner_shift
+                                        ? fmt::format(", its low end by {}", *monitor.inner_shift)
+                                        : "")};
         }
     std::string text;
     std::uint32_t copied = 0;
