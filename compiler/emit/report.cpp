@@ -23,7 +23,10 @@ std::string unknown_for(const plan::Monitor& monitor, const check::Gap& gap) {
     switch (monitor.restarts) {
         case check::Restarts::never: break;
         case check::Restarts::on_request: return "until it is restarted";
-        case check::Restarts::when_final: return "for good: no final verdict, no restart";
+        case check::Restarts::when_final:
+            if (monitor.ahead == plan::kUnbounded) return "for good: no final verdict, no restart";
+            return fmt::format("for {} at most, until the next cycle",
+                               diag::counted(monitor.ahead + std::uint64_t{1}, "step"));
     }
     return "for good";
 }

@@ -96,12 +96,12 @@ class Verdict(Ambiguous):
 
     @property
     def unknown(self) -> bool:
-        """Whether a missing sample leaves it open."""
+        """Whether a missing sample leaves it open, or a number between two thresholds."""
         return self.decided and not self.satisfied and not self.violated
 
     @property
     def final(self) -> bool:
-        """Whether no continuation can change it between satisfied and violated."""
+        """Whether no continuation can change it. Of a repeating monitor it may be unknown."""
         return self._status & FINAL != 0
 
     @property

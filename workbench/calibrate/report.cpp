@@ -240,7 +240,6 @@ std::string report(const check::Model& model, const std::vector<Index>& predicat
 }
 
 // ---- thresholds without each fold, and their results on it --------------------------------------
-// Thresholds without each fold, and their results on it.
 
 namespace {
 

@@ -35,6 +35,7 @@ void Summary::add(std::size_t monitor, std::uint64_t step, const etlmon::Verdict
     else if (!m.final_since)
         m.final_since = step;
     if (verdict.fulfilled()) ++m.fulfilled;
+    if (verdict.final() && verdict.unknown()) ++m.ended_unknown;
     if (verdict.alarm()) {
         ++m.alarms;
         if (!m.first_alarm) m.first_alarm = step;
@@ -53,9 +54,11 @@ std::string Summary::of_prefix(const OfMonitor& m) const {
 std::string Summary::of_repeating(const OfMonitor& m) const {
     std::string text = diag::counted(m.alarms, "alarm");
     if (m.first_alarm) text += fmt::format(", the first at {}", when(*plan_.model, *m.first_alarm));
-    return text + fmt::format("; fulfilled {}; at the end {}, robustness {:.6g}",
-                              diag::counted(m.fulfilled, "time"), status(m.last),
-                              m.last.robustness);
+    text += fmt::format("; fulfilled {}", diag::counted(m.fulfilled, "time"));
+    if (m.ended_unknown > 0)
+        text += fmt::format("; unknown {}", diag::counted(m.ended_unknown, "time"));
+    return text +
+           fmt::format("; at the end {}, robustness {:.6g}", status(m.last), m.last.robustness);
 }
 
 std::string Summary::of_sliding(const OfMonitor& m, std::uint64_t horizon) const {

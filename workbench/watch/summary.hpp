@@ -45,6 +45,7 @@ private:
         std::optional<std::uint64_t> final_since;
         std::uint64_t alarms = 0;
         std::uint64_t fulfilled = 0;
+        std::uint64_t ended_unknown = 0;  ///< cycles whose last verdict is unknown
         std::optional<std::uint64_t> first_alarm;
         etlmon::Verdict last;
     };
