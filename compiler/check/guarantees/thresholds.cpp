@@ -78,7 +78,7 @@ std::vector<std::string> changes(const Threshold& threshold, const thresholds::E
     else if (!same_number(entry.beta, threshold.beta))
         found.push_back(changed("the beta", entry.beta.empty() ? "alpha" : entry.beta,
                                 threshold.beta.empty() ? "alpha" : threshold.beta));
-    const std::string_view against = entry.against.empty() ? "misses" : entry.against;
+    const std::string against = entry.against.empty() ? "misses" : entry.against;
     if (against != word(threshold.against))
         found.push_back(
             fmt::format("it was against: {}; it is: {}", against, word(threshold.against)));
