@@ -297,8 +297,9 @@ void print_interface(Printer& out, const Context& context, const std::vector<Mem
     print_let_interface(out, context);
     print_adaptive_interface(out, context);
     print_doc(out, fmt::format("Returns the number of steps at which a predicate or bool input{} "
-                               "was unknown; saturates.",
-                               context.on_demand ? " that was evaluated" : ""));
+                               "was unknown{}; saturates.",
+                               context.on_demand ? " that was evaluated" : "",
+                               context.has_two_thresholds() ? ", its sample missing" : ""));
     out.line("uint32_t missing_steps() const noexcept { return incomplete_; }");
     out.line();
     print_recorder_interface(out, context);
