@@ -38,6 +38,7 @@ predicate seldom = d <= calibrated(conformal, alpha = 0.4, against = both);
 predicate usual = d <= calibrated(risk, alpha = 0.5);
 monitor arrives = F near;
 sliding monitor now = near;
+sliding monitor soon = F[0, 1] near;
 monitor rest = F (far && seldom && usual);
 """
 STEPS = 40
@@ -251,6 +252,9 @@ def look_at_two(browser, folder):
     assert codes("holds", 1) == [yes, unknown, no], codes("holds", 1)
     assert codes("status", 0) == [no, unknown, yes + final], codes("status", 0)
     assert codes("status", 1) == [no + final, unknown + final, yes + final], codes("status", 1)
+    # Of a sliding monitor the worst position counts: the last is satisfied, the first unknown.
+    said = page.value("document.getElementById('episode-summary').textContent")
+    assert codes("status", 2)[-1] == yes + final and "soon: unknown" in said, said
     assert count("near", "line.threshold") == 2 and count("near", ".between") == 1
     ends = of_lane("near", "[+lane.querySelector('.between').getAttribute('y'), "
                    "...Array.from(lane.querySelectorAll('line.threshold'), l => +l.attributes.y1"
@@ -299,7 +303,7 @@ def look_at_two(browser, folder):
 
     drawn = (folder / "band.svg").read_text()
     xml.etree.ElementTree.fromstring(drawn)
-    assert drawn.count('class="between"') == 3 and drawn.count('class="threshold"') == 9, drawn
+    assert drawn.count('class="between"') == 3 and drawn.count('class="threshold"') == 10, drawn
     assert 'rect class="unknown"' in drawn and ">unknown</text>" in drawn and '="inf' not in drawn
 
 

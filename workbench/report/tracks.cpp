@@ -33,9 +33,9 @@ Outcome outcome_of(const explain::History& history, bool sliding) {
         const Verdict& verdict = history.verdicts[step];
         if (!verdict.decided()) continue;
         const std::uint32_t status = code_of(verdict) % kFinal;
-        // Every position of a sliding monitor has a verdict, and a violated one counts.
-        const bool worse = sliding && outcome.status == kNo;
-        if (!worse) outcome.status = status;
+        // Every position of a sliding monitor has a verdict, and the worst one counts.
+        const bool is_better = status == kYes ? outcome.status <= kUnknown : outcome.status == kNo;
+        if (!sliding || !is_better) outcome.status = status;
         outcome.robustness =
             sliding ? std::min(outcome.robustness, verdict.robustness) : verdict.robustness;
     }

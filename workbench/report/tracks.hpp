@@ -72,9 +72,8 @@ inline constexpr std::uint32_t kUnknown = 2;
 inline constexpr std::uint32_t kUndecided = 3;
 inline constexpr std::uint32_t kFinal = 4;  ///< added to a final verdict
 
-/// Returns the code of a verdict.
+/// Return the code of a verdict, and of what a predicate is called.
 std::uint32_t code_of(const etlmon::Verdict& verdict);
-/// Returns the code of what a predicate is called.
 std::uint32_t code_of(const std::optional<bool>& called);
 
 /// Returns the one or two thresholds, ascending, as Number() of JavaScript reads them.
@@ -82,9 +81,9 @@ std::vector<std::string> levels(const check::Threshold& threshold);
 
 /// The outcome of a monitor.
 struct Outcome {
-    std::uint32_t status = kUndecided;      ///< code of its last verdict
-    float robustness = 0;                   ///< of that verdict; the least of a sliding monitor
-    std::optional<std::uint64_t> alarm;     ///< first step with a final violation
+    std::uint32_t status = kUndecided;   ///< code of its last verdict; the worst of a sliding one
+    float robustness = 0;                ///< of that verdict; the least of a sliding monitor
+    std::optional<std::uint64_t> alarm;  ///< first step with a final violation
     std::optional<std::uint64_t> final_at;  ///< first step with a final verdict
 };
 
