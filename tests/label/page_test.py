@@ -307,7 +307,8 @@ def go_on_at_once(labeller, before):
 
 def accept_at_once(labeller, before):
     """`n` goes to the next episode that will not be labelled once all keys are written."""
-    labeller.page.wait("store.proposals.size === 3")
+    # Proposals that were begun before the last keys may still arrive.
+    labeller.page.wait("refresh().then(() => !store.isBusy && store.proposals.size === 3)")
     at_speed(labeller, *"nanana")
     text = labeller.value("document.getElementById('progress').textContent")
     assert text.startswith("6 of 6 episodes labelled"), text

@@ -140,6 +140,12 @@ std::string output_of(const std::vector<std::string>& call) {
     return none(status < 0 ? child->ending() : "failed: " + child->last_words());
 }
 
+/// Whether enough episodes are labelled, and not all.
+bool can_learn_from(const Desk& desk) {
+    const std::size_t labelled = labelled_episodes(desk).size();
+    return labelled >= kEnoughLabelled && labelled < desk.episodes().size();
+}
+
 /// Returns the labels of the episodes that are fully labelled, as text to compare.
 std::string lesson_of(const Desk& desk) {
     std::string text;
@@ -159,6 +165,7 @@ std::string lesson_of(const Desk& desk) {
 void Background::look_after(const Desk& desk) {
     if (std::exchange(seen_, desk.version()) != desk.version()) {
         changed_ = Clock::now();
+        is_due_ = can_learn_from(desk);
         if (running_.valid()) learned_.clear();  // it may have read these labels or those before
     }
     if (running_.valid() && running_.wait_for(0s) == std::future_status::ready) {
@@ -167,8 +174,8 @@ void Background::look_after(const Desk& desk) {
         ++version_;
     }
     if (running_.valid() || Clock::now() - changed_ < kQuiet) return;
-    const std::size_t labelled = labelled_episodes(desk).size();
-    if (labelled < kEnoughLabelled || labelled == desk.episodes().size()) return;
+    is_due_ = false;
+    if (!can_learn_from(desk)) return;
     std::string lesson = lesson_of(desk);
     if (lesson == learned_) return;
     try {
@@ -176,6 +183,7 @@ void Background::look_after(const Desk& desk) {
         learned_ = std::move(lesson);
     } catch (const std::exception&) {  // no thread can be started now
         changed_ = Clock::now();
+        is_due_ = true;
     }
 }
 

@@ -75,7 +75,8 @@ public:
     void look_after(const Desk& desk);
 
     const Proposals& proposals() const { return proposals_; }
-    bool is_busy() const { return running_.valid(); }
+    /// Whether others are being made, or will be unless the labels are those of the last ones.
+    bool is_busy() const { return running_.valid() || is_due_; }
     /// Returns a number that grows with each answer.
     std::uint64_t version() const { return version_; }
 
@@ -88,6 +89,7 @@ private:
     std::uint64_t version_ = 0;
     std::uint64_t seen_ = 0;  ///< version of the desk
     Clock::time_point changed_;
+    bool is_due_ = false;  ///< the labels have changed, and nobody has looked at them
     std::string learned_;  ///< labels that the running or last process learned from, if it is known
 };
 
