@@ -573,6 +573,17 @@ TEST(BothErrors, AnInfiniteSideIsNamed) {
         << made.report;
 }
 
+TEST(BothErrors, HalfwayAtMostTheSharesOfEitherSideAreLost) {
+    const std::string spec = fmt::format(kOver, "risk, alpha = 0.2, against = both", "");
+    const auto says_at_most = [&](double far) {
+        const std::string report = calibrated(spec, recordings(19, 1, far).paths()).report;
+        EXPECT_NE(report.find("    called true at "), std::string::npos) << report;
+        return report.find("    called true at no more than ") != std::string::npos;
+    };
+    EXPECT_FALSE(says_at_most(0.5));
+    EXPECT_TRUE(says_at_most(2));
+}
+
 /// Returns the codes and messages of a calibration that is refused.
 std::string refused(const std::string& arguments, const Files& files,
                     const std::string& clause = "") {
@@ -602,8 +613,16 @@ TEST(BothErrors, BadInputIsRefused) {
     for (int i = 0; i < 19; ++i)
         with_gaps.add(fmt::format("x,truth.p\n,1\n{},1\n3,0\n{},0\n", 0.1 * i, 4 + i));
     EXPECT_EQ(refused("risk, alpha = 0.2", with_gaps, " missing false"), "E0663");
-    EXPECT_FALSE(calibrated(fmt::format(kOver, "risk, alpha = 0.2", ""), with_gaps.paths())
-                     .thresholds.empty());
+    // `missing` decides about losses, so a threshold is no good for another
+    for (const bool by_risk : {false, true}) {
+        const std::string arguments = by_risk ? "risk, alpha = 0.2" : "conformal, alpha = 0.2";
+        const std::string thresholds =
+            calibrated(fmt::format(kOver, arguments, ""), with_gaps.paths()).thresholds;
+        EXPECT_TRUE(checked(fmt::format(kOver, arguments, ""), thresholds).model);
+        EXPECT_NE(
+            checked(fmt::format(kOver, arguments, " missing false"), thresholds).model.has_value(),
+            by_risk);
+    }
 }
 
 }  // namespace

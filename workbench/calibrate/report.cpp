@@ -193,6 +193,7 @@ std::string describe_sides(const Subject& of, const Sides& sides) {
     const bool by_risk = threshold.origin == ThresholdOrigin::risk;
     std::string text;
     const std::vector<Aim> aims = aims_of(of.predicate);
+    const bool is_halfway = aims.size() == 2 && !joined(of.predicate, sides).inner;
     const bool by_episode =
         by_risk || threshold.origin == ThresholdOrigin::conformal || threshold.adaptation;
     for (std::size_t i = 0; by_episode && i < aims.size(); ++i) {
@@ -204,8 +205,8 @@ std::string describe_sides(const Subject& of, const Sides& sides) {
             text += fmt::format("    never {}: {}\n", called, needed(of, aim, fitted.n));
         else if (by_risk)
             text += fmt::format(
-                "    {} at {:.1f} % of the {}s at which it is {}, on average over these {}s\n",
-                called,
+                "    {} at {}{:.1f} % of the {}s at which it is {}, on average over these {}s\n",
+                called, is_halfway ? "no more than " : "",
                 100 * std::accumulate(fitted.losses.begin(), fitted.losses.end(), 0.0) /
                     static_cast<double>(fitted.n),
                 of.unit(), true_word(of, aim), of.noun());
@@ -405,6 +406,15 @@ std::string Subject::which(const Aim& aim) const {
 
 namespace {
 
+/// Says how many truths are open, where that may be why cases are few.
+void note_open(const Subject& of, diag::Diagnostic& error) {
+    const std::uint64_t open = of.evidence.unlabelled;
+    if (of.predicate.threshold.within > 0 && open > 0)
+        error.note(fmt::format("its truth is open at {}, most of them within {} of a change",
+                               counted(open, of.unit()),
+                               counted(of.predicate.threshold.within, "step")));
+}
+
 void refuse_without_case(const check::Model& model, const Subject& of, const Aim& aim,
                          diag::Sink& sink) {
     const check::Predicate& p = of.predicate;
@@ -428,10 +438,7 @@ void refuse_without_case(const check::Model& model, const Subject& of, const Aim
         message = fmt::format("the distance of '{}' is unknown at all {} where it is {}, in {}",
                               p.name, at, word, all);
     auto& error = sink.report(diag::Code::no_positive_frame, p.threshold.span, std::move(message));
-    if (p.threshold.within > 0 && of.evidence.unlabelled > 0)
-        error.note(fmt::format("its truth is open at {}, most of them within {} of a change",
-                               counted(of.evidence.unlabelled, of.unit()),
-                               counted(p.threshold.within, "step")));
+    note_open(of, error);
     for (const check::Truth& truth : model.truths)
         if (!of.is_monitor && &model.predicates[truth.predicate] == &p)
             error.note(truth.span, "its truth is here");
@@ -447,6 +454,7 @@ void refuse_too_few(const Subject& of, const Aim& aim, diag::Sink& sink) {
     auto& error = sink.report(diag::Code::too_few_scores, of.predicate.threshold.span,
                               needed(of, aim, scores));
     if (by_frame) return;
+    note_open(of, error);
     const std::uint64_t groups = of.evidence.groups;
     if (of.by_group)
         error.note(fmt::format(
@@ -498,6 +506,7 @@ void refuse_both(const Subject& of, diag::Sink& sink) {
                     of.predicate.name, of.noun()));
     for (const Aim& aim : aims_of(of.predicate))
         error.note(needed(of, aim, of.evidence.side(aim.of_positives).worst.size()));
+    note_open(of, error);
 }
 
 void warn_of_large_alpha(const check::Predicate& predicate, diag::Sink& sink) {

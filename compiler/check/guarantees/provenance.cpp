@@ -52,12 +52,15 @@ public:
 
     void add_calibrated(Index index) {
         // Only the left side counts: the threshold is the result, and missing samples have no
-        // score. Ranges follow from the expression.
+        // score, but may be losses. Ranges follow from the expression.
         const auto& [name, text, expression, comparison, threshold, delta, robustness, missing,
                      inputs, span] = model_.predicates[index];
         add_expression(expression);
         add("predicate " + name,
-            fmt::format("{} {}", print(model_, expression), symbol(comparison)));
+            fmt::format("{} {}{}", print(model_, expression), symbol(comparison),
+                        threshold.origin == ThresholdOrigin::risk && missing
+                            ? fmt::format(" missing {}", *missing)
+                            : ""));
         add_truth(index);
     }
 
