@@ -53,11 +53,16 @@ bool refuse_without_truth(const check::Model& model, const Subject& subject, dia
 
 std::vector<std::pair<std::string, float>> calibrated_in(const check::Model& model) {
     std::vector<std::pair<std::string, float>> thresholds;
+    const auto add = [&](const std::string& name, const check::Threshold& of) {
+        thresholds.emplace_back(name, of.value);
+        // One fold may have one threshold, halfway, where another has two.
+        if (of.against == check::Against::both) thresholds.emplace_back(name + ", inner", of.low());
+    };
     for (const check::Predicate& predicate : model.predicates)
         if (predicate.threshold.origin != check::ThresholdOrigin::literal)
-            thresholds.emplace_back(predicate.name, predicate.threshold.value);
+            add(predicate.name, predicate.threshold);
     for (const check::Monitor& monitor : model.monitors)
-        if (monitor.calibration) thresholds.emplace_back(monitor.name, monitor.calibration->value);
+        if (monitor.calibration) add(monitor.name, *monitor.calibration);
     return thresholds;
 }
 

@@ -562,7 +562,8 @@ void fill(Object& to, const Judgement::Fold& fold) {
     to("episodes", fold.episodes);
     to.nested("thresholds", [&](Object& thresholds) {
         for (const auto& [name, threshold] : fold.thresholds)
-            thresholds.raw(name, fmt::format("{}", threshold));
+            thresholds.raw(name,
+                           fmt::format("{0}{1}{0}", std::isinf(threshold) ? "\"" : "", threshold));
     });
 }
 
