@@ -110,6 +110,17 @@ def f1_by_loops(folder, formula, name, threshold):
     return hits / (hits + errors)
 
 
+def decided(counts):
+    """Of what is true and of what is false, the share that is called so; the mean of both."""
+    shares = [("true_positives", "positives"), ("true_negatives", "negatives")]
+    found = [counts[right] / counts[of] for right, of in shares if counts[of] > 0]
+    return sum(found) / len(found)
+
+
+def close(a, b):
+    return abs(a - b) < 1e-12
+
+
 def main(etlc):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -149,12 +160,20 @@ def main(etlc):
                     found = pasted(spec, one, data, trained)
                     if "monitor" in ranking:
                         monitor = found["monitors"][name]
+                        if ranking["by_decided"]:
+                            assert close(one["episodes"], decided(monitor["steps"])), one
+                            assert close(one["variants"], decided(monitor["variants"]["all"])), one
+                            continue
                         assert one["episodes"] == monitor["episode_agreement"], one
                         assert one["variants"] == monitor["variants"]["all"]["agreement"], one
                         assert abs(2 * one["score"] - one["episodes"] - one["variants"]) < 1e-12
                         continue
                     let = one["lines"][0].split()[1] if one["lines"] else name
                     frames = found["predicates"][let]
+                    if ranking["by_decided"]:
+                        assert close(one["score"], decided(frames)), (one, frames)
+                        assert ranking["clock"] is None, ranking
+                        continue
                     assert one["score"] == frames["f1"], (one, frames)
                     assert [one["low"], one["high"]] == frames["f1_interval"], (one, frames)
                     assert ranking["clock"] == found["predicates"][name]["duration"]["f1"]
@@ -167,6 +186,12 @@ def main(etlc):
         assert re.fullmatch(r"hold: held\[\d+ steps\] hold", best["formula"])
         assert not own["ties"] and best["score"] > own["score"] + 0.2, (best, own)
         check_pasted(TWICE, found, "twice", True)
+
+        # Against both errors a formula is better where more is decided and right.
+        both = TWICE.replace("calibrated(f1)", "calibrated(conformal, alpha = 0.1, against = both)")
+        found = suggested(both, "twice")
+        assert all(one["by_decided"] for one in found.values()), found
+        check_pasted(both, found, "twice", True)
 
         (folder / "place").mkdir()
         placing(folder / "place", np.random.default_rng(4))

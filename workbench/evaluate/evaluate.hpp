@@ -189,11 +189,12 @@ Evaluation summarise(const Judgement& judgement, unsigned jobs);
 
 /// A figure of each resample of the episodes.
 using Statistic = std::function<std::vector<std::optional<double>>(const Weights&)>;
-/// F1 by frames of a predicate or let.
-Statistic f1_by_frames(const Judgement& judgement, std::size_t predicate);
-/// The mean of a monitor's agreements on the episodes and on their broken variants; on the
-/// episodes alone where there are no variants.
-Statistic agreement_with_variants(const Judgement& judgement, std::size_t monitor);
+/// A rate by frames of a predicate or let.
+Statistic by_frames(const Judgement& judgement, std::size_t predicate, Rate rate);
+/// The mean of a monitor's rates on the episodes, by their steps or verdicts, and by verdicts on
+/// their broken variants; on the episodes alone where there are no variants.
+Statistic with_variants(const Judgement& judgement, std::size_t monitor,
+                        Counts MonitorEpisode::*of_episode, Rate rate);
 /// Returns the second less the first, over the same resamples.
 Figure less(const Bootstrap& bootstrap, const Statistic& second, const Statistic& first);
 /// Returns the F1 by frames of the duration baseline.

@@ -31,6 +31,10 @@ void Counts::add(const Counts& other, std::uint64_t times) {
     for (const auto& [name, count] : kCounts) this->*count += times * other.*count;
 }
 
+std::optional<double> mean(std::optional<double> a, std::optional<double> b) {
+    return a && b ? std::optional((*a + *b) / 2) : a ? a : b;
+}
+
 Rates rates(const Counts& c) {
     const std::uint64_t hits = c.true_positives;
     Rates result{{share(2 * hits, hits + c.false_positives + c.positives()),
@@ -38,9 +42,11 @@ Rates rates(const Counts& c) {
                   share(hits + c.true_negatives, c.total()), share(c.unknown(), c.total()),
                   share(c.wrong(), c.total() - c.unknown()),
                   share(c.false_negatives, c.positives()), share(c.false_positives, c.negatives())},
+                 {},
                  {}};
     const auto always_true = share(2 * c.positives(), c.positives() + c.total());
     if (result.f1 && always_true) result.gain = *result.f1 - *always_true;
+    result.decided = mean(result.recall, share(c.true_negatives, c.negatives()));
     return result;
 }
 

@@ -100,6 +100,8 @@ struct ByRate {
 
 struct Rates : ByRate<std::optional<double>> {
     std::optional<double> gain;  ///< F1 less the F1 of always claiming true
+    /// The shares of the positives and of the negatives that are called so, on average.
+    std::optional<double> decided;
 };
 using Rate = std::optional<double> Rates::*;
 
@@ -115,6 +117,9 @@ ByRate<std::invoke_result_t<Get, Rate>> by_rate(const Get& get) {
             get(&Rates::false_negative_rate),
             get(&Rates::false_positive_rate)};
 }
+
+/// Returns the mean of those that are defined.
+std::optional<double> mean(std::optional<double> a, std::optional<double> b);
 
 Rates rates(const Counts& counts);
 /// Returns for each resample the rates of the summed counts.

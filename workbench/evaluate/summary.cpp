@@ -225,34 +225,34 @@ Evaluation summarise(const Judgement& judgement, unsigned jobs) {
     return result;
 }
 
-Statistic f1_by_frames(const Judgement& judgement, std::size_t predicate) {
-    return [each = judgement.each(judgement.predicates[predicate].episodes,
-                                  [](const PredicateEpisode& episode) { return episode.frames; })](
+Statistic by_frames(const Judgement& judgement, std::size_t predicate, Rate rate) {
+    return [rate, each = judgement.each(judgement.predicates[predicate].episodes,
+                                        [](const PredicateEpisode& one) { return one.frames; })](
                const Weights& weights) {
         std::vector<std::optional<double>> values;
-        for (const Rates& one : rates(each, weights)) values.push_back(one.f1);
+        for (const Rates& one : rates(each, weights)) values.push_back(one.*rate);
         return values;
     };
 }
 
-Statistic agreement_with_variants(const Judgement& judgement, std::size_t monitor) {
+Statistic with_variants(const Judgement& judgement, std::size_t monitor,
+                        Counts MonitorEpisode::*of_episode, Rate rate) {
     const auto& all = judgement.monitors[monitor].episodes;
-    return [verdicts = judgement.each(all, [](const MonitorEpisode& one) { return one.episode; }),
-            variants = judgement.each(all, [](const MonitorEpisode& one) {
-                Counts sum;
-                for (const Counts& kind : one.variants) sum.add(kind);
-                return sum;
-            })](const Weights& weights) {
-        const std::vector<Rates> on_episodes = rates(verdicts, weights);
-        const std::vector<Rates> on_variants = rates(variants, weights);
-        std::vector<std::optional<double>> means;
-        for (std::size_t i = 0; i < on_episodes.size(); ++i) {
-            const auto& a = on_episodes[i].agreement;
-            const auto& b = on_variants[i].agreement;
-            means.push_back(a && b ? std::optional((*a + *b) / 2) : a ? a : b);
-        }
-        return means;
-    };
+    return
+        [rate,
+         verdicts = judgement.each(all, [=](const MonitorEpisode& one) { return one.*of_episode; }),
+         variants = judgement.each(all, [](const MonitorEpisode& one) {
+             Counts sum;
+             for (const Counts& kind : one.variants) sum.add(kind);
+             return sum;
+         })](const Weights& weights) {
+            const std::vector<Rates> on_episodes = rates(verdicts, weights);
+            const std::vector<Rates> on_variants = rates(variants, weights);
+            std::vector<std::optional<double>> means;
+            for (std::size_t i = 0; i < on_episodes.size(); ++i)
+                means.push_back(mean(on_episodes[i].*rate, on_variants[i].*rate));
+            return means;
+        };
 }
 
 std::optional<double> f1_of_duration(const Judgement& judgement, std::size_t predicate) {

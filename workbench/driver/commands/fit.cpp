@@ -148,31 +148,43 @@ std::size_t place_of(const std::vector<Named>& all, const std::string& name) {
     return static_cast<std::size_t>(at - all.begin());
 }
 
+/// Returns the rate by which candidates are ranked.
+evaluate::Rate rate_of(const fit::RankedInTime& ranking) {
+    if (ranking.by_decided) return &evaluate::Rates::decided;
+    return ranking.of_monitor ? &evaluate::Rates::agreement : &evaluate::Rates::f1;
+}
+evaluate::Counts evaluate::MonitorEpisode::*counts_of(const fit::RankedInTime& ranking) {
+    return ranking.by_decided ? &evaluate::MonitorEpisode::steps
+                              : &evaluate::MonitorEpisode::episode;
+}
+
 /// Sums the verdicts of a monitor over the episodes, and over their variants.
-void add_agreements(const evaluate::Judgement& judgement, std::size_t monitor, fit::InTime& one) {
+void add_parts(const evaluate::Judgement& judgement, std::size_t monitor,
+               const fit::RankedInTime& ranking, fit::InTime& one) {
     evaluate::Counts on_episodes;
     evaluate::Counts on_variants;
     judgement.for_each(judgement.monitors[monitor].episodes,
                        [&](std::size_t, const evaluate::MonitorEpisode& episode) {
-                           on_episodes.add(episode.episode);
+                           on_episodes.add(episode.*counts_of(ranking));
                            for (const evaluate::Counts& kind : episode.variants)
                                on_variants.add(kind);
                        });
-    one.on_episodes = evaluate::rates(on_episodes).agreement;
-    one.on_variants = evaluate::rates(on_variants).agreement;
+    one.on_episodes = evaluate::rates(on_episodes).*rate_of(ranking);
+    one.on_variants = evaluate::rates(on_variants).*rate_of(ranking);
 }
 
 /// Returns the score of a candidate in each resample; nothing where it cannot be judged.
-std::optional<evaluate::Statistic> score_of(const evaluate::Judgement& judgement, bool of_monitor,
+std::optional<evaluate::Statistic> score_of(const evaluate::Judgement& judgement,
+                                            const fit::RankedInTime& ranking,
                                             const std::string& trial) {
-    if (of_monitor) {
+    if (ranking.of_monitor) {
         const std::size_t m = place_of(judgement.monitors, trial);
         if (!judgement.monitors[m].lacking.empty()) return std::nullopt;
-        return evaluate::agreement_with_variants(judgement, m);
+        return evaluate::with_variants(judgement, m, counts_of(ranking), rate_of(ranking));
     }
     const std::size_t p = place_of(judgement.predicates, trial);
     if (p == judgement.predicates.size()) return std::nullopt;
-    return evaluate::f1_by_frames(judgement, p);
+    return evaluate::by_frames(judgement, p, rate_of(ranking));
 }
 
 /// Whether the interval of the difference reaches 0.
@@ -186,13 +198,13 @@ void fill_in(const evaluate::Judgement& judgement, fit::RankedInTime& ranking) {
     const evaluate::Bootstrap bootstrap(judgement.groups);
     std::map<std::string, evaluate::Statistic> scores;  // by trial
     for (fit::InTime& one : ranking.ranked) {
-        const auto score = score_of(judgement, ranking.of_monitor, one.trial);
+        const auto score = score_of(judgement, ranking, one.trial);
         if (!score) continue;
         scores[one.trial] = *score;
         one.score = bootstrap.figure(*score);
         if (ranking.of_monitor)
-            add_agreements(judgement, place_of(judgement.monitors, one.trial), one);
-        else if (one.lines.empty())
+            add_parts(judgement, place_of(judgement.monitors, one.trial), ranking, one);
+        else if (one.lines.empty() && !ranking.by_decided)
             ranking.clock =
                 evaluate::f1_of_duration(judgement, place_of(judgement.predicates, one.trial));
     }

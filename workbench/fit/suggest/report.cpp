@@ -135,10 +135,12 @@ const InTime& as_it_is(const RankedInTime& all) {
 std::string text_of_ranking(const RankedInTime& all, std::optional<bool> monitors_gain) {
     std::string text = all.of_monitor
                            ? fmt::format(
-                                 "\nmonitor {}\n  mean                   episodes   variants  "
+                                 "\nmonitor {}\n  {:20}  {:>9}   variants  "
                                  "in place of a predicate\n",
-                                 all.name)
-                           : fmt::format("\n{}\n  F1 by frame           formula\n", all.name);
+                                 all.name, all.by_decided ? "mean of decided" : "mean",
+                                 all.by_decided ? "steps" : "episodes")
+                           : fmt::format("\n{}\n  {:20}  formula\n", all.name,
+                                         all.by_decided ? "decided by frame" : "F1 by frame");
     const InTime& own = as_it_is(all);
     for (const InTime& one : all.ranked)
         if (&one - all.ranked.data() < static_cast<std::ptrdiff_t>(kShown) || &one == &own)
@@ -191,6 +193,12 @@ std::string report(const SuggestedInTime& suggested) {
         "agreements on episodes and on broken variants of them. *: may be as good as the best.\n",
         suggested.folds > 0 ? fmt::format(", trained on other episodes ({} folds)", suggested.folds)
                             : "");
+    if (std::any_of(suggested.all.begin(), suggested.all.end(),
+                    [](const RankedInTime& one) { return one.by_decided; }))
+        text +=
+            "decided: against both errors, in place of F1 and agreement: the share that is "
+            "decided\n"
+            "and right, of what is truly satisfied and of what is truly violated, on average.\n";
     std::optional<bool> monitors_gain;
     for (const RankedInTime& one : suggested.all)
         if (one.of_monitor) monitors_gain = monitors_gain.value_or(false) || !as_it_is(one).ties;
@@ -203,10 +211,11 @@ std::string json(const SuggestedInTime& suggested) {
     for (const RankedInTime& one : suggested.all) {
         std::vector<std::string> ranked;
         for (const InTime& candidate : one.ranked) ranked.push_back(json_of(candidate));
-        all.push_back(fmt::format("{{\"{}\": {}, \"clock\": {}, \"ranked\": [\n      {}]}}",
-                                  one.of_monitor ? "monitor" : "predicate",
-                                  source::json_string(one.name), number(one.clock),
-                                  fmt::join(ranked, ",\n      ")));
+        all.push_back(
+            fmt::format("{{\"{}\": {}, \"by_decided\": {}, \"clock\": {}, \"ranked\": [\n      "
+                        "{}]}}",
+                        one.of_monitor ? "monitor" : "predicate", source::json_string(one.name),
+                        one.by_decided, number(one.clock), fmt::join(ranked, ",\n      ")));
     }
     return fmt::format("{{\"folds\": {}, \"why_not\": {}, \"of\": [\n    {}]}}", suggested.folds,
                        suggested.why_not.empty() ? "null" : source::json_string(suggested.why_not),

@@ -507,6 +507,7 @@ public:
         const std::string& p = model_.predicates[predicate].name;
         RankedInTime& ranking = result_.all.emplace_back();
         ranking.name = p;
+        ranking.by_decided = against_both(predicate);
         ranking.ranked.push_back({p, {}, p});
         for (const Formula& formula : over_one(model_, p)) add_let(ranking, predicate, formula);
         for (const Index other : labelled)
@@ -526,6 +527,8 @@ public:
         RankedInTime ranking;
         ranking.name = monitor.name;
         ranking.of_monitor = true;
+        ranking.by_decided = std::any_of(used.begin(), used.end(),
+                                         [&](Index predicate) { return against_both(predicate); });
         add_trial(ranking, monitor, {});
         std::map<std::uint32_t, std::vector<const Let*>> steady;
         for (const Let& let : lets_) {
@@ -558,6 +561,10 @@ private:
 
         bool is_steady() const { return formula.steps > 0 && formula.follows == check::kNone; }
     };
+
+    bool against_both(Index predicate) const {
+        return model_.predicates[predicate].threshold.against == check::Against::both;
+    }
 
     void add_let(RankedInTime& ranking, Index predicate, const Formula& formula) {
         const std::string& p = ranking.name;

@@ -30,6 +30,7 @@ struct InTime {
     std::vector<std::string> lines;  ///< lines to paste; empty: as it is
     std::string trial;               ///< name of the let, predicate or monitor that is judged
     /// F1 by frames; for a monitor the mean of the agreements on episodes and on broken variants.
+    /// By `decided` the share that is called rightly.
     episodes::Figure score{};
     std::optional<double> on_episodes{};
     std::optional<double> on_variants{};
@@ -39,6 +40,9 @@ struct InTime {
 struct RankedInTime {
     std::string name;  ///< of the predicate or monitor
     bool of_monitor = false;
+    /// Ranked by the share that is called rightly, averaged over what is true and what is false:
+    /// calibrated against both errors, so that these are bounded and the rest is unknown.
+    bool by_decided = false;
     std::vector<InTime> ranked;     ///< best first
     std::optional<double> clock{};  ///< F1 of the number of the step alone; predicates only
 };
