@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# dubins_whole_test.sh RECORD ETLC SOURCE COMPILER: runs whole.sh for one seed. Calibrated as a
-# whole, the monitors miss about as often as allowed, and err the other way no more often than with
-# the union bound.
+# dubins_whole_test.sh RECORD ETLC SOURCE COMPILER: runs whole.sh and both.sh for one seed.
+# Calibrated as a whole, the monitors miss about as often as allowed, and err the other way no more
+# often than with the union bound.
 set -euo pipefail
 record=$1 etlc=$2 source=$3 compiler=$4
 folder=$(mktemp -d)
@@ -26,3 +26,17 @@ awk -F, '
             wrong = "sequential gains nothing"
         if (wrong != "") { print wrong; exit 1 }
     }' "$folder/1/whole.csv"
+
+# The same drives with both.sh. Where at most a tenth of the drives has an error, so has at most a
+# tenth of the steps; against both errors some frames and steps are unknown, and few.
+"$source/examples/dubins/both.sh" "$etlc" "$record" "$folder" 1 >"$folder/printed"
+cat "$folder/printed"
+awk '
+    NR > 1 { ++rows; at = NF - ($1 ~ /^at_/ ? 1 : 10); method = $1 " " $2 " " $3 }
+    NR > 1 && / both / && ($(at - 4) > 10 || $(at - 2) > 10) { wrong = method " errs too often" }
+    NR > 1 && / both / && !/whole/ && !($at > 0 && $at < 10) { wrong = method " has another cost" }
+    NR > 1 && !/ both / && $at != 0 { wrong = method " is unknown" }
+    END {
+        if (rows != 18) wrong = "there are not 18 rows"
+        if (wrong != "") { print wrong; exit 1 }
+    }' "$folder/printed"
