@@ -195,6 +195,16 @@ grep -q '^fold  episodes held out  near of the others  arrive of the others$' wh
     fail "$(cat whole.txt)"
 "$etlc" crossvalidate whole.etl --data renamed --folds 3 | head -6 | diff <(head -6 whole.txt) -
 
+# Against both errors a fold has two thresholds. One that takes more episodes is infinite.
+sed 's/alpha = 0.4/alpha = 0.5, beta = 0.01, against = both/' folded.etl >both.etl
+"$etlc" crossvalidate both.etl --data episodes --folds 3 --json both.json 2>/dev/null
+python3 - <<'END' || fail "the thresholds of a fold"
+import json
+for fold in json.load(open("both.json"))["folds"]:
+    assert set(fold["thresholds"]) == {"near", "near, inner"}, fold
+    assert fold["thresholds"]["near"] > 0 and fold["thresholds"]["near, inner"] == "-inf", fold
+END
+
 # Every fold has its own fit, on episodes of the others that its calibration does not see.
 sed 's/^target goal = .*/projection along = fitted(discriminant, r = 1, of = z, where = near);\
 target goal = fitted(mean, of = along(z), where = near);/
