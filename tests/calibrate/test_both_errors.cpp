@@ -34,6 +34,11 @@ using check::Claim;
 using episodes::Label;
 using Labels = std::vector<Label>;
 
+/// Returns what a verdict says. That of episodes/ is of another class where flags differ.
+Label called(const etlmon::Verdict& verdict) {
+    return verdict.satisfied() ? Label::yes : verdict.violated() ? Label::no : Label::unknown;
+}
+
 constexpr int kSimulatedSteps = 12;
 constexpr int kNewEpisodes = 50;
 /// The mean may exceed its bound by this many standard errors over the sets.
@@ -293,7 +298,7 @@ private:
                 // The next monitor is the negation of this one.
                 const auto low = known(says[m].robustness, -kInfinity);
                 const auto high = known(-static_cast<double>(says[m + 1].robustness), kInfinity);
-                const Label label = episodes::label_of(is[m]);
+                const Label label = called(is[m]);
                 const auto& end = label == Label::yes ? high : low;
                 add(scores[m], calibrate::over_robustness(model_.monitors[m]), label, end, end);
             });
@@ -354,7 +359,7 @@ private:
         }
         std::vector<Errors> errors(model_.monitors.size());
         follow(drawn, monitors, truths, [&](std::size_t m, const auto& says, const auto& is) {
-            errors[m].add(episodes::label_of(says[m]), episodes::label_of(is[m]));
+            errors[m].add(called(says[m]), called(is[m]));
         });
         for (Index m = 0; m < errors.size(); m += as_a_whole_ ? 2 : 1) note(m, errors[m]);
     }
