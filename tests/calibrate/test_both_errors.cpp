@@ -34,7 +34,7 @@ using check::Claim;
 using episodes::Label;
 using Labels = std::vector<Label>;
 
-/// Returns what a verdict says. That of episodes/ is of another class where flags differ.
+/// Returns what a verdict says. episodes::label_of() does not link where its flags are others.
 Label called(const etlmon::Verdict& verdict) {
     return verdict.satisfied() ? Label::yes : verdict.violated() ? Label::no : Label::unknown;
 }

@@ -1,8 +1,7 @@
 // Replays recorded episodes against monitors with other thresholds, without reading them again. A
 // track holds what the formulas see of each step, so no distance is measured twice: 4 bytes for
 // each predicate, and one for each label (as recorded, and as it counts near a change) and boolean
-// input. A broken variant of an episode is its
-// track with the steps in another order.
+// input. A broken variant of an episode is its track with the steps in another order.
 #pragma once
 
 #include <cstdint>
