@@ -207,17 +207,6 @@ bool measures_in_its_truth(const check::Model& model, const check::Monitor& moni
 
 }  // namespace
 
-namespace {
-
-/// Returns what a predicate says: neither between two thresholds.
-Label called_by(check::Comparison comparison, float delta, const check::Both& threshold) {
-    if (check::holds(comparison, delta, threshold.inner.value_or(threshold.value)))
-        return Label::yes;
-    return check::holds(comparison, delta, threshold.value) ? Label::unknown : Label::no;
-}
-
-}  // namespace
-
 std::vector<OtherError> other_errors(const check::Model& model,
                                      const std::vector<Index>& predicates,
                                      const std::vector<Evidence>& evidence,
@@ -242,8 +231,9 @@ std::vector<OtherError> other_errors(const check::Model& model,
             if (!is_cost && frame.positive != of_positives) return;
             const float delta = predicate.upper_bound() ? frame.score : -frame.score;
             const check::Both& threshold = out[i].thresholds[frame.episode];
-            const Label called = called_by(predicate.comparison, delta, threshold);
-            const Label wrong = is_cost ? Label::unknown : of_positives ? Label::no : Label::yes;
+            const auto called =
+                check::called(predicate.comparison, delta, threshold.low(), threshold.value);
+            const auto wrong = is_cost ? std::nullopt : std::optional(!of_positives);
             ++fractions[i][frame.episode].whole;
             fractions[i][frame.episode].part += called == wrong ? 1 : 0;
         });

@@ -258,7 +258,7 @@ struct HeldOut {
     std::uint64_t misses = 0;
 
     void add(const check::Both& both) {
-        for (const float threshold : {both.value, both.inner.value_or(both.value)}) {
+        for (const float threshold : {both.value, both.low()}) {
             least = std::min(least, threshold);
             greatest = std::max(greatest, threshold);
         }
@@ -300,15 +300,13 @@ void judge_frames(const check::Predicate& predicate, const check::Both& both,
     evidence.labelled.for_each([&](const episodes::Scored& frame) {
         if (!in_fold(frame.episode)) return;
         const float delta = predicate.upper_bound() ? frame.score : -frame.score;
-        const bool is_true =
-            check::holds(predicate.comparison, delta, both.inner.value_or(both.value));
-        const bool is_false = !check::holds(predicate.comparison, delta, both.value);
-        result.hits += frame.positive && is_true ? 1 : 0;
-        result.misses += frame.positive && is_false ? 1 : 0;
-        result.false_alarms += !frame.positive && is_true ? 1 : 0;
+        const auto called = check::called(predicate.comparison, delta, both.low(), both.value);
+        result.hits += frame.positive && called == true ? 1 : 0;
+        result.misses += frame.positive && called == false ? 1 : 0;
+        result.false_alarms += !frame.positive && called == true ? 1 : 0;
         if (!is_against(predicate.threshold, frame.positive)) return;
         ++found[frame.episode].frames;
-        found[frame.episode].errors += (frame.positive ? is_false : is_true) ? 1 : 0;
+        found[frame.episode].errors += called == !frame.positive ? 1 : 0;
     });
     for (const auto& [frames, errors] : found) {
         result.groups += frames > 0 ? 1 : 0;

@@ -75,6 +75,8 @@ bool keeps_risk(const std::vector<double>& losses, std::string_view alpha);
 struct Both {
     float value = 0;
     std::optional<float> inner;
+
+    float low() const { return inner.value_or(value); }
 };
 Both both(float against_misses, float against_false_positives, bool upper_bound);
 

@@ -265,6 +265,15 @@ bool holds(Comparison comparison, Number delta, Number epsilon) {
     return delta != epsilon;
 }
 
+/// Returns what a comparison with two thresholds is called: true within `inner`, false beyond
+/// `outer`, nothing between them or if delta is NaN.
+inline std::optional<bool> called(Comparison comparison, float delta, float inner, float outer) {
+    if (std::isnan(delta)) return std::nullopt;
+    if (holds(comparison, delta, inner)) return true;
+    if (!holds(comparison, delta, outer)) return false;
+    return std::nullopt;
+}
+
 /// The values that a monitor computes with, `--values`. Boolean: comparisons decide, and formulas
 /// are +inf or -inf. Sourced, for `--explain`: robustness with the sample that determines it.
 enum class Values : std::uint8_t { robustness, boolean, sourced };
@@ -359,13 +368,9 @@ struct Predicate {
     bool strict() const {
         return comparison == Comparison::less || comparison == Comparison::greater;
     }
-    /// Returns what it is called where its left side is `delta`: nothing between two thresholds, or
-    /// if delta is NaN.
+    /// Returns what it is called where its left side is `delta`.
     std::optional<bool> called(float delta) const {
-        if (std::isnan(delta)) return std::nullopt;
-        if (holds(comparison, delta, threshold.low())) return true;
-        if (!holds(comparison, delta, threshold.value)) return false;
-        return std::nullopt;
+        return check::called(comparison, delta, threshold.low(), threshold.value);
     }
     /// Returns its name, or the comparison, for messages.
     std::string shown() const { return name.empty() ? text + threshold.text : name; }
