@@ -113,6 +113,7 @@ duration
 bound
     : amount unit?      # FiniteBound
     | INF               # InfiniteBound
+    | calibrated        # CalibratedBound
     ;
 
 // ---- distances

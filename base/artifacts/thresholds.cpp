@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <type_traits>
 
 #include "artifacts/file.hpp"
 #include "data/files/hash.hpp"
@@ -35,10 +36,9 @@ void rate_member(Archive& archive, const std::string& key, auto& rate, bool requ
     }
 }
 
-/// Describes a threshold and its scores; one of two may be infinite.
+/// Describes the scores of a threshold or duration.
 template <class Archive>
-void side_members(Archive& archive, auto& side, const std::string& method, bool of_two) {
-    archive("epsilon", side.epsilon, artifacts::OrInfinite{of_two});
+void score_members(Archive& archive, auto& side, const std::string& method, bool of_two) {
     archive("n", side.n);
     archive("k", side.k);
     if constexpr (Archive::kReads) {
@@ -54,6 +54,29 @@ void side_members(Archive& archive, auto& side, const std::string& method, bool 
     archive("losses_before", side.losses_before, Presence::where_any);
 }
 
+/// Describes a threshold and its scores; one of two may be infinite.
+template <class Archive>
+void side_members(Archive& archive, auto& side, const std::string& method, bool of_two) {
+    archive("epsilon", side.epsilon, artifacts::OrInfinite{of_two});
+    score_members(archive, side, method, of_two);
+}
+
+/// Describes a duration and its scores.
+template <class Archive>
+void duration_members(Archive& archive, auto& entry) {
+    std::uint64_t steps = entry.duration.value_or(0);
+    archive("duration", steps);
+    if constexpr (Archive::kReads) {
+        entry.duration = steps;
+        for (const char* const other : {"epsilon", "beta", "inner", "against", "within"})
+            if (archive.find(other) != nullptr)
+                archive.refuse(other, "no such key beside 'duration'");
+    }
+    score_members(archive, entry, entry.method, false);
+    archive("reads", entry.reads, Presence::always);
+    archive("episodes", entry.episodes, Presence::always);
+}
+
 template <class Archive>
 void members(Archive& archive, auto& entry, bool of_monitor) {
     archive("method", entry.method,
@@ -61,6 +84,11 @@ void members(Archive& archive, auto& entry, bool of_monitor) {
     const bool rated = entry.method != "f1";
     rate_member(archive, "alpha", entry.alpha, rated,
                 rated ? "a number between 0 and 1" : "no such key for f1");
+    bool is_duration = entry.duration.has_value();
+    if constexpr (Archive::kReads) is_duration = archive.find("duration") != nullptr;
+    if (of_monitor && is_duration) return duration_members(archive, entry);
+    if constexpr (std::is_same_v<Archive, artifacts::Keys>)
+        if (of_monitor) archive("duration");
     rate_member(archive, "beta", entry.beta, false, "a number between 0 and 1");
     bool of_two = entry.inner.has_value();
     if constexpr (Archive::kReads) of_two = archive.find("inner") != nullptr;

@@ -60,6 +60,9 @@ struct Entry : Side {
     /// Against both: the threshold within which it is called true or satisfied.
     std::optional<Side> inner;
     std::vector<std::uint64_t> episodes;  ///< monitors: hashes of the calibration episodes
+    /// Monitors with a calibrated duration: that, in steps. Scores are durations too; there is no
+    /// epsilon.
+    std::optional<std::uint64_t> duration;
 };
 
 struct File {

@@ -93,10 +93,13 @@ struct Images {
 
 /// One bound of an interval, or the time in `held`, `hold`, `stale after` or `@`: steps, a
 /// duration, or inf.
+struct Calibrated;
+
 struct Bound {
     Number number;
     std::string unit;  ///< "", "us", "ms", "s", "min", kStepsUnit
     Span span;
+    Owned<Calibrated> calibrated{};  ///< in place of the number, where it is not null
 };
 
 /// z, P(POINT), [px, py], [z, P(z)], each as it is or was: POINT@3s.

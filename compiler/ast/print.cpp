@@ -70,6 +70,7 @@ std::string unit_word(const Number& number, const std::string& unit) {
 }
 
 std::string text_of(const Bound& bound) {
+    if (bound.calibrated) return text_of(*bound.calibrated);
     const bool apart =
         !bound.unit.empty() && (!bound.number.constant.empty() || bound.unit == kStepsUnit);
     return fmt::format("{}{}{}", bound.number.text, apart ? " " : "",

@@ -124,8 +124,9 @@ std::vector<Row> storage_rows(const plan::Plan& plan) {
 }
 
 bool is_calibrated(const plan::Plan& plan, bool but_adaptive) {
-    if (std::any_of(plan.monitors.begin(), plan.monitors.end(),
-                    [](const plan::Monitor& m) { return m.shifted; }))
+    if (std::any_of(plan.monitors.begin(), plan.monitors.end(), [&](const plan::Monitor& m) {
+            return m.shifted || plan.model->monitors[m.index].duration.has_value();
+        }))
         return true;
     return std::any_of(plan.predicates.begin(), plan.predicates.end(), [&](Index p) {
         const check::ThresholdOrigin origin = plan.model->predicates[p].threshold.origin;
@@ -140,7 +141,9 @@ bool counts_groups(const plan::Plan& plan) {
     return std::any_of(plan.predicates.begin(), plan.predicates.end(),
                        [&](Index p) { return plan.model->predicates[p].threshold.by_group; }) ||
            std::any_of(plan.monitors.begin(), plan.monitors.end(), [&](const plan::Monitor& m) {
-               return m.shifted && monitors[m.index].calibration->by_group;
+               const auto& duration = monitors[m.index].duration;
+               return (m.shifted && monitors[m.index].calibration->by_group) ||
+                      (duration && duration->threshold.by_group);
            });
 }
 
@@ -186,6 +189,8 @@ std::vector<Row> guarantee_rows(const plan::Plan& plan) {
         }
         if (monitor.shifted && claims.size() > 1)
             rows.push_back({"", check::of_shift(*calibration)});
+        if (const auto& duration = plan.model->monitors[monitor.index].duration)
+            rows.push_back({"", check::of_duration(*plan.model, *duration)});
     }
     return rows;
 }
@@ -233,8 +238,7 @@ void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan&
                      : ", per episode as recorded",
             by_group ? "an episode of a new group" : "a new episode");
         const auto [on_successes, on_both] = kinds_of_claims(plan);
-        if (on_successes || !on_both)
-            text += " The bound on successes excludes steps with missing samples.";
+        if (on_successes) text += " The bound on successes excludes steps with missing samples.";
         if (on_both)
             text +=
                 " A verdict is satisfied or violated wrongly if its truth is the opposite; one "

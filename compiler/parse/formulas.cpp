@@ -209,6 +209,11 @@ ast::Interval Builder::interval(Grammar::IntervalContext& context) const {
 }
 
 ast::Bound Builder::bound(Grammar::BoundContext& context) const {
+    if (auto* const open = dynamic_cast<Grammar::CalibratedBoundContext*>(&context))
+        return {{"0", span_of(context)},
+                "",
+                span_of(context),
+                std::make_unique<ast::Calibrated>(calibrated(*open->calibrated()))};
     ast::Bound result{number(*context.start), {}, span_of(context)};
     if (auto* const finite = dynamic_cast<Grammar::FiniteBoundContext*>(&context))
         if (finite->unit() != nullptr) result.unit = unit(*finite->unit());

@@ -224,7 +224,7 @@ void visit(check::Model&, check::Threshold& of, Changing& changing) {
 
 void visit(check::Model& model, check::Formula& of, Changing& changing) {
     changing.of("Formula");
-    auto& [kind, index, operands, low, high, span] = of;
+    auto& [kind, index, operands, low, high, time, span] = of;
     field(changing, "kind", kind);
     if (kind == check::Formula::Kind::predicate)
         field(changing, "index", Place{index, model.predicates.size()});
@@ -234,6 +234,7 @@ void visit(check::Model& model, check::Formula& of, Changing& changing) {
     field(changing, "operands", operands);
     field(changing, "low", low);
     field(changing, "high", high);
+    field(changing, "time", time);
     field(changing, "span", span);
 }
 
@@ -257,7 +258,9 @@ void visit(check::Model& model, check::Fitted& of, Changing& changing) {
 
 void visit(check::Model& model, check::Monitor& of, Changing& changing) {
     changing.of("Monitor");
-    auto& [name, formula, sliding, restarts, horizon, ahead, calibration, span, truth] = of;
+    // A duration is read in the formula: Formula.time.
+    auto& [name, formula, sliding, restarts, horizon, ahead, calibration, duration, span, truth] =
+        of;
     field(changing, "name", name);
     field(changing, "formula", Place{formula, model.formulas.size()});
     field(changing, "sliding", sliding);

@@ -32,11 +32,6 @@ Label recorded_in(char byte) {
     return static_cast<Label>(static_cast<unsigned>(byte) >> kRecorded);
 }
 
-void set(execute::Sample& sample, bool present, float value) {
-    sample.present = present;
-    sample.values.assign(present ? 1 : 0, value);
-}
-
 /// Returns the formula of the truth that judges the claim.
 Index true_formula(const check::Model& model, const Guaranteed& one) {
     const check::Monitor& monitor = model.monitors[one.monitor];
@@ -65,24 +60,35 @@ check::Model replayed(const check::Model& model, const std::vector<Guaranteed>& 
         }
         result.monitors.push_back(std::move(monitor));
     }
+    measure_by_inputs(result, watched.predicates);
     for (const Index p : watched.predicates) {
-        check::Input measured;
-        measured.name = "measured." + std::to_string(p);  // no name of a spec has a dot
         check::Predicate& predicate = result.predicates[p];
-        predicate.expression = {};
-        predicate.expression.kind = check::Expr::Kind::scalar;
-        predicate.expression.index = static_cast<Index>(result.inputs.size());
-        predicate.inputs = {predicate.expression.index};
-        if (predicate.threshold.origin != check::ThresholdOrigin::literal) {
-            predicate.threshold = {};
-            predicate.delta = predicate.robustness = check::kEverything;
-        }
-        result.inputs.push_back(std::move(measured));
+        if (predicate.threshold.origin == check::ThresholdOrigin::literal) continue;
+        predicate.threshold = {};
+        predicate.delta = predicate.robustness = check::kEverything;
     }
     return result;
 }
 
 }  // namespace
+
+void set(execute::Sample& sample, bool present, float value) {
+    sample.present = present;
+    sample.values.assign(present ? 1 : 0, value);
+}
+
+void measure_by_inputs(check::Model& model, const std::vector<Index>& predicates) {
+    for (const Index p : predicates) {
+        check::Input measured;
+        measured.name = "measured." + std::to_string(p);  // no name of a spec has a dot
+        check::Predicate& predicate = model.predicates[p];
+        predicate.expression = {};
+        predicate.expression.kind = check::Expr::Kind::scalar;
+        predicate.expression.index = static_cast<Index>(model.inputs.size());
+        predicate.inputs = {predicate.expression.index};
+        model.inputs.push_back(std::move(measured));
+    }
+}
 
 std::vector<Guaranteed> guaranteed(const check::Model& model, bool as_a_whole) {
     using Kind = check::Claim::Kind;
@@ -90,9 +96,12 @@ std::vector<Guaranteed> guaranteed(const check::Model& model, bool as_a_whole) {
     for (Index m = 0; m < model.monitors.size(); ++m) {
         const check::Monitor& monitor = model.monitors[m];
         if (monitor.calibration.has_value() != as_a_whole) continue;
+        if (monitor.duration && !monitor.duration->is_known) continue;  // it has no verdicts yet
         for (const check::Claim& claim : check::claims(model, monitor)) {
             const Kind kind = claim.kind;
-            if (kind == Kind::nothing || kind == Kind::exact || kind == Kind::wrong) continue;
+            if (kind == Kind::nothing || kind == Kind::exact || kind == Kind::wrong ||
+                kind == Kind::false_alarm)
+                continue;
             const bool of_alarms = kind == Kind::missed_alarm || kind == Kind::satisfied_wrongly ||
                                    kind == Kind::satisfied_share;
             const bool again = !found.empty() && found.back().monitor == m &&

@@ -31,6 +31,13 @@ struct Guaranteed {
     Open open = Open::satisfied;
 };
 
+/// Makes it a sample of one number, or a missing one.
+void set(execute::Sample& sample, bool present, float value);
+
+/// Appends an input for each of these predicates, in their order, which says whether it was
+/// measured, and makes it all that the predicate reads.
+void measure_by_inputs(check::Model& model, const std::vector<Index>& predicates);
+
 /// Returns the guarantees for the errors of monitors, of each formula or conjunct once: of those
 /// that are calibrated as a whole, or of the others.
 std::vector<Guaranteed> guaranteed(const check::Model& model, bool as_a_whole);

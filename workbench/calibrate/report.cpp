@@ -136,7 +136,6 @@ std::string monitor_report(const check::Model& model, const Others& others, bool
     std::string text = "\nguarantees\n";
     bool zero_aside = false;
     bool of_successes = false;
-    bool of_both = false;
     const bool with_cost = has_cost(others.guarantees) ||
                            std::any_of(model.predicates.begin(), model.predicates.end(),
                                        [](const check::Predicate& p) {
@@ -144,14 +143,13 @@ std::string monitor_report(const check::Model& model, const Others& others, bool
                                        });
     std::size_t next = 0;  // guarantees are in this order
     for (const check::Monitor& monitor : model.monitors) {
-        if (monitor.calibration) continue;  // its own calibration comes later
+        const bool is_later = monitor.duration && !monitor.duration->is_known;
+        if (monitor.calibration || is_later) continue;  // its own calibration comes later
         const std::vector<Claim> claims = check::claims(model, monitor);
         for (std::size_t c = 0; c < claims.size(); ++c) {
             const Claim& claim = claims[c];
             zero_aside |= claim.zero_aside;
             of_successes |= claim.kind == Claim::Kind::missed_success;
-            of_both |= claim.kind == Claim::Kind::satisfied_wrongly ||
-                       claim.kind == Claim::Kind::violated_wrongly;
             if (claim.part.empty())
                 text += fmt::format("    {:<{}}  {}\n", c == 0 ? monitor.name : "", widest,
                                     check::text(claim));
@@ -180,9 +178,7 @@ std::string monitor_report(const check::Model& model, const Others& others, bool
                      : "    Probabilities are over the demonstrations and the new episode "
                        "together, which "
                        "must be exchangeable, per episode as recorded.\n") +
-           (of_successes || !of_both
-                ? "    Bounds on successes exclude steps with missing samples.\n"
-                : "") +
+           (of_successes ? "    Bounds on successes exclude steps with missing samples.\n" : "") +
            note_on_other_errors(by_group, with_cost);
 }
 

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "calibrate/bounds.hpp"
+#include "calibrate/durations.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/conformal.hpp"
 #include "check/guarantees/guarantees.hpp"
@@ -84,6 +85,7 @@ public:
 private:
     diag::Result<MonitorEpisode> score(const std::string& path, const episodes::Wanted& wanted);
     void note(std::vector<Scores>& scores) const;
+    void add_to_durations(const episodes::Frames& frames);
 
     const check::Model& model_;
     const std::vector<Index>& monitors_;
@@ -95,6 +97,8 @@ private:
     episodes::Follower truths_;
     episodes::Wanted wanted_;
     episodes::Wanted divided_;  ///< the same with the labels that divide episodes
+    std::vector<DurationScorer> durations_;
+    std::vector<std::optional<plan::Value>> values_;  ///< of this step, per measured predicate
 };
 
 MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plans,
@@ -110,7 +114,9 @@ MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plan
       truths_(plans.truths, &plans.ground_truth),
       wanted_(episodes::wanted(model, {&plans.monitors, &plans.truths},
                                episodes::labelled_predicates(plans.ground_truth), leaks)),
-      divided_(wanted_) {
+      divided_(wanted_),
+      values_(model.predicates.size()) {
+    for (const Index monitor : timed_monitors(model)) durations_.emplace_back(model, monitor);
     wanted_.within = divided_.within = plans.within;
     divided_.predicates.clear();
     std::set_union(wanted_.predicates.begin(), wanted_.predicates.end(), watched.dividing.begin(),
@@ -119,7 +125,10 @@ MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plan
     // the range of a missing sample stays.
     execute::Evaluator& highest = highest_.evaluator();
     highest.after_pasts([&] { pasts_.step(highest); });
-    highest.replace_predicate_values([&](Index p) { return spread(model_, p, highest, pasts_); });
+    highest.replace_predicate_values([&](Index p) {
+        values_[p] = spread(model_, p, highest, pasts_);
+        return *values_[p];
+    });
 }
 
 diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path) {
@@ -136,21 +145,33 @@ diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path,
     std::string track;
     const bool is_divided = wanted.predicates.size() == divided_.predicates.size();
     pasts_.reset();
+    for (DurationScorer& duration : durations_) duration.reset();
     const auto rest = [&] {
         note(scores);
         return true;
     };
     const auto frame = [&] {
         add_step(watched_, highest_.evaluator(), *recording, is_divided, track);
+        add_to_durations(*recording);
         return rest();
     };
     const auto done = episodes::replay(*recording, {&truths_, &highest_}, frame, rest);
     if (!done) return done.failure();
-    MonitorEpisode result{
-        recording->recorded(), std::move(scores), {}, std::move(track), is_divided};
+    MonitorEpisode result{recording->recorded(), std::move(scores), {}, {},
+                          std::move(track),      is_divided};
+    for (DurationScorer& duration : durations_) {
+        const auto found = duration.score();
+        if (!found) return found.failure();
+        result.durations.push_back(*found);
+    }
     for (const Index predicate : wanted_.predicates)
         if (recording->from_array(predicate)) result.from_arrays.push_back(predicate);
     return result;
+}
+
+void MonitorScorer::add_to_durations(const episodes::Frames& frames) {
+    for (DurationScorer& duration : durations_) duration.add(values_, frames);
+    std::fill(values_.begin(), values_.end(), std::nullopt);
 }
 
 void MonitorScorer::note(std::vector<Scores>& scores) const {
@@ -172,11 +193,11 @@ void MonitorScorer::note(std::vector<Scores>& scores) const {
     }
 }
 
-thresholds::Entry entry_of_monitor(const check::Model& model, const check::Monitor& monitor,
-                                   const Sides& fitted, const episodes::Identities& episodes,
-                                   const check::Labelling& labelling) {
-    thresholds::Entry entry =
-        entry_of(*monitor.calibration, fitted, check::reads(model, monitor, labelling));
+/// Adds what the entry was computed from.
+thresholds::Entry complete(thresholds::Entry entry, const check::Model& model,
+                           const check::Monitor& monitor, const episodes::Identities& episodes,
+                           const check::Labelling& labelling) {
+    entry.reads = check::reads(model, monitor, labelling);
     episodes.for_each([&](std::size_t, const episodes::Recorded& episode) {
         entry.episodes.push_back(episodes::hash_of(episode));
     });
@@ -255,9 +276,28 @@ std::vector<Index> find_labelled(const check::Model& model, const std::vector<In
 std::vector<Index> calibrated_monitors(const check::Model& model) {
     std::vector<Index> found;
     for (Index m = 0; m < model.monitors.size(); ++m)
-        if (model.monitors[m].calibration) found.push_back(m);
+        if (model.monitors[m].calibration || model.monitors[m].duration) found.push_back(m);
     return found;
 }
+
+namespace {
+
+std::vector<Index> shifted_monitors(const check::Model& model) {
+    std::vector<Index> found = calibrated_monitors(model);
+    std::erase_if(found, [&](Index m) { return !model.monitors[m].calibration; });
+    return found;
+}
+
+/// Returns the predicates whose targets no frame may equal.
+std::vector<Index> scored_predicates(const check::Model& model, std::vector<Index> labelled) {
+    std::set<Index> found(labelled.begin(), labelled.end());
+    for (const Index m : timed_monitors(model))
+        for (const Index p : check::predicates_of(model, model.monitors[m].formula))
+            found.insert(p);
+    return {found.begin(), found.end()};
+}
+
+}  // namespace
 
 check::Model unshifted(check::Model model) {
     for (check::Monitor& monitor : model.monitors) monitor.calibration.reset();
@@ -266,7 +306,8 @@ check::Model unshifted(check::Model model) {
 
 std::optional<Calibration> calibrate_monitors(const check::Model& model, thresholds::File before,
                                               const Request& request, diag::Sink& sink) {
-    const std::vector<Index> monitors = calibrated_monitors(model);
+    const std::vector<Index> monitors = shifted_monitors(model);
+    const std::vector<Index> timed = timed_monitors(model);
     if (!episodes::can_be_dealt(request.episodes, request.reading, request.folds, model, sink))
         return std::nullopt;
     const auto in_first = episodes::labelled_in_first(model, request, sink);
@@ -282,10 +323,11 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     if (!compiled || !truths || sink.has_errors()) return std::nullopt;
     const MonitorPlans plans{compiled->plan, truths->plan, truth, negations, within};
 
-    const episodes::Leaks leaks(model, labelled);
+    const episodes::Leaks leaks(model, scored_predicates(model, labelled));
     episodes::Identities recorded;
     episodes::Groups groups;
     std::vector<Evidence> evidence(monitors.size());
+    std::vector<Times> times(timed.size());
     const std::vector<Guaranteed> guarantees = guaranteed(model, true);
     const Watched watched = watched_by(model, guarantees, labelled, *in_first);
     Tracks tracks;
@@ -306,6 +348,8 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
             const std::uint32_t group = groups.add(episode.group);
             for (std::size_t i = 0; i < monitors.size(); ++i)
                 evidence[i].add(episode.scores[i], group);
+            for (std::size_t i = 0; i < timed.size(); ++i)
+                times[i].add(episode.durations[i], group);
             tracks.add(episode.track);
             is_divided &= episode.is_divided;
         });
@@ -331,14 +375,25 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         const auto sides = fit_all(model, subjects.back(), sink);
         if (!sides) continue;
         warn_of_large_alpha(predicates[i], sink);
-        result.file.monitors[monitor.name] =
-            entry_of_monitor(model, monitor, *sides, recorded, labelling);
+        result.file.monitors[monitor.name] = complete(entry_of(*monitor.calibration, *sides, {}),
+                                                      model, monitor, recorded, labelling);
         check::Threshold& shift = *shifted.monitors[monitors[i]].calibration;
         set(shift, predicates[i], *sides);
         shift.by_group = groups.are_named();
         reports.push_back(monitor_report(shifted, shifted.monitors[monitors[i]], subjects.back(),
                                          *sides, groups));
         out.push_back(left_out(predicates[i], evidence[i], recorded, groups));
+    }
+    std::string of_durations;
+    for (std::size_t i = 0; i < timed.size(); ++i) {
+        check::Monitor& monitor = shifted.monitors[timed[i]];
+        times[i].by_group = groups.are_named();
+        auto entry = fit_duration(monitor, times[i], sink);
+        if (!entry) continue;
+        set_calibrated(shifted, monitor, *entry, groups.are_named());
+        of_durations += describe_duration(shifted, monitor, *entry);
+        result.file.monitors[monitor.name] =
+            complete(std::move(*entry), model, model.monitors[timed[i]], recorded, labelling);
     }
     if (sink.has_errors()) return std::nullopt;
     const auto others = other_errors_of_shifts(shifted, guarantees, out,
@@ -349,8 +404,11 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         result.report += reports[i] + describe(others[i], guarantees[i], "    ");
         warn_of_empty(model, guarantees[i], others[i], sink);
     }
-    result.report += "\n" + note_on_other_errors(groups.are_named(), has_cost(guarantees));
-    result.report += report_of_folds(subjects, recorded, groups, request.folds);
+    if (!monitors.empty())
+        result.report += "\n" + note_on_other_errors(groups.are_named(), has_cost(guarantees));
+    result.report += of_durations;
+    if (!monitors.empty())
+        result.report += report_of_folds(subjects, recorded, groups, request.folds);
     thresholds::drop_unused_recordings(result.file);
     for (const thresholds::Allowance& used : result.file.allowances)
         result.report += fmt::format("\n{}\n", thresholds::text(used));

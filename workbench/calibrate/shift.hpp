@@ -18,7 +18,7 @@
 
 namespace etlc::calibrate {
 
-/// Returns the monitors that are calibrated as a whole.
+/// Returns the monitors that are calibrated: as a whole, or with a duration.
 std::vector<Index> calibrated_monitors(const check::Model& model);
 
 /// Returns the model without shifts, from which its plan is made.
@@ -34,7 +34,8 @@ struct MonitorPlans {
 };
 
 struct MonitorEpisode : episodes::Recorded {
-    std::vector<Scores> scores;      ///< per calibrated monitor
+    std::vector<Scores> scores;      ///< per monitor that is calibrated as a whole
+    std::vector<double> durations;   ///< per monitor with a calibrated duration: DurationScorer
     std::vector<Index> from_arrays;  ///< predicates with an array of labels
     std::string track;               ///< of what the monitors see
     bool is_divided = true;          ///< it has all labels that divide it into phases
@@ -42,14 +43,14 @@ struct MonitorEpisode : episodes::Recorded {
 
 template <class Archive>
 void fields(Archive& archive, MonitorEpisode& episode) {
-    archive(static_cast<episodes::Recorded&>(episode), episode.scores, episode.from_arrays,
-            episode.track, episode.is_divided);
+    archive(static_cast<episodes::Recorded&>(episode), episode.scores, episode.durations,
+            episode.from_arrays, episode.track, episode.is_divided);
 }
 
-/// Adds the shifts of the calibrated monitors to `before`, the file with the thresholds of the
-/// predicates, which is empty if all are literal. Labels are read for the predicates in these
-/// monitors that are not their own truth, and for those with an array of labels in the first
-/// episode. Returns nothing after an error, which it reports.
+/// Adds the shifts and durations of the calibrated monitors to `before`, the file with the
+/// thresholds of the predicates, which is empty if all are literal. Labels are read for the
+/// predicates in these monitors that are not their own truth, and for those with an array of labels
+/// in the first episode. Returns nothing after an error, which it reports.
 std::optional<Calibration> calibrate_monitors(const check::Model& model, thresholds::File before,
                                               const Request& request, diag::Sink& sink);
 

@@ -61,8 +61,12 @@ std::vector<std::pair<std::string, float>> calibrated_in(const check::Model& mod
     for (const check::Predicate& predicate : model.predicates)
         if (predicate.threshold.origin != check::ThresholdOrigin::literal)
             add(predicate.name, predicate.threshold);
-    for (const check::Monitor& monitor : model.monitors)
+    for (const check::Monitor& monitor : model.monitors) {
         if (monitor.calibration) add(monitor.name, *monitor.calibration);
+        if (monitor.duration)
+            thresholds.emplace_back(monitor.name + ", steps",
+                                    static_cast<float>(monitor.duration->steps));
+    }
     return thresholds;
 }
 

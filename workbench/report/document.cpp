@@ -201,17 +201,32 @@ Json predicate_json(const Material& material, const Scene& scene, Index index) {
             {"distribution", distribution_of(material, predicate)}};
 }
 
-Json monitor_json(const check::Model& model, const plan::Monitor& monitor) {
+/// Returns a card like that of a predicate for a calibrated duration; otherwise null.
+Json duration_json(const Material& material, const check::Monitor& monitor) {
+    if (!monitor.duration || !material.thresholds) return nullptr;
+    const auto found = material.thresholds->monitors.find(monitor.name);
+    if (found == material.thresholds->monitors.end() || !found->second.duration) return nullptr;
+    const check::Duration& duration = *monitor.duration;
+    return {{"shown", monitor.name},
+            {"expression", "duration in steps"},
+            {"thresholds", Json::array({duration.steps})},
+            {"scores", Json::array({scores_of(found->second, duration.longer_is_truer)})}};
+}
+
+Json monitor_json(const Material& material, const check::Model& model,
+                  const plan::Monitor& monitor) {
     Json guarantees = Json::array();
     for (const check::Claim& claim : check::claims(model, model.monitors[monitor.index]))
         guarantees.push_back((claim.part.empty() ? "" : "of its part " + claim.part + ": ") +
                              check::text(claim));
-    const auto& shift = model.monitors[monitor.index].calibration;
-    return {{"name", monitor.name},
-            {"formula", check::shown(model, model.monitors[monitor.index].formula)},
-            {"sliding", monitor.sliding},
-            {"horizon", monitor.horizon},
-            {"shift", shift ? check::of_shift(*shift) : ""},
+    const check::Monitor& declared = model.monitors[monitor.index];
+    const std::string calibrated = declared.calibration ? check::of_shift(*declared.calibration)
+                                   : declared.duration
+                                       ? check::of_duration(model, *declared.duration)
+                                       : "";
+    return {{"name", monitor.name},       {"formula", check::shown(model, declared.formula)},
+            {"sliding", monitor.sliding}, {"horizon", monitor.horizon},
+            {"calibrated", calibrated},   {"duration", duration_json(material, declared)},
             {"guarantees", guarantees}};
 }
 
@@ -346,7 +361,7 @@ std::string head(const Material& material, const Scene& scene, const std::string
     Json rest;
     rest["monitors"] = Json::array();
     for (const plan::Monitor& monitor : scene.plan.monitors)
-        rest["monitors"].push_back(monitor_json(model, monitor));
+        rest["monitors"].push_back(monitor_json(material, model, monitor));
     rest["planes"] = Json::array();
     for (const Plane& plane : scene.planes) rest["planes"].push_back(plane_json(model, plane));
     rest["target_pictures"] = Json::object();

@@ -87,6 +87,9 @@ struct Context {
     std::unordered_map<std::string, Index> past_of_text{};
     std::unordered_map<std::string, Index> predicate_of_text{};
 
+    /// The duration of the monitor whose formula is being checked; null elsewhere.
+    std::optional<Duration>* duration = nullptr;
+
     /// The point that a target is declared or fitted `of`, without its delay, for those that have
     /// one.
     std::map<Index, Index> point_of_target{};

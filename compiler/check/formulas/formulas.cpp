@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "check/context/context.hpp"
+#include "check/formulas/durations.hpp"
 #include "check/formulas/horizons.hpp"
 #include "check/predicates/predicates.hpp"
 #include "check/time/time.hpp"
@@ -78,6 +79,7 @@ private:
     bool set_interval(Formula& formula, const ast::Formula& written) {
         if (looks_one_step_away(formula.kind)) formula.low = formula.high = 1;
         if (!written.interval) return true;
+        if (written.interval->high.calibrated) return set_duration(formula, *written.interval);
         if (formula.kind == Kind::held &&
             !is_finite_duration(c_, written.interval->high, "a formula is held for a finite time",
                                 "for what has held since the first step, write 'H f'"))
@@ -86,6 +88,16 @@ private:
         if (!steps) return false;
         formula.low = steps->low;
         formula.high = steps->high;
+        return true;
+    }
+
+    /// The interval ends with the calibrated duration of the monitor.
+    bool set_duration(Formula& formula, const ast::Interval& written) {
+        const bool has_low = formula.kind != Kind::held;
+        const auto low = has_low ? lower_steps(c_, written.low) : std::optional(0U);
+        if (!low || !add_duration(c_, *written.high.calibrated, *low, kMaxBound)) return false;
+        formula.low = formula.high = *low;
+        formula.time = Formula::Time::open;
         return true;
     }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "check/context/context.hpp"
+#include "check/formulas/durations.hpp"
 #include "check/formulas/formulas.hpp"
 #include "check/formulas/horizons.hpp"
 #include "check/guarantees/calibrated.hpp"
@@ -113,8 +114,9 @@ private:
     std::vector<bool> reported_past_;
 };
 
-/// The guarantee of a shift holds for the thresholds that it was fitted with.
-void refuse_moving_thresholds(Context& c, const Monitor& monitor) {
+/// The guarantee of a shift or duration holds for the thresholds that it was fitted with.
+void refuse_moving_thresholds(Context& c, const Monitor& monitor, Span at_fault,
+                              std::string_view what) {
     const auto parts = parts_of(c.model, monitor.formula);
     const auto at = std::find_if(parts.begin(), parts.end(), [&](Index part) {
         const Formula& formula = c.model.formulas[part];
@@ -122,10 +124,9 @@ void refuse_moving_thresholds(Context& c, const Monitor& monitor) {
                c.model.predicates[formula.index].threshold.adaptation.has_value();
     });
     if (at == parts.end()) return;
-    c.report(Code::calibration_not_available, monitor.calibration->span,
-             fmt::format("'{}' is calibrated as a whole, which needs fixed thresholds; that of "
-                         "'{}' is adaptive",
-                         monitor.name, c.model.predicates[c.model.formulas[*at].index].name))
+    c.report(Code::calibration_not_available, at_fault,
+             fmt::format("'{}' {}, which needs fixed thresholds; that of '{}' is adaptive",
+                         monitor.name, what, c.model.predicates[c.model.formulas[*at].index].name))
         .note(c.model.formulas[*at].span, "it is used here");
 }
 
@@ -170,7 +171,9 @@ void check_monitors(Context& c) {
         monitor.span = declaration.span;
         monitor.sliding = declaration.kind == ast::Monitor::Kind::sliding;
         monitor.restarts = restarts(declaration.kind);
+        c.duration = &monitor.duration;
         monitor.formula = check_formula(c, *declaration.formula);
+        c.duration = nullptr;
         if (declaration.calibrated)
             monitor.calibration = check_monitor_calibrated(c, *declaration.calibrated);
         if (monitor.formula == kNone) c.scope.entity(NameKind::monitor, index).broken = true;
@@ -187,8 +190,13 @@ void check_monitors(Context& c) {
             check.sliding(monitor, name);
         else
             check.prefix(monitor, name);
+        if (monitor.duration) {
+            check_duration(c, monitor);
+            refuse_moving_thresholds(c, monitor, monitor.duration->threshold.span,
+                                     "has a calibrated duration");
+        }
         if (!monitor.calibration || moves_with_its_shift(c, monitor)) continue;
-        refuse_moving_thresholds(c, monitor);
+        refuse_moving_thresholds(c, monitor, monitor.calibration->span, "is calibrated as a whole");
         refuse_comparisons_without_truth(c, monitor);
     }
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "check/context/context.hpp"
+#include "check/formulas/durations.hpp"
 #include "check/formulas/formulas.hpp"
 #include "check/formulas/horizons.hpp"
 #include "check/guarantees/guarantees.hpp"
@@ -313,12 +314,14 @@ public:
         if (!steps || !number || counted_ == kNone) return kNone;
         steps_ = *steps;
         most_ = most_in(*steps);
+        if (count_.past->time.calibrated && !add_time(*number)) return kNone;
         return compared(*number);
     }
 
 private:
     std::optional<std::uint32_t> window() {
         const ast::Bound& time = count_.past->time;
+        if (time.calibrated) return kMaxPast;
         if (!is_finite_duration(c_, time, "a count is over a finite time")) return std::nullopt;
         const auto steps = bound_steps(c_, time);
         if (!steps) return std::nullopt;
@@ -329,6 +332,16 @@ private:
         return c_.no_value(Code::bound_too_large, time.span,
                            fmt::format("{} steps; a count looks back {} steps at most", *steps,
                                        std::uint32_t{kMaxPast}));
+    }
+
+    /// Notes that the time is calibrated. The shortest allows the number that is compared with.
+    bool add_time(std::uint32_t number) {
+        const bool is_above =
+            comparison() == Comparison::greater || comparison() == Comparison::less_equal;
+        const std::uint32_t times = std::max(number + (is_above ? 1U : 0U), 1U);
+        time_ = Formula::Time::open;
+        steps_ = 2 * times - 1;
+        return add_duration(c_, *count_.past->time.calibrated, steps_, kMaxPast);
     }
 
     /// Returns the number on the other side, at most `most`.
@@ -375,8 +388,11 @@ private:
                 fmt::format("a count compares with at most {}; found {}", kMaxCount, other_.text));
             return kNone;
         }
-        return add(
-            {.kind = Kind::count, .index = number, .operands = {counted_}, .high = steps_ - 1});
+        return add({.kind = Kind::count,
+                    .index = number,
+                    .operands = {counted_},
+                    .high = steps_ - 1,
+                    .time = time_});
     }
 
     Index exactly(std::uint32_t number) {
@@ -406,6 +422,7 @@ private:
     const ast::Expr& other_;
     Index counted_ = kNone;
     std::uint32_t steps_ = 0;
+    Formula::Time time_ = Formula::Time::written;
     std::uint32_t most_ = 0;
 };
 

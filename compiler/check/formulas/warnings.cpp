@@ -112,6 +112,8 @@ std::vector<Index> structures(const Model& model) {
     std::vector<Index> key;
     for (const Formula& formula : model.formulas) {
         key = {static_cast<Index>(formula.kind), formula.index, formula.low, formula.high};
+        if (formula.time == Formula::Time::open)
+            key.push_back(static_cast<Index>(result.size()));  // differs from all others
         const auto first = static_cast<std::ptrdiff_t>(key.size());
         for (const Index operand : formula.operands) key.push_back(result[operand]);
         const bool commutes = formula.kind == Kind::conjunction ||

@@ -341,6 +341,17 @@ std::optional<Threshold> check_monitor_calibrated(Context& c, const ast::Calibra
                     kMonitorForm));
 }
 
+std::optional<Threshold> check_duration_calibrated(Context& c, const ast::Calibrated& written) {
+    static const Method conformal{"conformal", ThresholdOrigin::conformal, {"alpha"}};
+    if (written.method.text == conformal.name)
+        return uncalibrated(c, written, conformal, {Against::misses});
+    c.report(Code::unknown_method, written.method.span,
+             fmt::format("'{}' is no method for a duration; expected calibrated(conformal, alpha = "
+                         "0.1)",
+                         written.method.text));
+    return std::nullopt;
+}
+
 std::optional<Threshold> check_calibrated(Context& c, const ast::Calibrated& written) {
     const Method* method = find_method(c, written.method);
     if (method == nullptr) return std::nullopt;

@@ -16,6 +16,10 @@ std::optional<Threshold> check_calibrated(Context& context, const ast::Calibrate
 /// Checks the calibration of a whole monitor, which says against which error it is.
 std::optional<Threshold> check_monitor_calibrated(Context& context, const ast::Calibrated& written);
 
+/// Checks the calibration of a duration, which is conformal.
+std::optional<Threshold> check_duration_calibrated(Context& context,
+                                                   const ast::Calibrated& written);
+
 /// Says what to write in place of an alpha or beta above 0.5.
 std::string large_alpha_note(const std::string& alpha, std::string_view key = "alpha");
 

@@ -253,6 +253,15 @@ Found threshold(const Checked& of) {
                          true};
 }
 
+Found duration_of(const Entry& entry, const std::string& place, bool longer_is_truer) {
+    const std::uint64_t at = at_rank(entry.k, entry.n, longer_is_truer);
+    const double expected = entry.scores[at];
+    if (static_cast<double>(*entry.duration) == expected) return std::nullopt;
+    return Contradiction{
+        fmt::format("'{0}.duration' is {1}, expected {2}, which is '{0}.scores[{3}]'", place,
+                    *entry.duration, expected, at)};
+}
+
 /// Returns what `against` says in the file.
 Against against_of(const Entry& entry) {
     for (const Against against :
@@ -275,6 +284,7 @@ Found contradiction(const Entry& entry, const std::string& place, bool upper_bou
     for (const Checked& side : sides)
         if (Found found = counts(side)) return found;
     if (Found found = episodes_of(entry, place, episodes, groups)) return found;
+    if (entry.duration) return duration_of(entry, place, upper_bound);
     for (const Checked& side : sides)
         if (Found found = threshold(side)) return found;
     if (!of_two || !std::isinf(entry.epsilon) || !std::isinf(entry.inner->epsilon))

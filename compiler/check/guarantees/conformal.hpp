@@ -88,7 +88,8 @@ struct Contradiction {
 };
 
 /// `place` is the key of the entry, "predicates.at_a". `upper_bound`: of a predicate with <= or <,
-/// not of a monitor. `episodes` were used for calibration.
+/// and of a duration that makes its monitor truer, not of a monitor's shift. `episodes` were used
+/// for calibration.
 std::optional<Contradiction> contradiction(const thresholds::Entry& entry, const std::string& place,
                                            bool upper_bound,
                                            const std::vector<std::uint64_t>& episodes,

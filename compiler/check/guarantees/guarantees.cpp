@@ -46,9 +46,10 @@ std::vector<Literal> operands_of(const Model& model, Literal literal) {
     return result;
 }
 
-std::map<Index, Polarity> predicates_in(const Model& model, Literal root) {
+/// Visits each part of a formula once for each polarity.
+template <class Visit>
+void each_literal(const Model& model, Literal root, const Visit& visit) {
     std::vector<Polarity> visited(model.formulas.size());
-    std::map<Index, Polarity> found;
     std::vector<Literal> pending{root};
     while (!pending.empty()) {
         const Literal at = pending.back();
@@ -56,14 +57,20 @@ std::map<Index, Polarity> predicates_in(const Model& model, Literal root) {
         bool& seen = at.negated ? visited[at.formula].negative : visited[at.formula].positive;
         if (seen) continue;
         seen = true;
-        const Formula& formula = model.formulas[at.formula];
-        if (formula.kind == Kind::predicate) {
-            Polarity& polarity = found[formula.index];
-            (at.negated ? polarity.negative : polarity.positive) = true;
-        }
+        visit(at);
         const std::vector<Literal> operands = operands_of(model, at);
         pending.insert(pending.end(), operands.begin(), operands.end());
     }
+}
+
+std::map<Index, Polarity> predicates_in(const Model& model, Literal root) {
+    std::map<Index, Polarity> found;
+    each_literal(model, root, [&](Literal at) {
+        const Formula& formula = model.formulas[at.formula];
+        if (formula.kind != Kind::predicate) return;
+        Polarity& polarity = found[formula.index];
+        (at.negated ? polarity.negative : polarity.positive) = true;
+    });
     return found;
 }
 
@@ -334,8 +341,15 @@ bool is_own_truth(const Model& model, Index predicate) {
            !reads_embedding(model, p);
 }
 
-std::vector<Claim> claims(const Model& model, const Monitor& monitor, Values values) {
-    if (monitor.calibration) return claims_as_a_whole(monitor);
+void for_each_literal(const Model& model, Index formula,
+                      const std::function<void(Index part, bool negated)>& visit) {
+    each_literal(model, {formula, false}, [&](Literal at) { visit(at.formula, at.negated); });
+}
+
+namespace {
+
+/// Returns what the predicates guarantee, for the whole formula or for each conjunct.
+std::vector<Claim> claims_of_predicates(const Model& model, const Monitor& monitor, Values values) {
     std::vector<Claim> result = claims_about(model, {monitor.formula, false}, values);
     if (result.front().kind != Claim::Kind::nothing) return result;
     const std::vector<Literal> conjuncts = conjuncts_of(model, {monitor.formula, false});
@@ -349,6 +363,25 @@ std::vector<Claim> claims(const Model& model, const Monitor& monitor, Values val
     return result;
 }
 
+}  // namespace
+
+std::vector<Claim> claims(const Model& model, const Monitor& monitor, Values values) {
+    if (monitor.calibration) return claims_as_a_whole(monitor);
+    std::vector<Claim> result = claims_of_predicates(model, monitor, values);
+    if (!monitor.duration) return result;
+    std::erase_if(result, [](const Claim& claim) {
+        return claim.kind == Claim::Kind::nothing || claim.kind == Claim::Kind::exact;
+    });
+    const Threshold& threshold = monitor.duration->threshold;
+    Claim alarms;
+    alarms.kind = Claim::Kind::false_alarm;
+    alarms.formula = monitor.formula;
+    alarms.bound = Decimal::parse(threshold.alpha).text();
+    count_groups(threshold, alarms);
+    result.insert(result.begin(), std::move(alarms));
+    return result;
+}
+
 namespace {
 
 /// Returns what some verdict does with at most that probability.
@@ -356,6 +389,7 @@ std::string_view what(Claim::Kind kind) {
     switch (kind) {
         case Claim::Kind::missed_success: return "misses a success";
         case Claim::Kind::missed_alarm: return "misses an alarm";
+        case Claim::Kind::false_alarm: return "is violated for good";
         case Claim::Kind::satisfied_wrongly: return "is satisfied wrongly";
         case Claim::Kind::violated_wrongly: return "is violated wrongly";
         default: return "is wrong";
@@ -494,6 +528,25 @@ std::string of_shift(const Threshold& shift) {
     const std::string text = parts(shift, "satisfied", "violated", false);
     if (shift.inner) return "rho: " + text;
     return fmt::format("rho minus {}{}{}", shift.value, text.empty() ? "" : ", ", text);
+}
+
+namespace {
+
+/// Returns "54 steps (1.8 s)"; without seconds if the spec has no rate.
+std::string steps_text(const Model& model, std::uint32_t steps) {
+    const std::string text = diag::counted(steps, "step");
+    if (!(model.step_seconds > 0)) return text;
+    return fmt::format("{} ({:.4g} s)", text, steps * model.step_seconds);
+}
+
+}  // namespace
+
+std::string of_duration(const Model& model, const Duration& duration) {
+    const Threshold& threshold = duration.threshold;
+    return fmt::format("within {}, from {}; {}", steps_text(model, duration.steps),
+                       threshold.by_group ? diag::counted(threshold.n, "group")
+                                          : diag::counted(threshold.n, "demonstration"),
+                       score(threshold, false));
 }
 
 std::string miss_bound(const Predicate& predicate) {

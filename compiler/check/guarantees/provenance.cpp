@@ -66,12 +66,13 @@ public:
 
     void add_monitor(const Monitor& monitor) {
         // The entry has method, alpha and `against`; the shift is the result.
-        const auto& [name, formula, sliding, restarts, horizon, ahead, calibration, span, truth] =
-            monitor;
+        const auto& [name, formula, sliding, restarts, horizon, ahead, calibration, duration, span,
+                     truth] = monitor;
         add("monitor " + name,
             fmt::format("{}{}", word(restarts),
                         sliding ? fmt::format("sliding, horizon {}", horizon) : "monitor"));
         add("formula " + name, text_of(formula, Atoms::compared));
+        if (duration) return;  // it reads no truth
         const std::string over_truths = text_of(monitor.true_formula(), Atoms::truths);
         if (truth != kNone) add("truth of the formula " + name, over_truths);
     }
@@ -221,7 +222,7 @@ private:
     std::string text_of(Index root, Atoms atoms) {
         const bool names_lets = !lets_are_written_out(model_, root);
         for (const Index i : parts_of(model_, root)) {
-            const auto& [kind, index, operands, low, high, span] = model_.formulas[i];
+            const auto& [kind, index, operands, low, high, time, span] = model_.formulas[i];
             if (kind == Formula::Kind::boolean_input) add_input(index);
             if (kind == Formula::Kind::predicate)
                 atoms == Atoms::compared ? add_predicate(index) : add_truth(index);

@@ -23,12 +23,17 @@ void refuse_what_cannot_change(Context& c) {
             refuse(c, predicate.threshold.span,
                    fmt::format("'{}' has an adaptive threshold", predicate.name),
                    "what it has learnt is about the distance to the original targets");
-    for (const Monitor& monitor : c.model.monitors)
+    for (const Monitor& monitor : c.model.monitors) {
+        if (monitor.duration)
+            refuse(c, monitor.duration->threshold.span,
+                   fmt::format("'{}' has a calibrated duration", monitor.name),
+                   "it is valid only for the targets and thresholds that it was calibrated with");
         if (monitor.calibration)
             refuse(c, monitor.calibration->span,
                    fmt::format("'{}' is calibrated as a whole", monitor.name),
                    "its shift is valid only for episodes with one set of parameters from beginning "
                    "to end");
+    }
 }
 
 /// Returns the names of fields, and of parts of function names, beside predicates.

@@ -51,8 +51,7 @@ std::optional<thresholds::File> read_thresholds(Context& c, const std::string& n
     if (is_default && !std::filesystem::exists(path, error)) {
         report_missing(
             c, Code::thresholds_missing, first.span,
-            fmt::format("'{}' has a calibrated threshold, but there is no thresholds file {}", name,
-                        path))
+            fmt::format("'{}' is calibrated, but there is no thresholds file {}", name, path))
             .note(
                 "'etlc calibrate' makes one from labelled demonstrations; --thresholds selects "
                 "another");
@@ -209,8 +208,35 @@ std::optional<std::uint64_t> shared_episode(const std::vector<std::uint64_t>& ep
     return found != episodes.end() ? std::optional(*found) : std::nullopt;
 }
 
-void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
-    Threshold& shift = *monitor.calibration;
+Threshold& calibration_of(Monitor& monitor) {
+    return monitor.duration ? monitor.duration->threshold : *monitor.calibration;
+}
+
+/// Sets the duration in the formula; reports an inconsistent entry.
+void take_duration(Context& c, Monitor& monitor, const thresholds::Entry& entry,
+                   const std::string& place, const thresholds::File& file) {
+    Duration& duration = *monitor.duration;
+    const std::size_t errors = c.sink.errors();
+    take(c, entry, place, duration.threshold, duration.longer_is_truer, file, entry.episodes);
+    if (c.sink.errors() > errors) return;
+    if (*entry.duration < duration.least || *entry.duration > duration.greatest) {
+        c.sink
+            .report(data::in_file(
+                {Code::contradictory_thresholds,
+                 fmt::format("'{}.duration' is {}, expected a number of steps from {} to {}", place,
+                             *entry.duration, duration.least, duration.greatest)},
+                file.path))
+            .note(duration.threshold.span, "it is needed here");
+        return;
+    }
+    duration.steps = static_cast<std::uint32_t>(*entry.duration);
+    duration.is_known = true;
+    set_duration(c.model, monitor, duration.steps);
+}
+
+/// Sets the shift or the duration of a monitor.
+void take_of_monitor(Context& c, Monitor& monitor, const thresholds::File& file) {
+    Threshold& shift = calibration_of(monitor);
     const thresholds::Entry* entry =
         find_entry(c, monitor.name, shift, file.path, file.monitors, reads(c.model, monitor));
     if (entry == nullptr) return;
@@ -230,13 +256,17 @@ void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
                 "were calibrated on");
         return;
     }
-    take(c, *entry, place, shift, false, file, entry->episodes);
+    if (monitor.duration)
+        take_duration(c, monitor, *entry, place, file);
+    else
+        take(c, *entry, place, shift, false, file, entry->episodes);
 }
 
 std::vector<Monitor*> calibrated_monitors(Context& c) {
     std::vector<Monitor*> found;
     for (Monitor& monitor : c.model.monitors)
-        if (monitor.calibration && monitor.formula != kNone) found.push_back(&monitor);
+        if ((monitor.calibration || monitor.duration) && monitor.formula != kNone)
+            found.push_back(&monitor);
     return found;
 }
 
@@ -256,7 +286,7 @@ void check_thresholds(Context& c) {
         c.options.allow_uncalibrated_monitors ? std::vector<Monitor*>{} : calibrated_monitors(c);
     if (predicates.empty() && monitors.empty()) return;
     const auto file = predicates.empty()
-                          ? read_thresholds(c, monitors[0]->name, monitors[0]->calibration.value())
+                          ? read_thresholds(c, monitors[0]->name, calibration_of(*monitors[0]))
                           : read_thresholds(c, c.model.predicates[predicates[0]].name,
                                             c.model.predicates[predicates[0]].threshold);
     if (!file) return;
@@ -264,8 +294,8 @@ void check_thresholds(Context& c) {
         c.model.reservations.push_back(thresholds::text(allowance));
     const std::size_t errors = c.sink.errors();
     for (const Index index : predicates) take_threshold(c, index, *file);
-    if (c.sink.errors() > errors) return;  // shifts depend on the thresholds of predicates
-    for (Monitor* monitor : monitors) take_shift(c, *monitor, *file);
+    if (c.sink.errors() > errors) return;  // those of monitors depend on these
+    for (Monitor* monitor : monitors) take_of_monitor(c, *monitor, *file);
 }
 
 }  // namespace etlc::check

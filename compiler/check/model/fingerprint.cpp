@@ -30,7 +30,8 @@ std::string data_lines(const Model& model) {
 }
 
 /// Returns the name of each named predicate and calibrated monitor, with the shortest decimal that
-/// reads back to its float32 threshold, and of a second one, one per line. Unnamed thresholds are
+/// reads back to its float32 threshold, and of a second one, one per line; of a monitor with a
+/// calibrated duration that in steps. Unnamed thresholds are
 /// part of the spec.
 std::string threshold_lines(const Model& model) {
     std::string lines;
@@ -40,8 +41,11 @@ std::string threshold_lines(const Model& model) {
     };
     for (const Predicate& predicate : model.predicates)
         if (!predicate.name.empty()) add(predicate.name, predicate.threshold);
-    for (const Monitor& monitor : model.monitors)
+    for (const Monitor& monitor : model.monitors) {
         if (monitor.calibration) add(monitor.name, *monitor.calibration);
+        if (monitor.duration)
+            lines += fmt::format("{} {}\n", monitor.name, monitor.duration->steps);
+    }
     return lines;
 }
 

@@ -406,6 +406,10 @@ struct Formula {
     std::vector<Index> operands;  ///< two or more for conjunction and disjunction
     std::uint32_t low = 0;        ///< interval in steps; [1, 1] for next, previous, rise, fall
     std::uint32_t high = kUnbounded;
+    /// Whether `high` is written in the spec, or the calibrated duration of its monitor; until that
+    /// is known, a short one.
+    enum class Time : std::uint8_t { written, open, calibrated };
+    Time time = Time::written;
     Span span;
 };
 
@@ -469,6 +473,17 @@ enum class Restarts : std::uint8_t {
     when_final,  ///< also after each final verdict
 };
 
+/// `calibrated(conformal, alpha = 0.1)` in place of a duration in the formula of a monitor: the
+/// upper bound of an interval, or the time of held or count.
+struct Duration {
+    Threshold threshold;         ///< its method, alpha, scores and place; it has no value
+    std::uint32_t least = 0;     ///< the shortest that may stand there, in steps
+    std::uint32_t greatest = 0;  ///< the longest
+    std::uint32_t steps = 0;     ///< after calibration
+    bool is_known = false;
+    bool longer_is_truer = true;  ///< otherwise a longer one makes the monitor falser
+};
+
 struct Monitor {
     std::string name;
     Index formula = 0;
@@ -482,6 +497,8 @@ struct Monitor {
     /// of rho. Its `value` is subtracted from the high end of rho and from `upper`, its low() from
     /// the low end and from `lower`.
     std::optional<Threshold> calibration{};
+    /// The duration in its formula that is calibrated; a monitor has one at most.
+    std::optional<Duration> duration{};
     Span span;
     /// The formula with the truths of lets in place of these lets; kNone: the formula itself.
     Index truth = kNone;
@@ -563,6 +580,10 @@ const Let* let_with_truth(const Model& model, Index formula);
 
 /// Returns the formulas that a formula consists of, from itself down to its operands: descending.
 std::vector<Index> parts_of(const Model& model, Index formula);
+
+/// Sets the duration in the formula of the monitor, and in that of its truth.
+void set_duration(Model& model, const Monitor& monitor, std::uint32_t steps,
+                  Formula::Time time = Formula::Time::calibrated);
 
 /// Returns canonical text with symbols, minimal parentheses and names: "F (at_a && F at_b)". Lets
 /// are written out unless the formula has more than kMaxPrinted operators and atoms; then names of

@@ -18,8 +18,10 @@ using Kind = Formula::Kind;
 class Phrases {
 public:
     /// `let_names` replace formulas below the root.
-    Phrases(const Model& model, Index root, std::unordered_map<Index, std::string> let_names = {})
-        : model_(model), root_(root), let_names_(std::move(let_names)) {}
+    /// `has_results`: calibrated durations are shown as numbers.
+    Phrases(const Model& model, Index root, bool has_results,
+            std::unordered_map<Index, std::string> let_names = {})
+        : model_(model), root_(root), has_results_(has_results), let_names_(std::move(let_names)) {}
 
     Phrase operator()(Index index) const {
         if (const auto* name = let_name(index)) return {.opening = *name};
@@ -60,11 +62,17 @@ private:
         return level + (tighter ? 1 : 0);
     }
 
-    static Phrase count(const Formula& formula, std::string_view comparison) {
+    Phrase count(const Formula& formula, std::string_view comparison) const {
+        const std::string time =
+            is_shown(formula) ? fmt::format("{} steps", formula.high + 1) : "calibrated";
         return {.opening = "count(",
                 .operands = {{formula.operands[0], false}},
-                .closing =
-                    fmt::format(", {} steps) {} {}", formula.high + 1, comparison, formula.index)};
+                .closing = fmt::format(", {}) {} {}", time, comparison, formula.index)};
+    }
+
+    bool is_shown(const Formula& formula) const {
+        return formula.time == Formula::Time::written ||
+               (formula.time == Formula::Time::calibrated && has_results_);
     }
 
     /// Whether it is the negation of a count, which `<` says.
@@ -79,16 +87,19 @@ private:
         return formula.kind == Kind::constant_true ? "true" : "false";
     }
 
-    static std::string interval(const Formula& formula) {
+    std::string interval(const Formula& formula) const {
         if (looks_one_step_away(formula.kind)) return "";
-        if (formula.kind == Kind::held) return '[' + std::to_string(formula.high) + ']';
-        if (formula.low == 0 && formula.high == kUnbounded) return "";
-        const std::string high = formula.high == kUnbounded ? "inf" : std::to_string(formula.high);
+        if (is_shown(formula) && formula.low == 0 && formula.high == kUnbounded) return "";
+        const std::string high = !is_shown(formula)           ? "calibrated"
+                                 : formula.high == kUnbounded ? "inf"
+                                                              : std::to_string(formula.high);
+        if (formula.kind == Kind::held) return '[' + high + ']';
         return '[' + std::to_string(formula.low) + ", " + high + ']';
     }
 
     const Model& model_;
     Index root_;
+    bool has_results_;
     std::unordered_map<Index, std::string> let_names_;
 };
 
@@ -118,6 +129,16 @@ std::vector<Index> parts_of(const Model& model, Index formula) {
     return parts;
 }
 
+void set_duration(Model& model, const Monitor& monitor, std::uint32_t steps, Formula::Time time) {
+    for (const Index root : {monitor.formula, monitor.true_formula()})
+        for (const Index part : parts_of(model, root)) {
+            Formula& formula = model.formulas[part];
+            if (formula.time == Formula::Time::written) continue;
+            formula.high = steps - (formula.kind == Kind::count ? 1 : 0);
+            formula.time = time;
+        }
+}
+
 bool lets_are_written_out(const Model& model, Index formula) {
     std::uint64_t size = 0;
     std::vector<Index> pending{formula};
@@ -135,11 +156,11 @@ std::string print(const Model& model, Index formula) {
     if (!lets_are_written_out(model, formula))
         for (const Let& let : model.lets)
             if (let.formula != kNone) let_names.try_emplace(let.formula, let.name);
-    return whole_text(formula, Phrases(model, formula, std::move(let_names)));
+    return whole_text(formula, Phrases(model, formula, false, std::move(let_names)));
 }
 
 std::string shown(const Model& model, Index formula) {
-    return elided_text(formula, Phrases(model, formula));
+    return elided_text(formula, Phrases(model, formula, true));
 }
 
 std::string print(const Model& model, const Expr& expression) {

@@ -311,7 +311,10 @@ private:
     void replace(ast::Distance& distance) {
         each(distance.aggregation, distance.weights, distance.point, distance.other);
     }
-    void replace(ast::Bound& bound) { replace(bound.number, bound.unit); }
+    void replace(ast::Bound& bound) {
+        if (bound.calibrated) return replace(*bound.calibrated);
+        replace(bound.number, bound.unit);
+    }
     void replace(ast::Interval& interval) { each(interval.low, interval.high); }
     void replace(ast::Formula& f) { each(f.operands, f.interval, f.left, f.right); }
     void replace(ast::Encoder::Setting& setting) { replace(setting.values); }

@@ -159,6 +159,11 @@ bool is_duration(const ast::Bound& bound) {
 }
 
 std::optional<std::uint32_t> bound_steps(Context& c, const ast::Bound& bound) {
+    if (bound.calibrated)
+        return c.no_value(
+            Code::calibration_not_available, bound.span,
+            "only the upper bound of an interval, and the time of held and count, can "
+            "be calibrated; expected a time");
     if (bound.unit == ast::kStepsUnit) c.steps_on_purpose = true;
     if (!has_no_unit_of_its_own(bound) && bound.unit.empty())
         c.bare_bounds.emplace(bound.span.begin, &bound);
@@ -197,13 +202,24 @@ bool is_finite_duration(Context& c, const ast::Bound& bound, std::string_view wh
     return false;
 }
 
+std::optional<std::uint32_t> lower_steps(Context& c, const ast::Bound& bound) {
+    if (!is_infinite(bound)) return bound_steps(c, bound);
+    return c.no_value(
+        Code::bound_not_finite, bound.span,
+        fmt::format("{} is not allowed here; only the upper bound may be inf", bound_text(bound)));
+}
+
 std::optional<Steps> interval_steps(Context& c, const ast::Interval& interval) {
     const ast::Bound& low = interval.low;
     const ast::Bound& high = interval.high;
-    if (is_infinite(low) || high.number.text == "-inf")
-        return c.no_value(Code::bound_not_finite, is_infinite(low) ? low.span : high.span,
-                          fmt::format("{} is not allowed here; only the upper bound may be inf",
-                                      bound_text(is_infinite(low) ? low : high)));
+    if (is_infinite(low)) {
+        lower_steps(c, low);
+        return std::nullopt;
+    }
+    if (high.number.text == "-inf") {
+        lower_steps(c, high);
+        return std::nullopt;
+    }
     if (!has_no_unit_of_its_own(low) && !has_no_unit_of_its_own(high) &&
         is_duration(low) != is_duration(high))
         return c.no_value(Code::mixed_interval, interval.span,

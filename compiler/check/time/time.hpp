@@ -25,6 +25,9 @@ std::optional<std::uint32_t> bound_steps(Context& context, const ast::Bound& bou
 bool is_finite_duration(Context& context, const ast::Bound& bound, std::string_view why,
                         std::string_view instead = "");
 
+/// Returns a lower bound in steps, which is finite; nothing after an error.
+std::optional<std::uint32_t> lower_steps(Context& context, const ast::Bound& bound);
+
 /// Returns the interval in steps; nothing after an error.
 std::optional<Steps> interval_steps(Context& context, const ast::Interval& interval);
 

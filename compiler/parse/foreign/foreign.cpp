@@ -158,6 +158,15 @@ std::string note_on_arguments(const Stuck& stuck, const Token& found, const sour
     return {};
 }
 
+std::string note_on_calibrated(const Token& found) {
+    if (!is(&found, {EtlParser::CALIBRATED})) return {};
+    return "calibration finds the threshold of a predicate, or one time of a monitor: the upper "
+           "bound "
+           "of an interval, or that of held or count; no guarantee follows from a calibrated "
+           "delay, "
+           "window, hold or stale time";
+}
+
 std::string note_on_sign(const Stuck& stuck, const Token& found) {
     if (is(&found, {EtlParser::COLON}) && stuck.rule_around() == EtlParser::RuleDeclaration &&
         stuck.expects(EtlParser::ASSIGN))
@@ -263,7 +272,8 @@ void add_note_on_foreign_form(const Stuck& stuck, const Token& found, const sour
     }
     for (const std::string& note :
          {note_on_interval(stuck, found, file), note_on_brackets(stuck, found, file),
-          note_on_arguments(stuck, found, file), note_on_sign(stuck, found)}) {
+          note_on_arguments(stuck, found, file), note_on_sign(stuck, found),
+          note_on_calibrated(found)}) {
         if (note.empty()) continue;
         to.note(note);
         return;

@@ -33,14 +33,16 @@ std::optional<Calibration> calibrate_model(const check::Model& model, const Requ
         auto result = calibrate::calibrate(model, calibration, sink);
         if (result && has_monitors)
             result->report +=
-                "\nMonitors that are calibrated as a whole come next, on other episodes: etlc "
-                "calibrate --thresholds FILE\n";
+                "\nMonitors that are calibrated as a whole, or with a duration, come next, on "
+                "other "
+                "episodes: etlc calibrate --thresholds FILE\n";
         return result;
     }
     if (!has_monitors) {
         sink.report(
             diag::Code::nothing_to_calibrate, model.monitors.front().span,
-            "no monitor of this spec is calibrated as a whole, which is what --thresholds is for");
+            "no monitor of this spec is calibrated, as a whole or with a duration, which is what "
+            "--thresholds is for");
         return std::nullopt;
     }
     auto before = thresholds::read(request.check.thresholds_path);

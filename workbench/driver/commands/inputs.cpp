@@ -139,6 +139,10 @@ std::string measured_spec(const plan::Plan& plan) {
                                         ? fmt::format(", its low end by {}", *monitor.inner_shift)
                                         : "")};
         }
+    for (const plan::Monitor& monitor : plan.monitors)
+        if (const auto& duration = model.monitors[monitor.index].duration)
+            changes[duration->threshold.span.begin] = {duration->threshold.span,
+                                                       diag::counted(duration->steps, "step")};
     std::string text;
     std::uint32_t copied = 0;
     const auto end = static_cast<std::uint32_t>(model.file.text().size());

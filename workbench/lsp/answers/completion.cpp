@@ -402,6 +402,9 @@ Sentences about(const Model& model, const check::Monitor& monitor, bool complete
     if (monitor.calibration && complete)
         facts.push_back(
             fmt::format("Calibrated as a whole: {}.", check::of_shift(*monitor.calibration)));
+    if (monitor.duration && complete)
+        facts.push_back(
+            fmt::format("Calibrated: {}.", check::of_duration(model, *monitor.duration)));
     if (planned == nullptr || !planned->compiled) return facts;
     const plan::Plan& plan = planned->compiled->plan;
     for (std::size_t m = 0; m < plan.monitors.size() && m < plan.monitor_costs.size(); ++m)

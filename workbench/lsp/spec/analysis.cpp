@@ -148,17 +148,20 @@ public:
         visit(expression.past->time);
     }
 
-    void visit(const ast::Bound& bound) { visit(bound.number); }
+    void visit(const ast::Bound& bound) {
+        if (bound.calibrated) return visit(*bound.calibrated);
+        visit(bound.number);
+    }
 
     void visit(const ast::Formula& formula) {
         if (formula.kind == ast::Formula::Kind::name) use(formula.name, formula.span);
         visit(formula.operands);
         if (formula.interval) {
-            visit(formula.interval->low.number);
+            visit(formula.interval->low);
             // held[D] has one bound.
             if (formula.kind != ast::Formula::Kind::held ||
                 formula.interval->high.span.begin != formula.interval->low.span.begin)
-                visit(formula.interval->high.number);
+                visit(formula.interval->high);
         }
         visit(formula.left);
         visit(formula.right);

@@ -106,7 +106,7 @@ function provenanceTable() {
     addUnknown(predicate.shown, place);
   });
   data.monitors.forEach((monitor, index) => {
-    if (monitor.shift) add(monitor.name, "calibrated", monitor.shift);
+    if (monitor.calibrated) add(monitor.name, "calibrated", monitor.calibrated);
     for (const guarantee of monitor.guarantees) add(monitor.name, "guarantee", guarantee);
     addUnknown(monitor.name, data.predicates.length + index);
   });

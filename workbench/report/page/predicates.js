@@ -67,7 +67,7 @@ function drawCurve(card, title, points, operating, labels) {
 
 function drawScores(card, predicate, { scores, k, n }, against) {
   const { g, width, height } = cardDrawing(card, `Scores of the calibration${against}: ` +
-    (k > n ? `${n} are too few for a threshold` : `rank ${k} of ${n} gives the threshold`));
+    (k > n ? `${n} are too few for a threshold` : `rank ${k} of ${n}`));
   const shown = scores.filter((p) => Number.isFinite(p[0]));
   const levels = levelsOf(predicate);
   const x = scale(spanOf([...shown.map((p) => p[0]), ...levels]), [0, width]);
@@ -103,8 +103,10 @@ function predicateCard(predicate) {
 }
 
 function showPredicates() {
-  const shown = data.predicates.filter((predicate) =>
-    predicate.distribution || predicate.scores.length > 0);
+  const shown = [
+    ...data.predicates.filter((predicate) => predicate.distribution || predicate.scores.length > 0),
+    ...data.monitors.map((monitor) => monitor.duration).filter((duration) => duration),
+  ];
   document.getElementById("predicates").hidden = shown.length === 0;
   fill("predicate-cards", ...shown.map(predicateCard));
 }
