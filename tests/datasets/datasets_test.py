@@ -5,10 +5,10 @@ import os
 import subprocess
 import sys
 import tempfile
-import zlib
 
 import numpy as np
 
+from encoders import CHECKSUMS, checksums
 import lerobot
 import parquet_writer as parquet
 
@@ -16,16 +16,6 @@ ETLC = os.path.abspath(sys.argv[1])
 LENGTHS = (20, 15, 12)
 TOP, WRIST = lerobot.CAMERAS
 
-# An encoder that distinguishes every pixel: the checksum of a frame, as two numbers.
-ENCODER = """
-import struct, sys, zlib
-write = sys.stdout.buffer.write
-write(struct.pack("<I", 2))
-while head := sys.stdin.buffer.read(8):
-    height, width = struct.unpack("<II", head)
-    crc = zlib.crc32(sys.stdin.buffer.read(height * width * 3))
-    write(struct.pack("<ff", crc & 0xffff, crc >> 16))
-"""
 INPUTS = """
 input q : f32[4];
 input grip : f32;
@@ -61,11 +51,6 @@ def call(*words, status=0):
 def embed(*words, status=0):
     return call(ETLC, "embed", *words, "--encoder-cmd", f"{sys.executable} see.py", *MAP,
                 status=status)
-
-
-def checksums(frames):
-    crc = np.array([zlib.crc32(frame.tobytes()) for frame in frames], np.uint32)
-    return np.stack([crc & 0xFFFF, crc >> 16], 1).astype(np.float32)
 
 
 def check_columns(folder, truth, name, stride=1):
@@ -156,7 +141,7 @@ def check_in_place(version):
 
 def main():
     for name, text in (
-            ("see.py", ENCODER), ("see.etl", SEEN.format(rate=10, more="")),
+            ("see.py", CHECKSUMS), ("see.etl", SEEN.format(rate=10, more="")),
             ("slow.etl", SEEN.format(rate=5, more="")),
             ("both.etl", SEEN.format(rate=10, more="input w : f32[2] by see;\n"
                                      "monitor w_seen = F l2(w, none) <= 1;\n")),

@@ -6,22 +6,14 @@ import re
 import subprocess
 import sys
 import tempfile
-import zlib
 
 import numpy as np
+
+from encoders import CHECKSUMS, checksums
 
 ETLC = os.path.abspath(sys.argv[1])
 HDF5 = os.path.abspath(sys.argv[2])
 STEPS, ROWS, COLUMNS = 6, 7, 5
-ENCODER = """
-import struct, sys, zlib
-write = sys.stdout.buffer.write
-write(struct.pack("<I", 2))
-while head := sys.stdin.buffer.read(8):
-    height, width = struct.unpack("<II", head)
-    crc = zlib.crc32(sys.stdin.buffer.read(height * width * 3))
-    write(struct.pack("<ff", crc & 0xffff, crc >> 16))
-"""
 SPEC = """spec seen;
 encoder see = load("see.py");
 input z : f32[2] by see;
@@ -33,11 +25,6 @@ input grip : f32;
 target home = [[0, 0, 0]];
 monitor n = F (l2(q, home) <= grip);
 """
-
-
-def checksums(frames):
-    crc = np.array([zlib.crc32(frame.tobytes()) for frame in frames], np.uint32)
-    return np.stack([crc & 0xFFFF, crc >> 16], 1).astype(np.float32)
 
 
 def embed(*words, spec="others.etl", status=0):
@@ -139,7 +126,7 @@ def moving_pictures():
 
 def main():
     plain = "spec plain; input q : f32[3]; target t = [[0, 0, 0]]; monitor m = F l2(q, t) <= 1;"
-    for name, text in (("see.py", ENCODER), ("plain.etl", plain), ("seen.etl", SPEC.format("")),
+    for name, text in (("see.py", CHECKSUMS), ("plain.etl", plain), ("seen.etl", SPEC.format("")),
                        ("others.etl", SPEC.format(OTHERS))):
         with open(name, "w", encoding="utf-8") as file:
             file.write(text)

@@ -15,6 +15,7 @@ import tempfile
 
 import numpy as np
 
+from encoders import SMALL_CHECKSUMS
 import lerobot
 
 ETLC = os.path.abspath(sys.argv[1])
@@ -33,15 +34,6 @@ target bay = fitted(medoids, k = 2, of = z, where = at_bay);
 predicate at_bay = min l2(z, bay) <= calibrated(f1);
 predicate close = min l2(z, bay) <= calibrated(f1);
 monitor arrives = F at_bay && F close;
-"""
-ENCODER = """
-import struct, sys, zlib
-write = sys.stdout.buffer.write
-write(struct.pack("<I", 2))
-while head := sys.stdin.buffer.read(8):
-    height, width = struct.unpack("<II", head)
-    crc = zlib.crc32(sys.stdin.buffer.read(height * width * 3))
-    write(struct.pack("<ff", (crc & 0xff) / 64, (crc >> 16 & 0xff) / 64))
 """
 
 
@@ -409,7 +401,7 @@ def main():
     seen = one.replace("input z : f32[2]", 'encoder see = load("see.py");\ninput z : f32[2] by see')
     rows_spec = one.replace("f32[2]", "f32[4]").replace("[0, 0]", "[0, 0, 0, 0]")
     rows_spec = rows_spec.replace("at_bay", "near").replace("(z,", "(q,").replace("z :", "q :")
-    for name, text in (("see.py", ENCODER), ("dock.etl", SPEC), ("fits.etl", FITTED),
+    for name, text in (("see.py", SMALL_CHECKSUMS), ("dock.etl", SPEC), ("fits.etl", FITTED),
                        ("timed.etl", SPEC.replace("input z", "rate 30 Hz;\ninput z")),
                        ("one.etl", one), ("seen.etl", seen), ("rows.etl", rows_spec)):
         pathlib.Path(name).write_text(text)

@@ -8,20 +8,13 @@ import subprocess
 import sys
 import tempfile
 
+from encoders import FIRST_PIXEL
 import lerobot
 import parquet_writer as parquet
 
 ETLC = os.path.abspath(sys.argv[1])
 LENGTHS = (9, 8, 7)
 TOP, WRIST = lerobot.CAMERAS
-ENCODER = """
-import struct, sys
-write = sys.stdout.buffer.write
-write(struct.pack("<I", 1))
-while head := sys.stdin.buffer.read(8):
-    height, width = struct.unpack("<II", head)
-    write(struct.pack("<f", sys.stdin.buffer.read(height * width * 3)[0]))
-"""
 PLAIN = "spec plain;\nrate {} Hz;\ninput q : {};\nmonitor m = F {} > 1;\n"
 SEEN = """spec seen;
 rate 10 Hz;
@@ -298,7 +291,7 @@ def check_calls(base):
 
 
 def main():
-    write("see.py", ENCODER)
+    write("see.py", FIRST_PIXEL)
     write("seen.etl", SEEN)
     write("rows.etl", PLAIN.format(10, "f32", "timestamp").replace("q :", "timestamp :"))
     lerobot.write("v21", "v2.1", LENGTHS)

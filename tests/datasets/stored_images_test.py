@@ -13,6 +13,7 @@ import zlib
 
 import numpy as np
 
+from encoders import CHECKSUMS
 import lerobot
 import parquet_writer as parquet
 
@@ -21,16 +22,6 @@ LENGTHS = (9, 8, 7)
 FIRST = [sum(LENGTHS[:i]) for i in range(len(LENGTHS))]
 TOP, WRIST = lerobot.CAMERAS
 
-# An encoder that distinguishes every pixel: the checksum of a frame, as two numbers.
-ENCODER = """
-import struct, sys, zlib
-write = sys.stdout.buffer.write
-write(struct.pack("<I", 2))
-while head := sys.stdin.buffer.read(8):
-    height, width = struct.unpack("<II", head)
-    crc = zlib.crc32(sys.stdin.buffer.read(height * width * 3))
-    write(struct.pack("<ff", crc & 0xffff, crc >> 16))
-"""
 SPEC = """spec seen;
 rate {} Hz;
 encoder see = load("see.py");
@@ -247,7 +238,7 @@ def decoders_may_fail():
 
 
 def main():
-    pathlib.Path("see.py").write_text(ENCODER)
+    pathlib.Path("see.py").write_text(CHECKSUMS)
     pathlib.Path("seen.etl").write_text(SPEC.format(10))
     pathlib.Path("both.etl").write_text(SPEC.format(10) + BOTH)
     stored = {TOP: image_files("top", "png", sum(LENGTHS)),

@@ -11,6 +11,7 @@ import tempfile
 
 import numpy as np
 
+from encoders import FIRST_PIXEL
 import lerobot
 import parquet_writer as parquet
 
@@ -22,14 +23,6 @@ encoder see = load("see.py");
 input z : f32[1] by see;
 target none = [[0]];
 monitor m = F l2(z, none) <= 1;
-"""
-ENCODER = """
-import struct, sys
-write = sys.stdout.buffer.write
-write(struct.pack("<I", 1))
-while head := sys.stdin.buffer.read(8):
-    height, width = struct.unpack("<II", head)
-    write(struct.pack("<f", sys.stdin.buffer.read(height * width * 3)[0]))
 """
 
 
@@ -178,7 +171,7 @@ def check(what, lengths, windows, shown, noise=0.0):
 
 
 def main():
-    for name, text in (("see.py", ENCODER), ("grey.etl", SPEC)):
+    for name, text in (("see.py", FIRST_PIXEL), ("grey.etl", SPEC)):
         with open(name, "w", encoding="utf-8") as file:
             file.write(text)
     for turn in range(6):

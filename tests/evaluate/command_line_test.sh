@@ -1,12 +1,8 @@
 #!/usr/bin/env bash
 # command_line_test.sh ETLC FOLDER DATA: `etlc evaluate` from end to end: table, CSV and JSON are
 # equal for any number of threads; episodes in an .h5 file; wrong calls; folds; two specs.
-set -euo pipefail
+. "$(dirname "$0")/../box.bash"
 etlc=$1 expected=$2 data=$3
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-fail() { echo "FAILED: $*"; exit 1; }
 
 cat >dock.etl <<'SPEC'
 spec dock;
@@ -225,7 +221,7 @@ done | sort -g >thresholds
 grep -q "^    near: $(head -1 thresholds) to $(tail -1 thresholds); held out, 5 of 5 " \
     folds.txt || fail "$(cat folds.txt thresholds)"
 
-# Between two thresholds a claim is unknown: no error, and none of the errors' denominators shrinks.
+# Between two thresholds a prediction is unknown: no error, and no error's denominator shrinks.
 cat >between.etl <<'SPEC'
 spec between;
 input x : f32;

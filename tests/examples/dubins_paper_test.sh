@@ -2,12 +2,8 @@
 # dubins_paper_test.sh DUBINS_RECORD ETLC SOURCE CXX: runs the paper's experiment with one seed: it
 # records drives, calibrates thresholds and evaluates them; the compiled class agrees with `etlc
 # evaluate` on every count; the figures are at least the paper's.
-set -euo pipefail
+. "$(dirname "$0")/../box.bash"
 record=$1 etlc=$2 source=$3 cxx=$4
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-fail() { echo "FAILED: $*"; exit 1; }
 
 "$source/examples/dubins/experiment.sh" "$etlc" "$record" drives 7 >table.txt
 for side in calibration:120 test:180; do

@@ -2,11 +2,8 @@
 # dubins_test.sh PROGRAM ETLC SPEC: the demo runs twice with the same output and agrees with the
 # truth on most drives; for the recorded drives `etlc run` and `etlc evaluate` agree with the
 # compiled monitor, and `etlc report` makes a page with the camera's pictures.
-set -euo pipefail
+. "$(dirname "$0")/../box.bash"
 program=$1 etlc=$2 spec=$3
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
 
 "$program" one >one.txt
 "$program" two >two.txt

@@ -1,13 +1,9 @@
 #!/usr/bin/env bash
 # budget_test.sh ETLC SOURCE CXX: `state B` and `targets B` in the head of a generated header equal
 # the figures of nm for an object, on x86-64, Cortex-M4F and RV32IMAFC.
-set -euo pipefail
+. "$(dirname "$0")/../box.bash"
 etlc=$1 source=$2 cxx=$3
 runtime=$source/runtime/include
-box=$(mktemp -d)
-trap 'rm -rf "$box"' EXIT
-cd "$box"
-fail() { echo "FAILED: $*"; exit 1; }
 
 "$cxx" -std=c++17 -O1 "$source/tests/monitor/stored/arrays.cpp" -o arrays
 ./arrays long.npy 128 64

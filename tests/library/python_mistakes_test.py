@@ -14,41 +14,15 @@ from pathlib import Path
 import numpy as np
 
 import etlc
+from python_arrays_test import SPEC, episode
 
 PAGE = Path(sys.argv.pop()).resolve()
 
-SPEC = """spec all_types;
-input z    : f32[3];
-input x    : f32 in [-100, 100];
-input stop : bool;
-input half : f16[2];
-input byte : i8[2] scale 0.5;
-target at = [[1, 0, 0]];
-target o  = [[0, 0]];
-monitor far   = G l2(z, at) > 0.125;
-predicate is_high = x >= 50;
-monitor high  = F is_high;
-monitor goes  = G !stop;
-monitor small = G l1(half, o) <= 8;
-monitor bytes = G l1(byte, o) <= 99;
-sliding monitor late = F[0, 3] x >= 20;
-"""
 DOUBTFUL = """spec doubtful;
 input x : f32;
 predicate high = x > 1;
 monitor stays = F G high;
 """
-
-
-def episode(steps=30):
-    random = np.random.default_rng(7)
-    return {
-        "z": random.normal(size=(steps, 3)).astype("f4"),
-        "x": random.integers(-100, 100, steps).astype("f4"),
-        "stop": random.random(steps) < 0.1,
-        "half": random.normal(size=(steps, 2)).astype("f2"),
-        "byte": random.integers(-128, 128, (steps, 2)).astype("i1"),
-    }  # fmt: skip
 
 
 def caught(call):

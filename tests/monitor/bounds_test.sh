@@ -4,14 +4,8 @@
 # leaves [lower, upper]. The test covers every distance, aggregation, type of input and storage of
 # targets, with and without declared ranges, in `etlc run` and in generated classes. The points are
 # at the extremes of distances: a target, its negative, an orthogonal one, zero, tiny and huge ones.
-set -euo pipefail
+. "$(dirname "$0")/../box.bash"
 etlc=$1 cxx=$2
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-runtime=$here/../../runtime/include
-box=$(mktemp -d)
-trap 'rm -rf "$box"' EXIT
-cd "$box"
-fail() { echo "FAILED: $*" >&2; exit 1; }
 
 # The rows of a set are multiples of one vector, so that every aggregation reaches the ends of the
 # range; there are 25 of them, since the mean of so many angles pi is rounded above pi. Numbers are

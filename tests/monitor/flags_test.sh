@@ -4,14 +4,8 @@
 # the same to the byte. A unit gives the same bits alone and linked with another, in either order,
 # even if that one is compiled for a CPU that this machine does not have. Classes of one name, from
 # one spec with other data or options, share nothing either, linked or loaded.
-set -euo pipefail
+. "$(dirname "$0")/../box.bash"
 etlc=$1 gxx=$2 clangxx=$3
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-runtime=$here/../../runtime/include
-box=$(mktemp -d)
-trap 'rm -rf "$box"' EXIT
-cd "$box"
-fail() { echo "FAILED: $*" >&2; exit 1; }
 
 # Every family of kernels: rows in lanes and in columns, int8 rows within bounds, float32 for
 # undecided comparisons; and every kind of state: a window, a machine, a past operator.

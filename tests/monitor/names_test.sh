@@ -4,15 +4,10 @@
 # of that spec: as an input, a flag, an embedding, a target, a predicate, a let, a monitor, a
 # sliding monitor and a namespace. The headers compile without a warning, and their verdicts equal
 # those of `etlc run`. The last compiler makes the program that prints them.
-set -euo pipefail
+. "$(dirname "$0")/../box.bash"
 etlc=$1
 check_names=$2
 shift 2
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-runtime=$here/../../runtime/include
-box=$(mktemp -d)
-trap 'rm -rf "$box"' EXIT
-cd "$box"
 limits=(--max-state 16777216 --max-code 16777216 --max-work 67108864)
 flags=(-std=c++17 -O0 -Wall -Wextra -Wshadow -Werror)
 

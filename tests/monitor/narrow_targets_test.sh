@@ -4,14 +4,9 @@
 # enclose them; the generated class, also with float32 targets, and `etlc run` agree to the bit.
 # FLAGS: other builds, one per argument, in which the class is compared with the one of float32
 # targets.
-set -euo pipefail
+. "$(dirname "$0")/../box.bash"
 etlc=$1 compiler=$2
 shift 2
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-runtime=$here/../../runtime/include
-box=$(mktemp -d)
-trap 'rm -rf "$box"' EXIT
-cd "$box"
 
 # The distances to float32 targets are not known here: the trace crosses every threshold in steps
 # that shrink to single roundings. z is measured on few short rows, y on more and longer ones.

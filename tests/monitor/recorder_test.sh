@@ -2,15 +2,9 @@
 # recorder_test.sh ETLC VALUES CXX FLAG...: steps a class with a flight recorder over a trace; `etlc
 # incident` prints the distances and verdicts that `etlc run` has for the same steps. The incident's
 # trace and spec give the same distances again. Damaged files are refused.
-set -euo pipefail
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-runtime=$here/../../runtime/include
+. "$(dirname "$0")/../box.bash"
 etlc=$1 values=$2 cxx=$3
 shift 3
-box=$(mktemp -d)
-trap 'rm -rf "$box"' EXIT
-cd "$box"
-fail() { echo "FAILED: $*" >&2; exit 1; }
 
 cat >drive.etl <<'END'
 spec drive;

@@ -4,15 +4,9 @@
 # like a plain class that reads the same robustness from scalars, a forgotten one like a new
 # monitor. Damaged and foreign parameters are refused and change nothing. A shadow counts the
 # differences of two monitors side by side.
-set -euo pipefail
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-runtime=$here/../../runtime/include
+. "$(dirname "$0")/../box.bash"
 etlc=$1 cxx=$2
 shift 2
-box=$(mktemp -d)
-trap 'rm -rf "$box"' EXIT
-cd "$box"
-fail() { echo "FAILED: $*"; exit 1; }
 
 "$cxx" -std=c++17 -O1 "$here/stored/arrays.cpp" -o arrays
 for seed in 1 2; do

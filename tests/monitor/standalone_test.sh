@@ -3,14 +3,9 @@
 # without a warning and freestanding, may be combined with another one in a program, and gives the
 # verdicts of the header that includes the runtime. The portable one contains nothing
 # machine-specific, and is short enough to read.
-set -euo pipefail
+. "$(dirname "$0")/../box.bash"
 etlc=$1
 shift
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-runtime=$here/../../runtime/include
-box=$(mktemp -d)
-trap 'rm -rf "$box"' EXIT
-cd "$box"
 
 cat >main.cpp <<'END'
 #include <cstdio>

@@ -3,14 +3,9 @@
 # verdicts and telemetry of the same monitor with its sets in the header, bit for bit: every
 # distance and aggregation, contrasts of searched sets, sets in every layout, the runtime included
 # and pasted in. VALUES: robustness, or boolean, which measures distances on demand.
-set -euo pipefail
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-runtime=$here/../../runtime/include
+. "$(dirname "$0")/../box.bash"
 etlc=$1 values=$2 cxx=$3
 shift 3
-box=$(mktemp -d)
-trap 'rm -rf "$box"' EXIT
-cd "$box"
 
 "$cxx" -std=c++17 -O1 "$here/stored/arrays.cpp" -o arrays
 ./arrays wide.npy 1400 384   # more than 64 KiB: read in one stream

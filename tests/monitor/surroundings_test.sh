@@ -4,14 +4,10 @@
 # macros unchanged. A monitor at namespace scope is initialised before any code runs, on the host
 # and on the boards, and equals one constructed at run time; after reset() a monitor equals a new
 # one.
-set -euo pipefail
+. "$(dirname "$0")/../box.bash"
 etlc=$1 source=$2
 shift 2
 runtime=$source/runtime/include
-box=$(mktemp -d)
-trap 'rm -rf "$box"' EXIT
-cd "$box"
-fail() { echo "FAILED: $*"; exit 1; }
 
 cat >all.etl <<'END'
 spec small;

@@ -1,12 +1,8 @@
 #!/usr/bin/env bash
 # completion_test.sh ETLC: completion in bash offers every command and option that --help lists, and
 # the values of options; the manual page has them too, and groff accepts it without warnings.
-set -euo pipefail
+. "$(dirname "$0")/../box.bash"
 etlc=$1
-box=$(mktemp -d)
-trap 'rm -rf "$box"' EXIT
-cd "$box"
-fail() { echo "FAILED: $*" >&2; exit 1; }
 
 "$etlc" --help >help
 mapfile -t commands < <(sed -n 's/^  etlc \([a-z]\+\)\( .*\)\?$/\1/p' help)

@@ -4,14 +4,10 @@
 # etlc allows. The compiler finds the clashes: it compiles a declaration of a namespace, or a field,
 # with each name after all headers. ETLC_UPDATE=1 adds the declarations of this machine's headers
 # beyond the standards to compiler/check/names/library_names.inc.
-set -euo pipefail
+. "$(dirname "$0")/../box.bash"
 check_names=$1
 cxx=$2
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 table=$here/../../compiler/check/names/library_names.inc
-box=$(mktemp -d)
-trap 'rm -rf "$box"' EXIT
-cd "$box"
 
 headers="assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal
   stdalign stdarg stdbool stddef stdint stdio stdlib string time uchar wchar wctype aio

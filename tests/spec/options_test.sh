@@ -1,12 +1,8 @@
 #!/usr/bin/env bash
 # options_test.sh ETLC: the values that options accept and refuse; which commands report the
 # warnings of a spec.
-set -euo pipefail
+. "$(dirname "$0")/../box.bash"
 etlc=$1
-box=$(mktemp -d)
-trap 'rm -rf "$box"' EXIT
-cd "$box"
-fail() { echo "FAILED: $*"; exit 1; }
 
 cat >t.etl <<'END'
 spec t;

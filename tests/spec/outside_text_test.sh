@@ -3,14 +3,9 @@
 # data stay text in every output, whatever they contain. A header compiles and contains no planted
 # code; JSON parses; a terminal gets no control or hidden characters and only UTF-8; make and ninja
 # rebuild when a file of the depfile changes, or etlc refuses the name.
-set -euo pipefail
+. "$(dirname "$0")/../box.bash"
 etlc=$1
 cxx=$2
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-runtime=$here/../../runtime/include
-box=$(mktemp -d)
-trap 'rm -rf "$box"' EXIT
-cd "$box"
 failed=0
 fail() { echo "FAILED: $*" >&2; failed=1; }
 
