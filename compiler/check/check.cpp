@@ -50,11 +50,11 @@ std::optional<Model> check(ast::Spec spec, const source::File& file, const Optio
 }
 
 Inspected inspect(ast::Spec spec, const source::File& file, const Options& options,
-                  KnownMatrices& known, diag::Sink& sink) {
+                  MatrixCache& cache, diag::Sink& sink) {
     Context context{spec, file, options, sink};
-    context.known = &known;
+    context.cache = &cache;
     check_all(context, spec);
-    std::erase_if(known,
+    std::erase_if(cache,
                   [&](const auto& entry) { return !context.matrices.contains(entry.first); });
     Inspected result;
     result.complete = is_complete(context);

@@ -48,8 +48,8 @@ struct Inspected {
     }
 };
 
-/// `known` caches the contents of files between calls; afterwards it holds those of this spec.
+/// `cache` has the contents of files between calls; and afterwards those of this spec.
 Inspected inspect(ast::Spec spec, const source::File& file, const Options& options,
-                  KnownMatrices& known, diag::Sink& sink);
+                  MatrixCache& cache, diag::Sink& sink);
 
 }  // namespace etlc::check

@@ -147,19 +147,19 @@ bool counts_groups(const plan::Plan& plan) {
            });
 }
 
-std::vector<check::Claim> claims_of(const plan::Plan& plan, const plan::Monitor& monitor) {
-    return check::claims(*plan.model, plan.model->monitors[monitor.index], plan.values);
+std::vector<check::Guarantee> guarantees_of(const plan::Plan& plan, const plan::Monitor& monitor) {
+    return check::guarantees(*plan.model, plan.model->monitors[monitor.index], plan.values);
 }
 
 /// Returns whether some guarantee is about missed successes, and whether some tells the two errors
 /// apart.
-std::pair<bool, bool> kinds_of_claims(const plan::Plan& plan) {
+std::pair<bool, bool> kinds_of_guarantees(const plan::Plan& plan) {
     bool on_successes = false;
     bool on_both = false;
     for (const plan::Monitor& monitor : plan.monitors)
-        for (const check::Claim& claim : claims_of(plan, monitor)) {
-            on_successes |= claim.kind == check::Claim::Kind::missed_success;
-            on_both |= claim.kind >= check::Claim::Kind::satisfied_wrongly;
+        for (const check::Guarantee& guarantee : guarantees_of(plan, monitor)) {
+            on_successes |= guarantee.kind == check::Guarantee::Kind::missed_success;
+            on_both |= guarantee.kind >= check::Guarantee::Kind::satisfied_wrongly;
         }
     return {on_successes, on_both};
 }
@@ -167,9 +167,10 @@ std::pair<bool, bool> kinds_of_claims(const plan::Plan& plan) {
 bool sets_zero_aside(const plan::Plan& plan) {
     return std::any_of(
         plan.monitors.begin(), plan.monitors.end(), [&](const plan::Monitor& monitor) {
-            const std::vector<check::Claim> claims = claims_of(plan, monitor);
-            return std::any_of(claims.begin(), claims.end(),
-                               [](const check::Claim& claim) { return claim.zero_aside; });
+            const std::vector<check::Guarantee> guarantees = guarantees_of(plan, monitor);
+            return std::any_of(
+                guarantees.begin(), guarantees.end(),
+                [](const check::Guarantee& guarantee) { return guarantee.zero_aside; });
         });
 }
 
@@ -178,16 +179,15 @@ std::vector<Row> guarantee_rows(const plan::Plan& plan) {
     std::vector<Row> rows{{"monitor", "guarantee"}};
     for (const plan::Monitor& monitor : plan.monitors) {
         const auto& calibration = plan.model->monitors[monitor.index].calibration;
-        const std::vector<check::Claim> claims = claims_of(plan, monitor);
-        for (const check::Claim& claim : claims) {
-            const std::string part =
-                claim.part.empty() ? "" : fmt::format("part {}: ", shortened(claim.part));
-            const bool has_shift = monitor.shifted && claims.size() == 1;
-            rows.push_back({&claim == &claims.front() ? monitor.name : "",
-                            part + check::text(claim) +
-                                (has_shift ? "; " + check::of_shift(*calibration) : "")});
+        std::vector<check::Guarantee> guarantees = guarantees_of(plan, monitor);
+        for (check::Guarantee& guarantee : guarantees) {
+            guarantee.part = shortened(guarantee.part);
+            const bool has_shift = monitor.shifted && guarantees.size() == 1;
+            rows.push_back(
+                {&guarantee == &guarantees.front() ? monitor.name : "",
+                 check::text(guarantee) + (has_shift ? "; " + check::of_shift(*calibration) : "")});
         }
-        if (monitor.shifted && claims.size() > 1)
+        if (monitor.shifted && guarantees.size() > 1)
             rows.push_back({"", check::of_shift(*calibration)});
         if (const auto& duration = plan.model->monitors[monitor.index].duration)
             rows.push_back({"", check::of_duration(*plan.model, *duration)});
@@ -229,16 +229,12 @@ void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan&
     for (const std::string& reservation : reservations) print_sentences(out, prefix, reservation);
     if (of_episodes) {
         std::string text = fmt::format(
-            "Probabilities are over the {} together, which have to be exchangeable{}. coverage: 5 %"
-            " and 95 % quantile of Beta(k, n + 1 - k), of {} given these demonstrations, more where"
-            " scores tie.",
-            by_group ? "groups of demonstrations and the new group"
-                     : "demonstrations and the new episode",
-            by_group ? "; a group counts once, with the worst of its demonstrations"
-                     : ", per episode as recorded",
+            "{} coverage: 5 % and 95 % quantile of Beta(k, n + 1 - k), of {} given these "
+            "demonstrations, more where scores tie.",
+            check::exchangeability(by_group),
             by_group ? "an episode of a new group" : "a new episode");
-        const auto [on_successes, on_both] = kinds_of_claims(plan);
-        if (on_successes) text += " The bound on successes excludes steps with missing samples.";
+        const auto [on_successes, on_both] = kinds_of_guarantees(plan);
+        if (on_successes) text += fmt::format(" {}", check::kMissingAside);
         if (on_both)
             text +=
                 " A verdict is satisfied or violated wrongly if its truth is the opposite; one "

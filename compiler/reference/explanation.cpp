@@ -9,7 +9,7 @@ namespace {
 
 /// "satisfied where rho >= 0, violated where rho_high < 0, else unknown"; "final where lower >= 0
 /// [...] or upper < 0".
-Said said_by(const Value& value) {
+Outcome outcome_from(const Value& value) {
     const Status status = value.rho >= 0       ? Status::satisfied
                           : value.rho_high < 0 ? Status::violated
                                                : Status::unknown;
@@ -51,11 +51,12 @@ Explained::Explained(const check::Model& model, NormalForm form, const Trace& tr
       position_(position),
       step_(step),
       shifts_(shifts_of(model.monitors[monitor])),
-      said_(said_of(value(literals_))) {}
+      outcome_(outcome_of(value(literals_))) {}
 
-Said Explained::said_of(const Value& value) const {
+Outcome Explained::outcome_of(const Value& value) const {
     const auto [low, high] = shifts_;
-    return said_by({value.lower - low, value.rho - low, value.rho_high - high, value.upper - high});
+    return outcome_from(
+        {value.lower - low, value.rho - low, value.rho_high - high, value.upper - high});
 }
 
 Value Explained::value(const Literals& literals) const {
@@ -63,8 +64,8 @@ Value Explained::value(const Literals& literals) const {
 }
 
 double Explained::deciding(const Value& value) const {
-    if (said_.status == Status::satisfied) return said_.for_good ? value.lower : value.rho;
-    return said_.for_good ? value.upper : value.rho_high;
+    if (outcome_.status == Status::satisfied) return outcome_.for_good ? value.lower : value.rho;
+    return outcome_.for_good ? value.upper : value.rho_high;
 }
 
 Sample Explained::sample(const Node& literal, std::uint64_t step) const {
@@ -74,7 +75,7 @@ Sample Explained::sample(const Node& literal, std::uint64_t step) const {
     return {step, span.begin, is_predicate, literal.index};
 }
 
-Said Explained::said_with_only(const SampleSet& known) const {
+Outcome Explained::outcome_with_only(const SampleSet& known) const {
     Literals literals = literals_;
     for (std::size_t n = 0; n < form_.nodes.size(); ++n) {
         if (!form_.nodes[n].is_atom()) continue;
@@ -84,17 +85,17 @@ Said Explained::said_with_only(const SampleSet& known) const {
                 literals.values[n][step] = {range.lowest, range.lowest, range.highest,
                                             range.highest};
     }
-    return said_of(value(literals));
+    return outcome_of(value(literals));
 }
 
-Said Explained::said_with(const std::vector<Alteration>& alterations) const {
-    return said_of(value(literals(model_, form_, trace_, values_, alterations)));
+Outcome Explained::outcome_with(const std::vector<Alteration>& alterations) const {
+    return outcome_of(value(literals(model_, form_, trace_, values_, alterations)));
 }
 
 /// Numbers all values of literals in their order, and the ranges of what comes after the prefix:
 /// the deciding value then is the number of its sample.
 std::optional<Sample> Explained::critical() const {
-    const bool low = said_.status == Status::satisfied;
+    const bool low = outcome_.status == Status::satisfied;
     const auto ordered = [&](std::size_t n, std::uint64_t step) {
         const Value& v = literals_.values[n][step <= step_ ? step : 0];
         const Unseen& range = literals_.ranges[n];
@@ -129,7 +130,7 @@ std::optional<Sample> Explained::critical() const {
 }
 
 SampleSet Explained::explanation() const {
-    const bool low = said_.status == Status::satisfied;
+    const bool low = outcome_.status == Status::satisfied;
     const double least = deciding(value(literals_));
     SampleSet kept;
     for (std::size_t n = 0; n < form_.nodes.size(); ++n)
@@ -146,7 +147,7 @@ SampleSet Explained::explanation() const {
     std::stable_partition(order.begin(), order.end(), [&](const Sample& s) { return s != last; });
     for (const Sample& candidate : order) {
         kept.erase(candidate);
-        if (said_with_only(kept) != said_) kept.insert(candidate);
+        if (outcome_with_only(kept) != outcome_) kept.insert(candidate);
     }
     return kept;
 }

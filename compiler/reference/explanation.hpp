@@ -40,11 +40,11 @@ Literals literals(const check::Model& model, const NormalForm& form, const Trace
                   check::Values values, const std::vector<Alteration>& alterations = {});
 
 /// The status of a verdict, and whether it is final.
-struct Said {
+struct Outcome {
     Status status = Status::unknown;
     bool for_good = false;
 
-    bool operator==(const Said&) const = default;
+    bool operator==(const Outcome&) const = default;
 };
 
 /// One monitor's rho(f, position, step) with its bounds.
@@ -55,9 +55,9 @@ public:
               Index monitor, std::uint64_t position, std::uint64_t step);
 
     /// Returns the status on the prefix, with all samples.
-    Said said() const { return said_; }
-    Said said_with_only(const SampleSet& known) const;
-    Said said_with(const std::vector<Alteration>& alterations) const;
+    Outcome outcome() const { return outcome_; }
+    Outcome outcome_with_only(const SampleSet& known) const;
+    Outcome outcome_with(const std::vector<Alteration>& alterations) const;
 
     /// Returns the sample of the deciding value, which is the bound of a final verdict, else rho;
     /// nothing where that is the value of an empty window, a constant, or an unseen step.
@@ -69,7 +69,7 @@ public:
 
 private:
     Value value(const Literals& literals) const;
-    Said said_of(const Value& value) const;
+    Outcome outcome_of(const Value& value) const;
     double deciding(const Value& value) const;
     Sample sample(const Node& literal, std::uint64_t step) const;
 
@@ -82,7 +82,7 @@ private:
     std::uint64_t position_;
     std::uint64_t step_;
     std::pair<double, double> shifts_;
-    Said said_;
+    Outcome outcome_;
 };
 
 }  // namespace etlc::reference

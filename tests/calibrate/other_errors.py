@@ -154,7 +154,7 @@ def lines_of(report):
     found, name = {}, None
     for line in report.splitlines():
         head = re.match(r"(\w+): |    (\w+) +(P\(|no guarantee)", line)
-        part = re.match(r" +of its part (.*): (P\(|no )", line)
+        part = re.match(r" +part (.*): (P\(|no )", line)
         if part:
             name = name.split(" / ")[0] + " / " + part[1]
         elif head:

@@ -30,11 +30,11 @@ using calibrate::Aim;
 using calibrate::Evidence;
 using calibrate::Index;
 using calibrate::Sides;
-using check::Claim;
+using check::Guarantee;
 using episodes::Label;
 using Labels = std::vector<Label>;
 
-/// Returns what a verdict says. episodes::label_of() does not link where its flags are others.
+/// Returns what a verdict predicted. episodes::label_of() does not link where its flags are others.
 Label called(const etlmon::Verdict& verdict) {
     return verdict.satisfied() ? Label::yes : verdict.violated() ? Label::no : Label::unknown;
 }
@@ -146,17 +146,17 @@ struct Errors {
     double frames[2]{};
     double wrong[2]{};
 
-    void add(Label said, Label is) {
-        if (is == Label::unknown) return;
-        const std::size_t side = is == Label::yes ? 0 : 1;
+    void add(Label predicted, Label actual) {
+        if (actual == Label::unknown) return;
+        const std::size_t side = actual == Label::yes ? 0 : 1;
         ++frames[side];
-        wrong[side] += said == (is == Label::yes ? Label::no : Label::yes) ? 1 : 0;
+        wrong[side] += predicted == (actual == Label::yes ? Label::no : Label::yes) ? 1 : 0;
     }
     bool any(std::size_t side) const { return wrong[side] > 0; }
 };
 
 /// Returns what a predicate says of a sample, by the definition.
-Label said_by(const check::Predicate& p, const execute::Sample& sample) {
+Label predicted_by(const check::Predicate& p, const execute::Sample& sample) {
     if (!sample.present) return !p.missing ? Label::unknown : *p.missing ? Label::yes : Label::no;
     const float delta = sample.values[0];
     if (check::holds(p.comparison, delta, p.threshold.low())) return Label::yes;
@@ -199,7 +199,7 @@ public:
         plain_ = calibrate::unshifted(model_);
         truth_ = episodes::ground_truth(plain_, {0, 1});
         for (Index m = 0; m < model_.monitors.size(); ++m)
-            claims_.push_back(check::claims(model_, model_.monitors[m]));
+            guarantees_.push_back(check::guarantees(model_, model_.monitors[m]));
     }
 
     void run(Random& random) {
@@ -234,20 +234,21 @@ public:
 private:
     bool upper() const { return model_.predicates[0].upper_bound(); }
 
-    /// Calls `each(m, says, is)` with the verdicts of every step that the monitors report.
+    /// Calls `each(m, predicted, actual)` with the verdicts of every step that the monitors report.
     template <class Each>
     void follow(const DrawnEpisode& drawn, Stepped& monitors, Stepped& truths, const Each& each) {
         monitors.evaluator.reset();
         truths.evaluator.reset();
         for (std::size_t t = 0; t < kSimulatedSteps; ++t) {
             std::vector<execute::Sample> samples = drawn.samples[t];
-            const std::vector<etlmon::Verdict> says = monitors.evaluator.step(samples);
+            const std::vector<etlmon::Verdict> predicted = monitors.evaluator.step(samples);
             for (const Label label : {drawn.a[t], drawn.b[t]})
                 samples.push_back(episodes::sample_of(label));
-            const std::vector<etlmon::Verdict> is = truths.evaluator.step(samples);
-            for (std::size_t m = 0; m < says.size(); ++m) {
-                if (says[m].decided() && is[m].decided()) each(m, says, is);
-                if (model_.monitors[m].restarts == check::Restarts::when_final && says[m].final())
+            const std::vector<etlmon::Verdict> actual = truths.evaluator.step(samples);
+            for (std::size_t m = 0; m < predicted.size(); ++m) {
+                if (predicted[m].decided() && actual[m].decided()) each(m, predicted, actual);
+                if (model_.monitors[m].restarts == check::Restarts::when_final &&
+                    predicted[m].final())
                     truths.evaluator.restart(m);
             }
         }
@@ -288,20 +289,23 @@ private:
                         delta);
                 }
         else
-            follow(drawn, plain, truths, [&](std::size_t m, const auto& says, const auto& is) {
-                if (m % 2 == 1) return;
-                // A verdict that a missing sample leaves open at this end cannot be wrong.
-                const auto known = [](double end, double open) {
-                    return end == open ? std::nullopt : std::optional(end);
-                };
-                constexpr double kInfinity = std::numeric_limits<double>::infinity();
-                // The next monitor is the negation of this one.
-                const auto low = known(says[m].robustness, -kInfinity);
-                const auto high = known(-static_cast<double>(says[m + 1].robustness), kInfinity);
-                const Label label = called(is[m]);
-                const auto& end = label == Label::yes ? high : low;
-                add(scores[m], calibrate::over_robustness(model_.monitors[m]), label, end, end);
-            });
+            follow(drawn, plain, truths,
+                   [&](std::size_t m, const auto& predicted, const auto& actual) {
+                       if (m % 2 == 1) return;
+                       // A verdict that a missing sample leaves open at this end cannot be wrong.
+                       const auto known = [](double end, double open) {
+                           return end == open ? std::nullopt : std::optional(end);
+                       };
+                       constexpr double kInfinity = std::numeric_limits<double>::infinity();
+                       // The next monitor is the negation of this one.
+                       const auto low = known(predicted[m].robustness, -kInfinity);
+                       const auto high =
+                           known(-static_cast<double>(predicted[m + 1].robustness), kInfinity);
+                       const Label label = called(actual[m]);
+                       const auto& end = label == Label::yes ? high : low;
+                       add(scores[m], calibrate::over_robustness(model_.monitors[m]), label, end,
+                           end);
+                   });
         for (std::size_t i = 0; i < scores.size(); ++i) evidence[i].add(scores[i], group);
     }
 
@@ -327,24 +331,25 @@ private:
     }
 
     void note(Index m, const Errors& errors) {
-        using Kind = Claim::Kind;
-        for (const Claim& claim : claims_[m]) {
-            if (!claim.part.empty() || claim.kind == Kind::nothing || claim.kind == Kind::exact)
+        using Kind = Guarantee::Kind;
+        for (const Guarantee& guarantee : guarantees_[m]) {
+            if (!guarantee.part.empty() || guarantee.kind == Kind::nothing ||
+                guarantee.kind == Kind::exact)
                 continue;
             const bool by_share =
-                claim.kind == Kind::satisfied_share || claim.kind == Kind::violated_share;
-            const bool of_alarms = claim.kind == Kind::missed_alarm ||
-                                   claim.kind == Kind::satisfied_wrongly ||
-                                   claim.kind == Kind::satisfied_share;
+                guarantee.kind == Kind::satisfied_share || guarantee.kind == Kind::violated_share;
+            const bool of_alarms = guarantee.kind == Kind::missed_alarm ||
+                                   guarantee.kind == Kind::satisfied_wrongly ||
+                                   guarantee.kind == Kind::satisfied_share;
             // A bound on successes alone excludes steps with missing samples.
-            if (claim.kind == Kind::missed_success && !as_a_whole_ && of_.missing > 0) continue;
+            if (guarantee.kind == Kind::missed_success && !as_a_whole_ && of_.missing > 0) continue;
             const std::size_t side = of_alarms ? 1 : 0;
-            const std::string name = model_.monitors[m].name + ": " + check::text(claim);
+            const std::string name = model_.monitors[m].name + ": " + check::text(guarantee);
             if (by_share && errors.frames[side] == 0) continue;
-            note(name, std::stod(claim.bound),
-                 by_share                    ? errors.wrong[side] / errors.frames[side]
-                 : claim.kind == Kind::wrong ? (errors.any(0) || errors.any(1) ? 1 : 0)
-                                             : (errors.any(side) ? 1 : 0));
+            note(name, std::stod(guarantee.bound),
+                 by_share                        ? errors.wrong[side] / errors.frames[side]
+                 : guarantee.kind == Kind::wrong ? (errors.any(0) || errors.any(1) ? 1 : 0)
+                                                 : (errors.any(side) ? 1 : 0));
         }
     }
 
@@ -353,14 +358,15 @@ private:
             if (as_a_whole_) break;
             Errors errors;
             for (std::size_t t = 0; t < kSimulatedSteps; ++t)
-                errors.add(said_by(model_.predicates[p], drawn.samples[t][p]),
+                errors.add(predicted_by(model_.predicates[p], drawn.samples[t][p]),
                            (p == 0 ? drawn.a : drawn.b)[t]);
             note(model_.predicates[p], errors);
         }
         std::vector<Errors> errors(model_.monitors.size());
-        follow(drawn, monitors, truths, [&](std::size_t m, const auto& says, const auto& is) {
-            errors[m].add(called(says[m]), called(is[m]));
-        });
+        follow(drawn, monitors, truths,
+               [&](std::size_t m, const auto& predicted, const auto& actual) {
+                   errors[m].add(called(predicted[m]), called(actual[m]));
+               });
         for (Index m = 0; m < errors.size(); m += as_a_whole_ ? 2 : 1) note(m, errors[m]);
     }
 
@@ -369,7 +375,7 @@ private:
     bool as_a_whole_;
     check::Model plain_;
     episodes::GroundTruth truth_;
-    std::vector<std::vector<Claim>> claims_;
+    std::vector<std::vector<Guarantee>> guarantees_;
     std::map<std::string, std::pair<Figure, double>> figures_;
     int used_ = 0;
 };
@@ -515,9 +521,9 @@ Files recordings(int n, double near, double far) {
     for (int i = 0; i < n; ++i) {
         std::string text = "x,truth.p\n";
         for (int t = 0; t < 9; ++t) {
-            const bool is = t >= 3 && t <= 5;
-            const double x = is ? near - 0.01 * i : far + 0.01 * ((i * 7 + t) % 20);
-            text += fmt::format("{:.4f},{}\n", x, is ? 1 : 0);
+            const bool actual = t >= 3 && t <= 5;
+            const double x = actual ? near - 0.01 * i : far + 0.01 * ((i * 7 + t) % 20);
+            text += fmt::format("{:.4f},{}\n", x, actual ? 1 : 0);
         }
         files.add(text);
     }

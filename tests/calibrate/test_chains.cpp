@@ -251,8 +251,8 @@ private:
                          edit, spec, misses_of_predicate(model, fresh, by_frame, positives),
                          threshold, is_inner(threshold, positives));
         const check::Monitor& monitor = model.monitors[0];
-        for (const check::Claim& claim : check::claims(model, monitor))
-            judge(chain, edit, spec, model, claim, fresh);
+        for (const check::Guarantee& guarantee : check::guarantees(model, monitor))
+            judge(chain, edit, spec, model, guarantee, fresh);
     }
 
     /// Whether the inner one of two thresholds is against this error.
@@ -261,20 +261,20 @@ private:
     }
 
     void judge(const Chain& chain, const Edit& edit, const std::string& spec,
-               const check::Model& model, const check::Claim& claim,
+               const check::Model& model, const check::Guarantee& guarantee,
                const std::vector<std::string>& fresh) {
-        using Kind = check::Claim::Kind;
+        using Kind = check::Guarantee::Kind;
         const check::Monitor& monitor = model.monitors[0];
         const check::Threshold& threshold = monitor.calibration
                                                 ? *monitor.calibration
                                                 : model.predicates[predicate_of(model)].threshold;
         const bool of_both = threshold.against == check::Against::both;
-        const bool alarms = claim.kind == Kind::missed_alarm ||
-                            (claim.kind == Kind::satisfied_wrongly && monitor.calibration);
-        const bool successes = claim.kind == Kind::missed_success ||
-                               (claim.kind == Kind::violated_wrongly && monitor.calibration);
+        const bool alarms = guarantee.kind == Kind::missed_alarm ||
+                            (guarantee.kind == Kind::satisfied_wrongly && monitor.calibration);
+        const bool successes = guarantee.kind == Kind::missed_success ||
+                               (guarantee.kind == Kind::violated_wrongly && monitor.calibration);
         // The guarantee on successes excludes missing samples.
-        if (!claim.part.empty() || (!alarms && !successes)) return;
+        if (!guarantee.part.empty() || (!alarms && !successes)) return;
         const bool missing = chain.world.missing > 0 || chain.world.missing_truth > 0;
         if (!monitor.calibration && successes && missing) return;
         note(monitor.calibration ? "whole" : "monitor", edit, spec,

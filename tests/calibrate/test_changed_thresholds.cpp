@@ -67,8 +67,8 @@ std::string believed(const std::string& json) {
         text += "\n";
     }
     for (const check::Monitor& monitor : model->monitors) {
-        for (const check::Claim& claim : check::claims(*model, monitor))
-            text += monitor.name + " " + claim.part + check::text(claim) + "\n";
+        for (const check::Guarantee& guarantee : check::guarantees(*model, monitor))
+            text += monitor.name + " " + check::text(guarantee) + "\n";
         if (!monitor.calibration) continue;
         const check::Threshold& shift = *monitor.calibration;
         text += fmt::format("{} {} {} {}\n", monitor.name, shift.value, shift.k, shift.n);

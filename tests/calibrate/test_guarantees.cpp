@@ -20,7 +20,7 @@ namespace etlc::tests {
 namespace {
 
 using calibrate::Index;
-using check::Claim;
+using check::Guarantee;
 
 check::Model load_uncalibrated(const std::string& text) {
     diag::Sink sink;
@@ -52,132 +52,136 @@ constexpr const char* kDeclarations =
     "let after = !a && O a; truth after = flag;\n";
 
 /// Returns all guarantees of one monitor, the parts in brackets.
-std::string claims_of(const std::string& formula) {
+std::string guarantees_of(const std::string& formula) {
     const check::Model model =
         load_uncalibrated(std::string(kDeclarations) + "monitor m = " + formula + ";");
     std::string result;
-    for (const Claim& claim : check::claims(model, model.monitors[0])) {
+    for (const Guarantee& guarantee : check::guarantees(model, model.monitors[0])) {
         if (!result.empty()) result += " | ";
-        if (!claim.part.empty()) result += "[" + claim.part + "] ";
-        result += check::text(claim);
+        result += check::text(guarantee);
     }
     return result;
 }
 
-TEST(Claims, AreReadOffTheNegationNormalForm) {
+TEST(Guarantees, AreReadOffTheNegationNormalForm) {
     const std::string success = "P(some verdict of a new episode misses a success) <= ";
     const std::string alarm = "P(some verdict of a new episode misses an alarm) <= ";
-    EXPECT_EQ(claims_of("F a"), success + "0.1");
-    EXPECT_EQ(claims_of("F (a && F b)"), success + "0.15");
-    EXPECT_EQ(claims_of("F (a && F a)"),
+    EXPECT_EQ(guarantees_of("F a"), success + "0.1");
+    EXPECT_EQ(guarantees_of("F (a && F b)"), success + "0.15");
+    EXPECT_EQ(guarantees_of("F (a && F a)"),
               success + "0.1");  // one event, counted once
-    EXPECT_EQ(claims_of("G !a"), alarm + "0.1");
-    EXPECT_EQ(claims_of("!(F a || F b)"), alarm + "0.15");
-    EXPECT_EQ(claims_of("G (a -> s >= 0.5)"), alarm + "0.1");
-    EXPECT_EQ(claims_of("G (s > 0.5 -> F[0, 3] a)"), success + "0.1");
-    EXPECT_EQ(claims_of("flag U a"), success + "0.1");
-    EXPECT_EQ(claims_of("F held[3] a"), success + "0.1");
-    EXPECT_EQ(claims_of("G !held[3] a"), alarm + "0.1");
-    EXPECT_EQ(claims_of("G (near -> F a)"), success + "0.1");  // on scalars alone: its own truth
+    EXPECT_EQ(guarantees_of("G !a"), alarm + "0.1");
+    EXPECT_EQ(guarantees_of("!(F a || F b)"), alarm + "0.15");
+    EXPECT_EQ(guarantees_of("G (a -> s >= 0.5)"), alarm + "0.1");
+    EXPECT_EQ(guarantees_of("G (s > 0.5 -> F[0, 3] a)"), success + "0.1");
+    EXPECT_EQ(guarantees_of("flag U a"), success + "0.1");
+    EXPECT_EQ(guarantees_of("F held[3] a"), success + "0.1");
+    EXPECT_EQ(guarantees_of("G !held[3] a"), alarm + "0.1");
+    EXPECT_EQ(guarantees_of("G (near -> F a)"),
+              success + "0.1");  // on scalars alone: its own truth
     EXPECT_EQ(
-        claims_of("F (s > 0.5 && flag)"),
+        guarantees_of("F (s > 0.5 && flag)"),
         "exact, except at robustness 0: no predicate is calibrated, and each is its own truth");
 }
 
-TEST(Claims, NothingWhereNothingIsKnown) {
-    EXPECT_EQ(claims_of("F e"), "no guarantee: 'e' is calibrated for F1");
-    EXPECT_EQ(claims_of("F (a && c)"), "no guarantee: 'c' is calibrated for frames, not episodes");
-    EXPECT_EQ(claims_of("F (a && literal)"),
+TEST(Guarantees, NothingWhereNothingIsKnown) {
+    EXPECT_EQ(guarantees_of("F e"), "no guarantee: 'e' is calibrated for F1");
+    EXPECT_EQ(guarantees_of("F (a && c)"),
+              "no guarantee: 'c' is calibrated for frames, not episodes");
+    EXPECT_EQ(guarantees_of("F (a && literal)"),
               "no guarantee: 'literal' has a threshold that was not calibrated");
-    EXPECT_EQ(claims_of("F (a && meant)"),
+    EXPECT_EQ(guarantees_of("F (a && meant)"),
               "no guarantee: 'meant' has a threshold that was not calibrated");
-    EXPECT_EQ(claims_of("F (a && !b)"), "no guarantee: 'a' occurs plain and 'b' negated");
-    EXPECT_EQ(claims_of("F (a <-> flag)"), "no guarantee: 'a' occurs both plain and negated");
-    EXPECT_EQ(claims_of("G !rise a"), "no guarantee: 'a' occurs both plain and negated");
-    EXPECT_EQ(claims_of("F fall a"), "no guarantee: 'a' occurs both plain and negated");
-    EXPECT_EQ(claims_of("F (half && rest)"),
+    EXPECT_EQ(guarantees_of("F (a && !b)"), "no guarantee: 'a' occurs plain and 'b' negated");
+    EXPECT_EQ(guarantees_of("F (a <-> flag)"), "no guarantee: 'a' occurs both plain and negated");
+    EXPECT_EQ(guarantees_of("G !rise a"), "no guarantee: 'a' occurs both plain and negated");
+    EXPECT_EQ(guarantees_of("F fall a"), "no guarantee: 'a' occurs both plain and negated");
+    EXPECT_EQ(guarantees_of("F (half && rest)"),
               "no guarantee: the alphas of its predicates add up to 1");
 }
 
 /// Predicates against both errors bound both, for formulas of any polarity.
-TEST(Claims, OfPredicatesAgainstBothErrors) {
+TEST(Guarantees, OfPredicatesAgainstBothErrors) {
     const auto lines = [](const char* satisfied, const char* violated, const char* either) {
         const std::string p = "P(some verdict of a new episode is ";
         return p + "satisfied wrongly) <= " + satisfied + " | " + p +
                "violated wrongly) <= " + violated + " | " + p + "wrong) <= " + either;
     };
-    EXPECT_EQ(claims_of("F two"), lines("0.05", "0.1", "0.15"));
-    EXPECT_EQ(claims_of("G !two"), lines("0.1", "0.05", "0.15"));
-    EXPECT_EQ(claims_of("G (two -> F same)"), lines("0.12", "0.07", "0.19"));
-    EXPECT_EQ(claims_of("F (two <-> flag)"), lines("0.15", "0.15", "0.15"));
+    EXPECT_EQ(guarantees_of("F two"), lines("0.05", "0.1", "0.15"));
+    EXPECT_EQ(guarantees_of("G !two"), lines("0.1", "0.05", "0.15"));
+    EXPECT_EQ(guarantees_of("G (two -> F same)"), lines("0.12", "0.07", "0.19"));
+    EXPECT_EQ(guarantees_of("F (two <-> flag)"), lines("0.15", "0.15", "0.15"));
     EXPECT_EQ(
-        claims_of("F (two && s > 1)"),
+        guarantees_of("F (two && s > 1)"),
         "P(some verdict of a new episode is satisfied wrongly) <= 0.05, except at robustness 0"
         " | P(some verdict of a new episode is violated wrongly) <= 0.1"
         " | P(some verdict of a new episode is wrong) <= 0.15, except at robustness 0");
     // One error is bounded where the bounds of all predicates are on its side.
-    EXPECT_EQ(claims_of("F (two && a)"),
+    EXPECT_EQ(guarantees_of("F (two && a)"),
               "P(some verdict of a new episode is violated wrongly) <= 0.2");
-    EXPECT_EQ(claims_of("F (two && !a)"),
+    EXPECT_EQ(guarantees_of("F (two && !a)"),
               "P(some verdict of a new episode is satisfied wrongly) <= 0.15");
-    EXPECT_EQ(claims_of("F (two && a && !b)"), "no guarantee: 'a' occurs plain and 'b' negated");
+    EXPECT_EQ(guarantees_of("F (two && a && !b)"),
+              "no guarantee: 'a' occurs plain and 'b' negated");
     // What counts as true or false where it is missing has no bound against that.
-    EXPECT_EQ(claims_of("F surely"), "P(some verdict of a new episode is violated wrongly) <= 0.1");
-    EXPECT_EQ(claims_of("G !surely"),
+    EXPECT_EQ(guarantees_of("F surely"),
+              "P(some verdict of a new episode is violated wrongly) <= 0.1");
+    EXPECT_EQ(guarantees_of("G !surely"),
               "P(some verdict of a new episode is satisfied wrongly) <= 0.1");
-    EXPECT_EQ(claims_of("F never"), "P(some verdict of a new episode is satisfied wrongly) <= 0.1");
+    EXPECT_EQ(guarantees_of("F never"),
+              "P(some verdict of a new episode is satisfied wrongly) <= 0.1");
     // One-sided ones against false positives.
-    EXPECT_EQ(claims_of("F few"), "P(some verdict of a new episode misses an alarm) <= 0.1");
-    EXPECT_EQ(claims_of("G !few"), "P(some verdict of a new episode misses a success) <= 0.1");
-    EXPECT_EQ(claims_of("F (few && !a)"),
+    EXPECT_EQ(guarantees_of("F few"), "P(some verdict of a new episode misses an alarm) <= 0.1");
+    EXPECT_EQ(guarantees_of("G !few"), "P(some verdict of a new episode misses a success) <= 0.1");
+    EXPECT_EQ(guarantees_of("F (few && !a)"),
               "P(some verdict of a new episode misses an alarm) <= 0.2");
-    EXPECT_EQ(claims_of("F (few && a)"),
+    EXPECT_EQ(guarantees_of("F (few && a)"),
               "no guarantee: 'a' may make it satisfied wrongly and 'few' violated wrongly");
-    EXPECT_EQ(claims_of("F share"),
+    EXPECT_EQ(guarantees_of("F share"),
               "no guarantee: 'share' is calibrated for a share of the frames, not for each");
 }
 
-TEST(Claims, OfMonitorsAgainstBothErrors) {
+TEST(Guarantees, OfMonitorsAgainstBothErrors) {
     const std::string p = "P(some verdict of a new episode is ";
-    EXPECT_EQ(claims_of("F two calibrated(conformal, alpha = 0.1, against = both)"),
+    EXPECT_EQ(guarantees_of("F two calibrated(conformal, alpha = 0.1, against = both)"),
               p + "satisfied wrongly) <= 0.1 | " + p + "violated wrongly) <= 0.1 | " + p +
                   "wrong) <= 0.2");
     EXPECT_EQ(
-        claims_of("F two calibrated(risk, alpha = 0.1, beta = 0.025, against = both)"),
+        guarantees_of("F two calibrated(risk, alpha = 0.1, beta = 0.025, against = both)"),
         "on average over calibrations and new episodes, satisfied at no more than 2.5 % of the "
         "steps at which it is truly violated"
         " | on average over calibrations and new episodes, violated at no more than 10 % of "
         "the steps at which it is truly satisfied");
     EXPECT_EQ(
-        claims_of("F two calibrated(risk, alpha = 0.1, against = missed_alarm)"),
+        guarantees_of("F two calibrated(risk, alpha = 0.1, against = missed_alarm)"),
         "on average over calibrations and new episodes, satisfied at no more than 10 % of the "
         "steps at which it is truly violated");
 }
 
 /// The predicates of the let keep to truths that are not those of the let.
-TEST(Claims, NothingOfALetWithATruth) {
+TEST(Guarantees, NothingOfALetWithATruth) {
     const std::string why =
         "no guarantee: 'after' has a truth of its own, to which no threshold was calibrated";
-    EXPECT_EQ(claims_of("F after"), why);
-    EXPECT_EQ(claims_of("after"), why);
-    EXPECT_EQ(claims_of("after && F b"),
-              why + " | [!a && O a] " + why +
-                  " | [F b] P(some verdict of a new episode misses a success) <= 0.05");
+    EXPECT_EQ(guarantees_of("F after"), why);
+    EXPECT_EQ(guarantees_of("after"), why);
+    EXPECT_EQ(guarantees_of("after && F b"),
+              why + " | part !a && O a: " + why +
+                  " | part F b: P(some verdict of a new episode misses a success) <= 0.05");
 }
 
-TEST(Claims, MixedConjunctsSpeakForThemselves) {
-    EXPECT_EQ(claims_of("F a && G !b"),
+TEST(Guarantees, MixedConjunctsSpeakForThemselves) {
+    EXPECT_EQ(guarantees_of("F a && G !b"),
               "no guarantee: 'a' occurs plain and 'b' negated"
-              " | [F a] P(some verdict of a new episode misses a success) <= 0.1"
-              " | [G !b] P(some verdict of a new episode misses an alarm) <= 0.05");
-    EXPECT_EQ(claims_of("!(G a -> F b)"),
+              " | part F a: P(some verdict of a new episode misses a success) <= 0.1"
+              " | part G !b: P(some verdict of a new episode misses an alarm) <= 0.05");
+    EXPECT_EQ(guarantees_of("!(G a -> F b)"),
               "no guarantee: 'a' occurs plain and 'b' negated"
-              " | [G a] P(some verdict of a new episode misses a success) <= 0.1"
-              " | [!(F b)] P(some verdict of a new episode misses an alarm) <= 0.05");
-    EXPECT_EQ(claims_of("F a && F e"),
+              " | part G a: P(some verdict of a new episode misses a success) <= 0.1"
+              " | part !(F b): P(some verdict of a new episode misses an alarm) <= 0.05");
+    EXPECT_EQ(guarantees_of("F a && F e"),
               "no guarantee: 'e' is calibrated for F1"
-              " | [F a] P(some verdict of a new episode misses a success) <= 0.1"
-              " | [F e] no guarantee: 'e' is calibrated for F1");
+              " | part F a: P(some verdict of a new episode misses a success) <= 0.1"
+              " | part F e: no guarantee: 'e' is calibrated for F1");
 }
 
 // ---- simulation ---------------------------------------------------------------------------------
@@ -240,7 +244,7 @@ private:
     }
 };
 
-TEST(Claims, AreTrueOfDrawnEpisodes) {
+TEST(Guarantees, AreTrueOfDrawnEpisodes) {
     // Positive, negative, mixed; the conjuncts of the mixed one are the monitors after it.
     check::Model model = load_uncalibrated(
         "spec t; input x, y, s : f32;\n"
@@ -280,13 +284,13 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
         std::vector<bool> alarm(model.monitors.size());
         for (std::size_t t = 0; t < kEpisodeSteps; ++t) {
             std::vector<execute::Sample> samples = test.samples[t];
-            const auto& said = monitors.evaluator.step(samples);
+            const auto& predicted = monitors.evaluator.step(samples);
             samples.push_back({true, {test.a[t] ? 1.0F : 0.0F}});
             samples.push_back({true, {test.b[t] ? 1.0F : 0.0F}});
             const auto& meant = truths.evaluator.step(samples);
-            for (std::size_t m = 0; m < said.size(); ++m) {
-                if (meant[m].satisfied() && !said[m].satisfied()) success[m] = true;
-                if (meant[m].violated() && !said[m].violated()) alarm[m] = true;
+            for (std::size_t m = 0; m < predicted.size(); ++m) {
+                if (meant[m].satisfied() && !predicted[m].satisfied()) success[m] = true;
+                if (meant[m].violated() && !predicted[m].violated()) alarm[m] = true;
             }
         }
         for (std::size_t m = 0; m < success.size(); ++m) {
@@ -297,13 +301,13 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
     ASSERT_GT(draws, kGuaranteeDraws / 2);
     int vacuous = 0;
     for (std::size_t m = 0; m < model.monitors.size(); ++m) {
-        const check::Claim claim = check::claims(model, model.monitors[m])[0];
-        if (claim.kind == Claim::Kind::nothing) {
+        const check::Guarantee guarantee = check::guarantees(model, model.monitors[m])[0];
+        if (guarantee.kind == Guarantee::Kind::nothing) {
             EXPECT_EQ(model.monitors[m].name, "m0");
             continue;
         }
-        const bool of_success = claim.kind == Claim::Kind::missed_success;
-        const double bound = std::stod(claim.bound);
+        const bool of_success = guarantee.kind == Guarantee::Kind::missed_success;
+        const double bound = std::stod(guarantee.bound);
         const double share =
             static_cast<double>((of_success ? missed_success : missed_alarm)[m]) / draws;
         const double other =

@@ -74,17 +74,17 @@ ShiftedEpisode random_episode(Random& random) {
 }
 
 struct Runs {
-    std::vector<etlmon::Verdict> said, truth;
+    std::vector<etlmon::Verdict> predicted, truth;
 };
 
-Runs run(execute::Evaluator& said, execute::Evaluator& truth, const ShiftedEpisode& episode) {
+Runs run(execute::Evaluator& predicted, execute::Evaluator& truth, const ShiftedEpisode& episode) {
     Runs runs;
-    said.reset();
+    predicted.reset();
     truth.reset();
     for (std::size_t t = 0; t < kShiftSteps; ++t) {
         const execute::Sample x{true, {episode.x[t]}};
         const execute::Sample px{true, {episode.label[t] ? 1.0F : 0.0F}};
-        runs.said.push_back(said.step({x, px})[0]);
+        runs.predicted.push_back(predicted.step({x, px})[0]);
         runs.truth.push_back(truth.step({x, px, px})[0]);
     }
     return runs;
@@ -93,9 +93,9 @@ Runs run(execute::Evaluator& said, execute::Evaluator& truth, const ShiftedEpiso
 /// Returns the worst rho where the truth must not be missed, by hand.
 std::optional<double> score(const Runs& runs, bool alarms) {
     std::optional<double> worst;
-    for (std::size_t t = 0; t < runs.said.size(); ++t) {
+    for (std::size_t t = 0; t < runs.predicted.size(); ++t) {
         if (alarms ? !runs.truth[t].violated() : !runs.truth[t].satisfied()) continue;
-        const double rho = (alarms ? 1 : -1) * static_cast<double>(runs.said[t].robustness);
+        const double rho = (alarms ? 1 : -1) * static_cast<double>(runs.predicted[t].robustness);
         worst = std::max(worst.value_or(rho), rho);
     }
     return worst;
@@ -106,31 +106,31 @@ TEST(Shift, CoversDrawnEpisodes) {
         const bool alarms = against == "missed_alarm";
         const Planned unshifted(calibrate::unshifted(model_of(against, 0)));
         const Planned truths(episodes::ground_truth(unshifted.model, {0}).model);
-        execute::Evaluator said(unshifted.plan);
+        execute::Evaluator predicted(unshifted.plan);
         execute::Evaluator truth(truths.plan);
         Random random(77);
         int covered = 0;
         for (int draw = 0; draw < kShiftDraws; ++draw) {
             std::vector<double> scores;
             while (scores.size() < 9)
-                if (const auto one = score(run(said, truth, random_episode(random)), alarms))
+                if (const auto one = score(run(predicted, truth, random_episode(random)), alarms))
                     scores.push_back(*one);
             const auto fit = std::get<calibrate::Fitted>(calibrate::fit_rank(scores, "0.2"));
             ASSERT_EQ(fit.k, 8U);
             const ShiftedEpisode test = random_episode(random);
             const Planned shifted(model_of(against, alarms ? fit.epsilon : -fit.epsilon));
             execute::Evaluator calibrated(shifted.plan);
-            const Runs before = run(said, truth, test);
+            const Runs before = run(predicted, truth, test);
             const Runs after = run(calibrated, truth, test);
             bool missed = false;
-            for (std::size_t t = 0; t < after.said.size(); ++t) {
+            for (std::size_t t = 0; t < after.predicted.size(); ++t) {
                 const float shift = alarms ? fit.epsilon : -fit.epsilon;
-                ASSERT_EQ(after.said[t].robustness, before.said[t].robustness - shift);
-                ASSERT_EQ(after.said[t].lower, before.said[t].lower - shift);
-                ASSERT_EQ(after.said[t].upper, before.said[t].upper - shift);
-                missed =
-                    missed || (alarms ? after.truth[t].violated() && after.said[t].satisfied()
-                                      : after.truth[t].satisfied() && after.said[t].violated());
+                ASSERT_EQ(after.predicted[t].robustness, before.predicted[t].robustness - shift);
+                ASSERT_EQ(after.predicted[t].lower, before.predicted[t].lower - shift);
+                ASSERT_EQ(after.predicted[t].upper, before.predicted[t].upper - shift);
+                missed = missed ||
+                         (alarms ? after.truth[t].violated() && after.predicted[t].satisfied()
+                                 : after.truth[t].satisfied() && after.predicted[t].violated());
             }
             covered += missed ? 0 : 1;
             const auto own = score(before, alarms);
@@ -148,7 +148,7 @@ thresholds::Entry shift_at_the_rank(const std::string& formula, const std::strin
     const check::Model model = model_of(against, 0, formula);
     const Planned unshifted(calibrate::unshifted(model));
     const Planned truths(episodes::ground_truth(unshifted.model, {0}).model);
-    execute::Evaluator said(unshifted.plan);
+    execute::Evaluator predicted(unshifted.plan);
     execute::Evaluator truth(truths.plan);
     Random random(78);
     std::vector<double> scores;
@@ -161,7 +161,7 @@ thresholds::Entry shift_at_the_rank(const std::string& formula, const std::strin
             text += fmt::format("{},{}\n", episode.x[t], episode.label[t] ? 1 : 0);
         files.push_back(std::make_unique<TemporaryPath>(fmt::format("shift{}.csv", i), text));
         request.episodes.push_back(files.back()->path());
-        if (const auto one = score(run(said, truth, episode), alarms)) scores.push_back(*one);
+        if (const auto one = score(run(predicted, truth, episode), alarms)) scores.push_back(*one);
     }
     std::sort(scores.begin(), scores.end());
     diag::Sink sink;

@@ -127,7 +127,7 @@ std::vector<Label> verdicts(const reference::Run& run, std::size_t monitor, std:
 
 TEST(Evaluation, IsThatOfTheReference) {
     std::mt19937 random(7);
-    const check::Model said_model = model_of(spec(false));
+    const check::Model model = model_of(spec(false));
     const check::Model true_model = model_of(spec(true));
     const std::size_t monitors = kFormulas.size() + kSliding.size();
     for (const bool missing : {false, true}) {
@@ -139,20 +139,21 @@ TEST(Evaluation, IsThatOfTheReference) {
         for (int e = 0; e < 60; ++e) {
             const Episode episode = random_episode(random, missing);
             texts.push_back(episode.csv);
-            const auto said = reference::evaluate(said_model, episode.trace);
-            const auto is = reference::evaluate(true_model, episode.trace);
+            const auto predicted = reference::evaluate(model, episode.trace);
+            const auto actual = reference::evaluate(true_model, episode.trace);
             for (std::size_t m = 0; m < monitors; ++m) {
-                const std::uint32_t horizon = said_model.monitors[m].horizon;
-                const std::vector<Label> claims = verdicts(said, m, horizon);
-                const std::vector<Label> truths = verdicts(is, m, horizon);
-                ASSERT_EQ(claims.size(), episode.trace.size());
-                for (std::size_t i = 0; i < claims.size(); ++i) steps[m].add(claims[i], truths[i]);
-                const bool sliding = said_model.monitors[m].sliding;
+                const std::uint32_t horizon = model.monitors[m].horizon;
+                const std::vector<Label> predictions = verdicts(predicted, m, horizon);
+                const std::vector<Label> truths = verdicts(actual, m, horizon);
+                ASSERT_EQ(predictions.size(), episode.trace.size());
+                for (std::size_t i = 0; i < predictions.size(); ++i)
+                    steps[m].add(predictions[i], truths[i]);
+                const bool sliding = model.monitors[m].sliding;
                 const auto one = [&](const std::vector<Label>& labels) {
                     return sliding ? *std::min_element(labels.begin(), labels.end())
                                    : labels.back();
                 };
-                episodes[m].add(one(claims), one(truths));
+                episodes[m].add(one(predictions), one(truths));
                 // F (p && F q), F (p && F (q && F p))
                 const bool sequential = m == 3 || m == 4;
                 bool p_visited = false;
@@ -162,7 +163,7 @@ TEST(Evaluation, IsThatOfTheReference) {
                     q_visited |= !step[3].empty() && step[3][0] <= 0.25;
                 }
                 if (sequential && p_visited && q_visited)
-                    ordering[m - 3].add(one(claims), one(truths));
+                    ordering[m - 3].add(one(predictions), one(truths));
             }
             for (const reference::Step& step : episode.trace) {
                 const auto holds = [&](std::size_t input, bool above) {

@@ -16,16 +16,16 @@ using evaluate::EpisodeRow;
 using evaluate::Judgement;
 
 /// Columns x (p is x <= 0.5) and truth.p, from two words of y and n; "?" is missing.
-std::string episode(const std::string& said, const std::string& is) {
+std::string episode(const std::string& predicted, const std::string& actual) {
     std::string text = "x,truth.p\n";
-    for (std::size_t i = 0; i < said.size(); ++i)
+    for (std::size_t i = 0; i < predicted.size(); ++i)
         text += fmt::format("{},{}\n",
-                            said[i] == '?'   ? ""
-                            : said[i] == 'y' ? "0"
-                                             : "1",
-                            is[i] == '?'   ? ""
-                            : is[i] == 'y' ? "1"
-                                           : "0");
+                            predicted[i] == '?'   ? ""
+                            : predicted[i] == 'y' ? "0"
+                                                  : "1",
+                            actual[i] == '?'   ? ""
+                            : actual[i] == 'y' ? "1"
+                                               : "0");
     return text;
 }
 
@@ -53,7 +53,7 @@ TEST(ByEpisode, IsTheWorstFirst) {
                          "0000 4 wrong:  error: -",
                          "0005 4 wrong:  error: -",  // unknown
                      }));
-    EXPECT_EQ(rows[0].claims.false_negatives, 4U);
+    EXPECT_EQ(rows[0].predictions.false_negatives, 4U);
     EXPECT_EQ(rows[0].predicates.at(0).first, "p");
 }
 
@@ -64,7 +64,7 @@ TEST(ByEpisode, NamesAMonitorWhereNoPredicateErrs) {
     ASSERT_TRUE(rows[0].first_error);
     EXPECT_TRUE(rows[0].first_error->of_monitor);
     EXPECT_EQ(text(rows[0]).substr(4), " 3 wrong: m error: 2 m");
-    EXPECT_EQ(rows[0].claims.total(), 3U);  // steps of the monitor
+    EXPECT_EQ(rows[0].predictions.total(), 3U);  // steps of the monitor
 }
 
 TEST(Duration, IsABaselineOfEveryLevel) {

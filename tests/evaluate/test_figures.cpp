@@ -12,17 +12,17 @@
 namespace etlc::evaluate {
 namespace {
 
-using Pairs = std::vector<std::pair<Label, Label>>;  // said, is
+using Pairs = std::vector<std::pair<Label, Label>>;  // predicted, actual
 
 Pairs random_pairs(std::mt19937& random, bool unknowns) {
     Pairs pairs(1 + random() % 30);
-    for (auto& [said, is] : pairs) {
+    for (auto& [predicted, actual] : pairs) {
         const auto draw = [&] {
             const std::uint64_t x = random() % (unknowns ? 5 : 4);
             return x == 4 ? Label::unknown : x % 2 == 0 ? Label::yes : Label::no;
         };
-        said = draw();
-        is = draw();
+        predicted = draw();
+        actual = draw();
     }
     return pairs;
 }
@@ -30,10 +30,10 @@ Pairs random_pairs(std::mt19937& random, bool unknowns) {
 std::optional<double> share(const Pairs& pairs, auto of, auto what) {
     double whole = 0;
     double part = 0;
-    for (const auto& [said, is] : pairs) {
-        if (is == Label::unknown || !of(said, is)) continue;
+    for (const auto& [predicted, actual] : pairs) {
+        if (actual == Label::unknown || !of(predicted, actual)) continue;
         whole += 1;
-        part += what(said, is) ? 1 : 0;
+        part += what(predicted, actual) ? 1 : 0;
     }
     if (whole == 0) return std::nullopt;
     return part / whole;
@@ -49,23 +49,25 @@ void expect_near(const std::optional<double>& found, const std::optional<double>
 TEST(Rates, AreTheSharesThatTheirNamesSay) {
     std::mt19937 random(1);
     const auto any = [](Label, Label) { return true; };
-    const auto claimed = [](Label said, Label) { return said == Label::yes; };
-    const auto positive = [](Label, Label is) { return is == Label::yes; };
-    const auto agree = [](Label said, Label is) { return said == is; };
+    const auto is_positive = [](Label predicted, Label) { return predicted == Label::yes; };
+    const auto positive = [](Label, Label actual) { return actual == Label::yes; };
+    const auto agree = [](Label predicted, Label actual) { return predicted == actual; };
     for (int round = 0; round < 2000; ++round) {
         const Pairs pairs = random_pairs(random, round % 2 == 0);
         Counts counts;
-        for (const auto& [said, is] : pairs) counts.add(said, is);
+        for (const auto& [predicted, actual] : pairs) counts.add(predicted, actual);
         const Rates found = rates(counts);
-        const auto precision = share(pairs, claimed, agree);
+        const auto precision = share(pairs, is_positive, agree);
         const auto recall = share(pairs, positive, agree);
         expect_near(found.precision, precision);
         expect_near(found.recall, recall);
         expect_near(found.agreement, share(pairs, any, agree));
-        const auto negative = [](Label, Label is) { return is == Label::no; };
-        const auto unknown = [](Label said, Label) { return said == Label::unknown; };
-        const auto decided = [](Label said, Label) { return said != Label::unknown; };
-        const auto wrong = [&](Label said, Label is) { return decided(said, is) && said != is; };
+        const auto negative = [](Label, Label actual) { return actual == Label::no; };
+        const auto unknown = [](Label predicted, Label) { return predicted == Label::unknown; };
+        const auto decided = [](Label predicted, Label) { return predicted != Label::unknown; };
+        const auto wrong = [&](Label predicted, Label actual) {
+            return decided(predicted, actual) && predicted != actual;
+        };
         expect_near(found.unknown, share(pairs, any, unknown));
         expect_near(found.wrong_when_decided, share(pairs, decided, wrong));
         expect_near(found.false_negative_rate, share(pairs, positive, wrong));
@@ -83,15 +85,15 @@ TEST(Rates, AreTheSharesThatTheirNamesSay) {
     }
 }
 
-TEST(Rates, OfClaimsThatDoNotLook) {
+TEST(Rates, OfConstantPredictions) {
     std::mt19937 random(2);
     for (int round = 0; round < 500; ++round) {
         const Pairs pairs = random_pairs(random, false);
-        for (const Label claim : {Label::yes, Label::no}) {
+        for (const Label prediction : {Label::yes, Label::no}) {
             Counts counts;
-            for (const auto& pair : pairs) counts.add(claim, pair.second);
+            for (const auto& pair : pairs) counts.add(prediction, pair.second);
             const Rates blind =
-                rates_of_constant(claim == Label::yes, counts.positives(), counts.total());
+                rates_of_constant(prediction == Label::yes, counts.positives(), counts.total());
             expect_near(blind.f1, rates(counts).f1);
             expect_near(blind.precision, rates(counts).precision);
             expect_near(blind.recall, rates(counts).recall);

@@ -11,19 +11,19 @@ using evaluate::Evaluation;
 using evaluate::MonitorScore;
 
 /// Columns x (p is x <= 0.5) and truth.p, from two words of y and n; "?" is missing.
-std::string judged_episode(const std::string& said, const std::string& is) {
+std::string judged_episode(const std::string& predicted, const std::string& actual) {
     std::string text = "x,truth.p\n";
-    for (std::size_t i = 0; i < said.size(); ++i) {
-        text += said[i] == '?' ? "" : said[i] == 'y' ? "0" : "1";
-        text += is[i] == '?' ? ",\n" : is[i] == 'y' ? ",1\n" : ",0\n";
+    for (std::size_t i = 0; i < predicted.size(); ++i) {
+        text += predicted[i] == '?' ? "" : predicted[i] == 'y' ? "0" : "1";
+        text += actual[i] == '?' ? ",\n" : actual[i] == 'y' ? ",1\n" : ",0\n";
     }
     return text;
 }
 
 const std::string kNow = "spec t; input x : f32; predicate p = x <= 0.5; sliding monitor now = p;";
 
-evaluate::Detection detection(const std::string& said, const std::string& is) {
-    return evaluated(kNow, {judged_episode(said, is)}).monitors.at(0).detection;
+evaluate::Detection detection(const std::string& predicted, const std::string& actual) {
+    return evaluated(kNow, {judged_episode(predicted, actual)}).monitors.at(0).detection;
 }
 
 TEST(Detection, IsTheTimeFromTurnToTurn) {

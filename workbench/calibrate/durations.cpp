@@ -217,8 +217,8 @@ std::string describe_duration(const check::Model& model, const check::Monitor& m
     std::string text =
         fmt::format("\n{}: {}\n    {}\n", monitor.name, check::shown(model, monitor.formula),
                     check::of_duration(model, *monitor.duration));
-    for (const check::Claim& claim : check::claims(model, monitor))
-        text += fmt::format("    {}\n", check::text(claim));
+    for (const check::Guarantee& one : check::guarantees(model, monitor))
+        text += fmt::format("    {}\n", check::text(one));
     const auto time = [](double score) {
         return std::isinf(score) ? std::string(score > 0 ? "any" : "none")
                                  : fmt::format("{}", score);

@@ -20,7 +20,7 @@ namespace {
 
 using check::ThresholdOrigin;
 
-/// Half of F1: true positives / (positives + claims), compared without rounding.
+/// Half of F1: true positives / (positives + predictions), compared without rounding.
 struct HalfF1 {
     std::uint64_t true_positives = 0;
     std::uint64_t of = 1;
@@ -59,8 +59,8 @@ public:
 
     const HalfF1& best() const { return best_; }
     std::uint64_t frames() const { return frames_; }
-    /// Returns the scores, ascending, between which epsilon makes the same claims: the one taken,
-    /// and the next above it (for <=) or below it (for <) if that is finite.
+    /// Returns the scores, ascending, between which epsilon makes the same predictions: the one
+    /// taken, and the next above it (for <=) or below it (for <) if that is finite.
     std::vector<float> gap() const {
         if (!other_) return {taken_};
         return strict_ ? std::vector{*other_, taken_} : std::vector{taken_, *other_};

@@ -95,7 +95,7 @@ Fit fit_rank(std::vector<double> reaches, const std::string& alpha);
 
 /// Finds the score that has the greatest F1 as epsilon in `score <= epsilon` (< if `strict`), over
 /// the labelled frames of the groups that count; ties go to the least. Then moves epsilon
-/// halfway to the next score, which changes the claim for none of these frames.
+/// halfway to the next score, which changes the prediction for none of these frames.
 Fit fit_f1(const episodes::FramesByScore& labelled, bool strict, const Counts& counts = kAll);
 
 /// Does so without each part of the groups, in two passes over the frames; `part_of`: per group.

@@ -15,7 +15,7 @@ namespace etlc::calibrate {
 
 namespace {
 
-using check::Claim;
+using check::Guarantee;
 using episodes::Fraction;
 using episodes::Label;
 using Open = Guaranteed::Open;
@@ -121,9 +121,9 @@ void add_variants(const std::vector<Broken>& variants, const std::vector<Guarant
         for (const Broken& broken : variants) {
             ++error.made[static_cast<std::size_t>(broken.variant)];
             const Concluded& verdicts = broken.concluded[i];
-            if (!is_cost && verdicts.is != right) continue;
+            if (!is_cost && verdicts.actual != right) continue;
             ++of.whole;
-            of.part += verdicts.said == wrong ? 1 : 0;
+            of.part += verdicts.predicted == wrong ? 1 : 0;
         }
     }
 }
@@ -148,23 +148,23 @@ void count(const check::Model& model, const std::vector<Guaranteed>& all, const 
     recorded.tracks.for_each([&](std::size_t e, const std::string& track) {
         const std::uint32_t group = recorded.groups.of(e);
         const Thresholds& thresholds = thresholds_of(group);
-        const std::vector<Said> episode = replayer->replay(track, thresholds);
+        const std::vector<VerdictCounts> episode = replayer->replay(track, thresholds);
         for (std::size_t i = 0; i < all.size(); ++i) {
-            const Said& said = episode[i];
-            const std::uint64_t truly_violated = said.steps - said.truly_satisfied;
+            const VerdictCounts& counts = episode[i];
+            const std::uint64_t truly_violated = counts.steps - counts.truly_satisfied;
             const bool success = all[i].open == Open::satisfied;
-            errors[i].all += said.all;
-            errors[i].steps += said.steps;
+            errors[i].all += counts.all;
+            errors[i].steps += counts.steps;
             if (all[i].open == Open::unknown) {
-                fractions[i][group].part += static_cast<std::int64_t>(said.unknown);
-                fractions[i][group].whole += said.all;
+                fractions[i][group].part += static_cast<std::int64_t>(counts.unknown);
+                fractions[i][group].whole += counts.all;
                 continue;
             }
-            errors[i].said += success ? said.satisfied : said.violated;
-            errors[i].truly += success ? said.truly_satisfied : truly_violated;
-            fractions[i][group].part +=
-                static_cast<std::int64_t>(success ? said.falsely_satisfied : said.falsely_violated);
-            fractions[i][group].whole += success ? truly_violated : said.truly_satisfied;
+            errors[i].predicted += success ? counts.satisfied : counts.violated;
+            errors[i].actual += success ? counts.truly_satisfied : truly_violated;
+            fractions[i][group].part += static_cast<std::int64_t>(
+                success ? counts.falsely_satisfied : counts.falsely_violated);
+            fractions[i][group].whole += success ? truly_violated : counts.truly_satisfied;
         }
         if (why_no.empty())
             add_variants(replayer->replay_variants(track, thresholds), all, group, of_variants,
@@ -251,8 +251,8 @@ std::vector<OtherError> other_errors(const check::Model& model, const std::vecto
     std::vector<OtherError> errors(all.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
         const check::Monitor& monitor = model.monitors[all[i].monitor];
-        const Index formula = all[i].claim.formula;
-        if (!all[i].claim.part.empty() && monitor.restarts != check::Restarts::never)
+        const Index formula = all[i].guarantee.formula;
+        if (!all[i].guarantee.part.empty() && monitor.restarts != check::Restarts::never)
             errors[i].why = "a part of a monitor that restarts";
         bool reads_more = !check::flags_of(model, formula).empty();
         for (const Index p : check::predicates_of(model, formula)) {
@@ -317,12 +317,12 @@ namespace {
 using diag::counted;
 
 /// Returns the verdict of the other error, and that of its truth.
-const char* said_word(const Guaranteed& of) {
+const char* predicted_word(const Guaranteed& of) {
     return of.open == Open::unknown     ? "unknown"
            : of.open == Open::satisfied ? "satisfied"
                                         : "violated";
 }
-const char* true_word(const Guaranteed& of) {
+const char* actual_word(const Guaranteed& of) {
     return of.open == Open::satisfied ? "violated" : "satisfied";
 }
 
@@ -406,8 +406,8 @@ std::string made(const VariantError& error) {
 std::string errors_of(const VariantError& error, const Guaranteed& of) {
     if (of.open == Open::unknown)
         return fmt::format("unknown on {} of {}", error.errors, error.cases);
-    return fmt::format("{} on {} of {} truly {}", said_word(of), error.errors, error.cases,
-                       true_word(of));
+    return fmt::format("{} on {} of {} truly {}", predicted_word(of), error.errors, error.cases,
+                       actual_word(of));
 }
 
 /// Returns the line about broken variants.
@@ -415,7 +415,7 @@ std::string describe(const VariantError& error, const Guaranteed& of) {
     if (!error.why.empty()) return fmt::format("broken variants not judged: {}\n", error.why);
     if (all_made(error) == 0) return "no broken variants: the episodes are too short\n";
     if (error.cases == 0)
-        return fmt::format("on {}: none is truly {}\n", made(error), true_word(of));
+        return fmt::format("on {}: none is truly {}\n", made(error), actual_word(of));
     return fmt::format("on {}: {}, {}\n", made(error), errors_of(error, of), share_of(error));
 }
 
@@ -440,7 +440,7 @@ std::string describe(const OtherError& error, const Guaranteed& of, const std::s
     const bool is_cost = of.open == Open::unknown;
     const char* const each = error.by_group ? "group" : "episode";
     const std::string no_case =
-        is_cost ? "there is no verdict" : fmt::format("no step is truly {}", true_word(of));
+        is_cost ? "there is no verdict" : fmt::format("no step is truly {}", actual_word(of));
     if (const auto nothing = nothing_counted(error, is_cost, no_case))
         text += *nothing;
     else if (is_cost)
@@ -451,9 +451,9 @@ std::string describe(const OtherError& error, const Guaranteed& of, const std::s
         text += fmt::format(
             "{}{} at {} of {} truly {} steps, {}; in {} of {} {}s\n"
             "{}in all {} at {} of {} steps, truly at {}\n",
-            head(false), said_word(of), error.errors, error.cases, true_word(of), share_of(error),
-            error.wrong, error.groups, each, indent, said_word(of), error.said, error.steps,
-            error.truly);
+            head(false), predicted_word(of), error.errors, error.cases, actual_word(of),
+            share_of(error), error.wrong, error.groups, each, indent, predicted_word(of),
+            error.predicted, error.steps, error.actual);
     if (error.why.empty() && error.steps < error.all)
         text += fmt::format("{}the truth is open at {} of {} steps\n", indent,
                             error.all - error.steps, error.all);
@@ -469,16 +469,17 @@ void warn_of_empty(const check::Model& model, const Guaranteed& of, const OtherE
     const check::Monitor& monitor = model.monitors[of.monitor];
     const auto share = [](const ErrorShare& one) { return std::floor(100 * one.share()); };
     const std::string subject = fmt::format(
-        "{}'{}' is {}", of.claim.part.empty() ? "" : fmt::format("the part {} of ", of.claim.part),
-        monitor.name, said_word(of));
+        "{}'{}' is {}",
+        of.guarantee.part.empty() ? "" : fmt::format("the part {} of ", of.guarantee.part),
+        monitor.name, predicted_word(of));
     diag::Diagnostic& warning = episodes::warn_of_data(
         diag::Code::empty_guarantee,
         by_steps ? fmt::format("the guarantee holds, and is empty: {} at {:.0f} % of the steps at "
                                "which it is truly {}",
-                               subject, share(error), true_word(of))
+                               subject, share(error), actual_word(of))
                  : fmt::format("the guarantee holds, and says little: {} on {:.0f} % of the broken "
                                "variants on which it is truly {}",
-                               subject, share(error.variants), true_word(of)),
+                               subject, share(error.variants), actual_word(of)),
         monitor.span, sink);
     if (by_steps)
         warning.note(fmt::format(

@@ -43,12 +43,12 @@ struct VariantError : ErrorShare {
 };
 
 struct OtherError : ErrorShare {
-    std::uint64_t all = 0;    ///< monitors: all steps
-    std::uint64_t steps = 0;  ///< those of known truth
-    std::uint64_t said = 0;   ///< those with the wrong verdict, as its cases have if wrong
-    std::uint64_t truly = 0;  ///< those at which the truth is that verdict
-    std::uint32_t parts = 0;  ///< groups were left out in this many parts; 0: one by one
-    VariantError variants;    ///< of a monitor
+    std::uint64_t all = 0;        ///< monitors: all steps
+    std::uint64_t steps = 0;      ///< those of known truth
+    std::uint64_t predicted = 0;  ///< those with the wrong verdict, as its cases have if wrong
+    std::uint64_t actual = 0;     ///< those at which the truth is that verdict
+    std::uint32_t parts = 0;      ///< groups were left out in this many parts; 0: one by one
+    VariantError variants;        ///< of a monitor
 };
 
 /// The tracks of all episodes, in order.

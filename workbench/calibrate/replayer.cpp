@@ -32,10 +32,11 @@ Label recorded_in(char byte) {
     return static_cast<Label>(static_cast<unsigned>(byte) >> kRecorded);
 }
 
-/// Returns the formula of the truth that judges the claim.
+/// Returns the formula of the truth that judges the guarantee.
 Index true_formula(const check::Model& model, const Guaranteed& one) {
     const check::Monitor& monitor = model.monitors[one.monitor];
-    return one.claim.formula == monitor.formula ? monitor.true_formula() : one.claim.formula;
+    return one.guarantee.formula == monitor.formula ? monitor.true_formula()
+                                                    : one.guarantee.formula;
 }
 
 /// Returns the model with only these monitors, in which an input per watched predicate, appended in
@@ -50,8 +51,8 @@ check::Model replayed(const check::Model& model, const std::vector<Guaranteed>& 
     for (const Guaranteed& one : all) {
         check::Monitor monitor = model.monitors[one.monitor];
         monitor.truth = true_formula(model, one);
-        monitor.formula = one.claim.formula;
-        if (one.claim.negated) {
+        monitor.formula = one.guarantee.formula;
+        if (one.guarantee.negated) {
             check::Formula negation;
             negation.kind = check::Formula::Kind::negation;
             negation.operands = {monitor.formula};
@@ -91,25 +92,25 @@ void measure_by_inputs(check::Model& model, const std::vector<Index>& predicates
 }
 
 std::vector<Guaranteed> guaranteed(const check::Model& model, bool as_a_whole) {
-    using Kind = check::Claim::Kind;
+    using Kind = check::Guarantee::Kind;
     std::vector<Guaranteed> found;
     for (Index m = 0; m < model.monitors.size(); ++m) {
         const check::Monitor& monitor = model.monitors[m];
         if (monitor.calibration.has_value() != as_a_whole) continue;
         if (monitor.duration && !monitor.duration->is_known) continue;  // it has no verdicts yet
-        for (const check::Claim& claim : check::claims(model, monitor)) {
-            const Kind kind = claim.kind;
+        for (const check::Guarantee& guarantee : check::guarantees(model, monitor)) {
+            const Kind kind = guarantee.kind;
             if (kind == Kind::nothing || kind == Kind::exact || kind == Kind::wrong ||
                 kind == Kind::false_alarm)
                 continue;
             const bool of_alarms = kind == Kind::missed_alarm || kind == Kind::satisfied_wrongly ||
                                    kind == Kind::satisfied_share;
             const bool again = !found.empty() && found.back().monitor == m &&
-                               found.back().claim.part == claim.part;
+                               found.back().guarantee.part == guarantee.part;
             if (again)
                 found.back().open = Open::unknown;
             else
-                found.push_back({m, claim, of_alarms ? Open::violated : Open::satisfied});
+                found.push_back({m, guarantee, of_alarms ? Open::violated : Open::satisfied});
         }
     }
     return found;
@@ -122,9 +123,9 @@ Watched watched_by(const check::Model& model, const std::vector<Guaranteed>& all
     std::set<Index> judging;  // the truth
     std::set<Index> flags;
     for (const Guaranteed& one : all) {
-        const auto of = check::predicates_of(model, one.claim.formula);
+        const auto of = check::predicates_of(model, one.guarantee.formula);
         predicates.insert(of.begin(), of.end());
-        for (const Index formula : {one.claim.formula, true_formula(model, one)}) {
+        for (const Index formula : {one.guarantee.formula, true_formula(model, one)}) {
             const auto bools = check::flags_of(model, formula);
             flags.insert(bools.begin(), bools.end());
         }
@@ -261,14 +262,15 @@ Replayer::Replayer(const check::Model& model, std::vector<Guaranteed> all, Watch
     });
 }
 
-std::vector<Said> Replayer::replay(const std::string& track, const Thresholds& thresholds) {
-    std::vector<Said> said(all_.size());
+std::vector<VerdictCounts> Replayer::replay(const std::string& track,
+                                            const Thresholds& thresholds) {
+    std::vector<VerdictCounts> counts(all_.size());
     Steps steps(*this, track);
     run(steps, thresholds, [&] {
-        note(said);
+        note(counts);
         return true;
     });
-    return said;
+    return counts;
 }
 
 std::vector<Broken> Replayer::replay_variants(const std::string& track,
@@ -308,21 +310,21 @@ void Replayer::follow(Index m) {
         truths_.restart(m);
 }
 
-void Replayer::note(std::vector<Said>& said) {
+void Replayer::note(std::vector<VerdictCounts>& counts) {
     for (Index m = 0; m < all_.size(); ++m) {
         if (!monitors_.reports(m)) continue;
-        const etlmon::Verdict& says = monitors_.verdict(m);
-        const etlmon::Verdict& is = truths_.verdict(m);
+        const etlmon::Verdict& predicted = monitors_.verdict(m);
+        const etlmon::Verdict& actual = truths_.verdict(m);
         follow(m);
-        ++said[m].all;
-        said[m].unknown += says.unknown() ? 1 : 0;
-        if (is.unknown()) continue;
-        ++said[m].steps;
-        said[m].satisfied += says.satisfied() ? 1 : 0;
-        said[m].violated += says.violated() ? 1 : 0;
-        said[m].truly_satisfied += is.satisfied() ? 1 : 0;
-        said[m].falsely_satisfied += says.satisfied() && is.violated() ? 1 : 0;
-        said[m].falsely_violated += says.violated() && is.satisfied() ? 1 : 0;
+        ++counts[m].all;
+        counts[m].unknown += predicted.unknown() ? 1 : 0;
+        if (actual.unknown()) continue;
+        ++counts[m].steps;
+        counts[m].satisfied += predicted.satisfied() ? 1 : 0;
+        counts[m].violated += predicted.violated() ? 1 : 0;
+        counts[m].truly_satisfied += actual.satisfied() ? 1 : 0;
+        counts[m].falsely_satisfied += predicted.satisfied() && actual.violated() ? 1 : 0;
+        counts[m].falsely_violated += predicted.violated() && actual.satisfied() ? 1 : 0;
     }
 }
 
@@ -339,8 +341,8 @@ void Replayer::conclude(std::vector<Concluded>& concluded) {
             const Label now = alarm ? Label::no : label_of(verdict);
             so_far = has_to_last ? std::min(so_far, now) : now;
         };
-        add(monitors_.verdict(m), of.said_alarm, of.said);
-        add(truths_.verdict(m), of.is_alarm, of.is);
+        add(monitors_.verdict(m), of.predicted_alarm, of.predicted);
+        add(truths_.verdict(m), of.actual_alarm, of.actual);
         of.began = true;
         follow(m);
     }

@@ -24,7 +24,7 @@ using check::Index;
 /// A monitor with a guarantee, for its whole formula or for a conjunct.
 struct Guaranteed {
     Index monitor = 0;
-    check::Claim claim;
+    check::Guarantee guarantee;
     /// The error that the guarantee leaves open: a verdict that is satisfied wrongly, or violated
     /// wrongly; if both are bounded, one that is unknown.
     enum class Open : std::uint8_t { satisfied, violated, unknown };
@@ -64,7 +64,7 @@ void add_step(const Watched& watched, const execute::Evaluator& measured,
               const episodes::Recording& recording, bool is_divided, std::string& track);
 
 /// The verdicts of a monitor and of its truth over the steps of an episode whose truth is known.
-struct Said {
+struct VerdictCounts {
     std::uint64_t all = 0;      ///< steps, of open truth too
     std::uint64_t unknown = 0;  ///< of all
     std::uint64_t steps = 0;
@@ -79,11 +79,11 @@ struct Said {
 /// sliding monitor always holds, or that a repeating one has not raised an alarm. Both are unknown
 /// where nothing was judged.
 struct Concluded {
-    episodes::Label said = episodes::Label::unknown;
-    episodes::Label is = episodes::Label::unknown;
-    bool began = false;       ///< at least one step was judged
-    bool said_alarm = false;  ///< a repeating monitor, or its truth, raised an alarm
-    bool is_alarm = false;
+    episodes::Label predicted = episodes::Label::unknown;
+    episodes::Label actual = episodes::Label::unknown;
+    bool began = false;            ///< at least one step was judged
+    bool predicted_alarm = false;  ///< a repeating monitor, or its truth, raised an alarm
+    bool actual_alarm = false;
 };
 
 /// A broken variant of an episode.
@@ -109,7 +109,7 @@ public:
     Replayer& operator=(const Replayer&) = delete;
 
     /// Returns the verdicts per guarantee.
-    std::vector<Said> replay(const std::string& track, const Thresholds& thresholds);
+    std::vector<VerdictCounts> replay(const std::string& track, const Thresholds& thresholds);
     /// Returns the verdicts on all broken variants of the episode. They are those of the reordered
     /// recording if no input has a state and no truth looks back.
     std::vector<Broken> replay_variants(const std::string& track, const Thresholds& thresholds);
@@ -123,7 +123,7 @@ private:
     void run(episodes::Frames& steps, const Thresholds& thresholds,
              const episodes::AfterStep& after_step);
     void follow(Index m);
-    void note(std::vector<Said>& said);
+    void note(std::vector<VerdictCounts>& counts);
     void conclude(std::vector<Concluded>& concluded);
 
     const check::Model& model_;

@@ -22,7 +22,7 @@ namespace etlc::calibrate {
 
 namespace {
 
-using check::Claim;
+using check::Guarantee;
 using check::ThresholdOrigin;
 using diag::counted;
 
@@ -145,22 +145,19 @@ std::string monitor_report(const check::Model& model, const Others& others, bool
     for (const check::Monitor& monitor : model.monitors) {
         const bool is_later = monitor.duration && !monitor.duration->is_known;
         if (monitor.calibration || is_later) continue;  // its own calibration comes later
-        const std::vector<Claim> claims = check::claims(model, monitor);
-        for (std::size_t c = 0; c < claims.size(); ++c) {
-            const Claim& claim = claims[c];
-            zero_aside |= claim.zero_aside;
-            of_successes |= claim.kind == Claim::Kind::missed_success;
-            if (claim.part.empty())
-                text += fmt::format("    {:<{}}  {}\n", c == 0 ? monitor.name : "", widest,
-                                    check::text(claim));
-            else
-                text += fmt::format("    {:<{}}  of its part {}: {}\n", "", widest, claim.part,
-                                    check::text(claim));
+        const std::vector<Guarantee> guarantees = check::guarantees(model, monitor);
+        for (std::size_t c = 0; c < guarantees.size(); ++c) {
+            const Guarantee& guarantee = guarantees[c];
+            zero_aside |= guarantee.zero_aside;
+            of_successes |= guarantee.kind == Guarantee::Kind::missed_success;
+            text += fmt::format("    {:<{}}  {}\n", c == 0 ? monitor.name : "", widest,
+                                check::text(guarantee));
             const bool is_next = next < others.guarantees.size() &&
                                  &model.monitors[others.guarantees[next].monitor] == &monitor &&
-                                 others.guarantees[next].claim.part == claim.part;
+                                 others.guarantees[next].guarantee.part == guarantee.part;
             // The lines of one formula come first.
-            const bool is_last = c + 1 == claims.size() || claims[c + 1].part != claim.part;
+            const bool is_last =
+                c + 1 == guarantees.size() || guarantees[c + 1].part != guarantee.part;
             if (!is_next || !is_last) continue;
             text += describe(others.by_guarantee[next], others.guarantees[next],
                              std::string(widest + 6, ' '));
@@ -170,16 +167,9 @@ std::string monitor_report(const check::Model& model, const Others& others, bool
     if (zero_aside) text += fmt::format("    {}\n", check::kZeroAside);
     for (const std::string& reservation : model.reservations)
         text += fmt::format("    {}\n", reservation);
-    return text +
-           (by_group ? "    Probabilities are over the groups of demonstrations and the new group "
-                       "together, which must be exchangeable; a group counts once, with the worst "
-                       "of its "
-                       "demonstrations.\n"
-                     : "    Probabilities are over the demonstrations and the new episode "
-                       "together, which "
-                       "must be exchangeable, per episode as recorded.\n") +
-           (of_successes ? "    Bounds on successes exclude steps with missing samples.\n" : "") +
-           note_on_other_errors(by_group, with_cost);
+    text += fmt::format("    {}\n", check::exchangeability(by_group));
+    if (of_successes) text += fmt::format("    {}\n", check::kMissingAside);
+    return text + note_on_other_errors(by_group, with_cost);
 }
 
 }  // namespace
@@ -375,17 +365,17 @@ std::string report_of_folds(const std::vector<Subject>& subjects,
 
 namespace {
 
-/// Returns the share of the frames of the opposite label at which the predicate is `said`, or 0
-/// without any.
+/// Returns the share of the frames of the opposite label at which the predicate is `predicted`, or
+/// 0 without any.
 double wrong_part(const check::Predicate& predicate, const Evidence& evidence, float threshold,
-                  bool said) {
+                  bool predicted) {
     std::uint64_t all = 0;
     std::uint64_t wrong = 0;
     evidence.labelled.for_each([&](const episodes::Scored& frame) {
-        if (frame.positive == said) return;
+        if (frame.positive == predicted) return;
         const float delta = predicate.upper_bound() ? frame.score : -frame.score;
         ++all;
-        wrong += check::holds(predicate.comparison, delta, threshold) == said ? 1 : 0;
+        wrong += check::holds(predicate.comparison, delta, threshold) == predicted ? 1 : 0;
     });
     return all == 0 ? 0 : static_cast<double>(wrong) / static_cast<double>(all);
 }

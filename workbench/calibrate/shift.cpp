@@ -210,7 +210,7 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
     const Aim aim = aims_of(of.predicate).front();
     std::string text =
         fmt::format("\n{}: rho of {}", monitor.name, check::shown(model, monitor.formula));
-    const std::vector<check::Claim> claims = check::claims(model, monitor);
+    const std::vector<check::Guarantee> guarantees = check::guarantees(model, monitor);
     if (sides.size() == 1 && shift.origin == check::ThresholdOrigin::conformal) {
         text += fmt::format(
             " less {:.9g}\n"
@@ -218,14 +218,14 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
             "    {}; given these {}, with probability >= 1 - {:.3f} to 1 - {:.3f} (5 % and 95 % "
             "quantiles, without ties)\n",
             shift.value, shift.alpha, describe_place(sides[0], aim.above, of.noun()),
-            aim.of_positives ? "satisfied" : "violated", check::text(claims[0]),
+            aim.of_positives ? "satisfied" : "violated", check::text(guarantees[0]),
             groups.are_named() ? counted(shift.n, "group") : std::to_string(shift.n),
             1 - check::coverage_quantile(shift.n, shift.k, 0.05),
             1 - check::coverage_quantile(shift.n, shift.k, 0.95));
     } else {
         text += fmt::format("\n    {}\n    {}\n", shift.text, check::of_shift(shift));
-        for (const check::Claim& claim : claims)
-            text += fmt::format("    {}\n", check::text(claim));
+        for (const check::Guarantee& guarantee : guarantees)
+            text += fmt::format("    {}\n", check::text(guarantee));
     }
     text += describe_sides(of, sides);
     if (of.evidence.unlabelled > 0)

@@ -79,7 +79,7 @@ ContentScorer::ContentScorer(const check::Model& model, const ReadOptions& readi
                              std::vector<Index> labelled)
     : wanted_{&model, identity_inputs(model), {}, identity_inputs(model), nullptr},
       reading_(reading) {
-    if (!reading.kept) return;
+    if (!reading.cache) return;
     for_later_ = wanted_;
     for_later_->predicates = std::move(labelled);
     for_later_->optional.resize(model.inputs.size());

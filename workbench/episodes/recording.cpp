@@ -251,9 +251,11 @@ private:
 
 /// Opens an episode with its labels, and with its times if the spec has a rate. The rows of data
 /// sets have been compared with theirs.
-diag::Result<std::unique_ptr<data::Trace>> open_timed(
-    const std::string& path, std::vector<Channel> channels, const ReadOptions& options,
-    double step_seconds, std::shared_ptr<KnownIdentities>& identities) {
+diag::Result<std::unique_ptr<data::Trace>> open_timed(const std::string& path,
+                                                      std::vector<Channel> channels,
+                                                      const ReadOptions& options,
+                                                      double step_seconds,
+                                                      std::shared_ptr<IdentityCache>& identities) {
     const bool is_timed = step_seconds > 0 && !data::dataset_path(path);
     const std::size_t times = channels.size();
     if (is_timed) channels.push_back({std::string(data::kTimes), Channel::Kind::scalar, 1, true});
@@ -343,7 +345,7 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const std::string&
     const auto is_unmarked = read_encoders(wanted, path, options.names);
     if (!is_unmarked) return is_unmarked.failure();
     if (auto failure = recordings::check_rate(path, wanted.model->step_seconds)) return *failure;
-    std::shared_ptr<KnownIdentities> identities;
+    std::shared_ptr<IdentityCache> identities;
     const Opener file = [&](const std::vector<Channel>& channels) {
         return open_timed(path, channels, options, wanted.model->step_seconds, identities);
     };

@@ -198,8 +198,8 @@ private:
     bool is_unmarked_ = false;
     bool is_complete_ = true;
     Seen seen_;
-    std::shared_ptr<KnownIdentities> identities_;  ///< null: the episode is not kept
-    std::shared_ptr<const Identity> known_;        ///< null: `seen_` computes it
+    std::shared_ptr<IdentityCache> identities_;  ///< null: the episode is not kept
+    std::shared_ptr<const Identity> known_;      ///< null: `seen_` computes it
     std::unique_ptr<data::Trace> trace_;
     std::vector<Index> channel_inputs_;  ///< per channel of an input, the input
     std::vector<bool> narrowed_;         ///< per such channel: whether its samples are wanted

@@ -128,22 +128,22 @@ using etlmon::Verdict;
 
 using episodes::label_of;
 
-std::optional<Turn> turn_of(const std::vector<Label>& said, const std::vector<Label>& is) {
+std::optional<Turn> turn_of(const std::vector<Label>& predicted, const std::vector<Label>& actual) {
     const auto known = [](Label label) { return label != Label::unknown; };
-    const auto first = std::find_if(is.begin(), is.end(), known);
-    if (first == is.end()) return std::nullopt;
-    const auto turned =
-        std::find_if(first, is.end(), [&](Label label) { return known(label) && label != *first; });
-    if (turned == is.end()) return std::nullopt;
-    const auto onset = turned - is.begin();
+    const auto first = std::find_if(actual.begin(), actual.end(), known);
+    if (first == actual.end()) return std::nullopt;
+    const auto turned = std::find_if(first, actual.end(),
+                                     [&](Label label) { return known(label) && label != *first; });
+    if (turned == actual.end()) return std::nullopt;
+    const auto onset = turned - actual.begin();
     auto at = onset;
-    if (said[static_cast<std::size_t>(at)] == *turned) {
-        while (at > 0 && said[static_cast<std::size_t>(at - 1)] == *turned) --at;
+    if (predicted[static_cast<std::size_t>(at)] == *turned) {
+        while (at > 0 && predicted[static_cast<std::size_t>(at - 1)] == *turned) --at;
         return Turn{at - onset};
     }
-    const auto later = std::find(said.begin() + onset, said.end(), *turned);
-    if (later == said.end()) return Turn{};
-    return Turn{later - said.begin() - onset};
+    const auto later = std::find(predicted.begin() + onset, predicted.end(), *turned);
+    if (later == predicted.end()) return Turn{};
+    return Turn{later - predicted.begin() - onset};
 }
 
 bool measures(const plan::Plan& plan, Index predicate) {
@@ -249,14 +249,15 @@ float EpisodeScorer::distance(Index predicate) const {
 void EpisodeScorer::note_frame(const episodes::Recording& recording, std::size_t i,
                                PredicateEpisode& result) const {
     const check::Predicate& predicate = model().predicates[subject_.labelled[i]];
-    const Label is = recording.label(subject_.labelled[i]);
+    const Label actual = recording.label(subject_.labelled[i]);
     const float delta = distance(subject_.labelled[i]);
     const std::optional<bool> called = predicate.called(delta);
-    const Label said = !called ? Label::unknown : *called ? Label::yes : Label::no;
-    result.frames.add(said, is);
-    result.truth.add(is);
-    if (is == Label::unknown) return;
-    if (is_wrong(said, is) && !result.first_error) result.first_error = recording.frames() - 1;
+    const Label predicted = !called ? Label::unknown : *called ? Label::yes : Label::no;
+    result.frames.add(predicted, actual);
+    result.truth.add(actual);
+    if (actual == Label::unknown) return;
+    if (is_wrong(predicted, actual) && !result.first_error)
+        result.first_error = recording.frames() - 1;
     if (std::isnan(delta)) {
         ++result.unmeasured;
         return;
@@ -264,21 +265,21 @@ void EpisodeScorer::note_frame(const episodes::Recording& recording, std::size_t
     const float score = predicate.equality()      ? static_cast<float>(*called)
                         : predicate.upper_bound() ? -delta
                                                   : delta;
-    result.scored.push_back({score, 0, is == Label::yes});
+    result.scored.push_back({score, 0, actual == Label::yes});
 }
 
 void EpisodeScorer::note_let(std::size_t i, std::uint64_t frame, PredicateEpisode& result) const {
     const Verdict& says = verdict_of(monitors_, subject_.lets[i]);
-    const Label said = label_of(says);
-    const Label is = label_of(verdict_of(truths_, subject_.lets[i]));
-    result.frames.add(said, is);
-    result.truth.add(is);
-    if (is == Label::unknown) return;
-    if (is_wrong(said, is) && !result.first_error) result.first_error = frame;
-    if (said == Label::unknown)
+    const Label predicted = label_of(says);
+    const Label actual = label_of(verdict_of(truths_, subject_.lets[i]));
+    result.frames.add(predicted, actual);
+    result.truth.add(actual);
+    if (actual == Label::unknown) return;
+    if (is_wrong(predicted, actual) && !result.first_error) result.first_error = frame;
+    if (predicted == Label::unknown)
         ++result.unmeasured;
     else
-        result.scored.push_back({says.robustness, 0, is == Label::yes});
+        result.scored.push_back({says.robustness, 0, actual == Label::yes});
 }
 
 /// Records the verdicts of a step. Both plans delay a sliding monitor by the horizon of its formula
@@ -287,8 +288,8 @@ void EpisodeScorer::note_verdicts() {
     for (std::size_t m = 0; m < subject_.monitors.size(); ++m) {
         const MonitorSubject& subject = subject_.monitors[m];
         if (subject.truth == kNone || !monitors_.reports(subject.monitor)) continue;
-        tracks_[m].said.push_back(label_of(monitors_.verdict(subject.monitor)));
-        tracks_[m].is.push_back(label_of(truths_.verdict(subject.truth)));
+        tracks_[m].predicted.push_back(label_of(monitors_.verdict(subject.monitor)));
+        tracks_[m].actual.push_back(label_of(truths_.verdict(subject.truth)));
         if (model().monitors[subject.monitor].restarts == check::Restarts::when_final) follow(m);
     }
 }
@@ -296,21 +297,22 @@ void EpisodeScorer::note_verdicts() {
 /// Restarts the truth of a repeating monitor with it, so that both judge the same positions.
 void EpisodeScorer::follow(std::size_t m) {
     const MonitorSubject& subject = subject_.monitors[m];
-    tracks_[m].said_alarm |= monitors_.verdict(subject.monitor).alarm();
-    tracks_[m].is_alarm |= truths_.verdict(subject.truth).alarm();
+    tracks_[m].predicted_alarm |= monitors_.verdict(subject.monitor).alarm();
+    tracks_[m].actual_alarm |= truths_.verdict(subject.truth).alarm();
     if (monitors_.verdict(subject.monitor).final()) truths_.restart(subject.truth);
 }
 
 MonitorEpisode EpisodeScorer::conclude(const MonitorSubject& subject, const Tracks& tracks) const {
     MonitorEpisode result;
-    if (tracks.said.empty()) return result;
-    for (std::size_t i = 0; i < tracks.said.size(); ++i) {
-        result.steps.add(tracks.said[i], tracks.is[i]);
-        result.truth.add(tracks.is[i]);
-        if (is_wrong(tracks.said[i], tracks.is[i]) && !result.first_error) result.first_error = i;
+    if (tracks.predicted.empty()) return result;
+    for (std::size_t i = 0; i < tracks.predicted.size(); ++i) {
+        result.steps.add(tracks.predicted[i], tracks.actual[i]);
+        result.truth.add(tracks.actual[i]);
+        if (is_wrong(tracks.predicted[i], tracks.actual[i]) && !result.first_error)
+            result.first_error = i;
     }
     result.episode = verdict(subject, tracks);
-    result.turn = turn_of(tracks.said, tracks.is);
+    result.turn = turn_of(tracks.predicted, tracks.actual);
     const auto visited = [&](Index stage) { return truths_.verdict(stage).satisfied(); };
     if (!subject.stages.empty() &&
         std::all_of(subject.stages.begin(), subject.stages.end(), visited))
@@ -321,13 +323,14 @@ MonitorEpisode EpisodeScorer::conclude(const MonitorSubject& subject, const Trac
 /// Counts the verdict on the whole episode: the last one, or that a sliding monitor always holds.
 Counts EpisodeScorer::verdict(const MonitorSubject& subject, const Tracks& tracks) const {
     Counts result;
-    if (tracks.said.empty()) return result;
+    if (tracks.predicted.empty()) return result;
     const bool sliding = model().monitors[subject.monitor].sliding;
     const auto of = [&](const Track& track, bool alarm) {
         if (alarm) return Label::no;
         return sliding ? *std::min_element(track.begin(), track.end()) : track.back();
     };
-    result.add(of(tracks.said, tracks.said_alarm), of(tracks.is, tracks.is_alarm));
+    result.add(of(tracks.predicted, tracks.predicted_alarm),
+               of(tracks.actual, tracks.actual_alarm));
     return result;
 }
 

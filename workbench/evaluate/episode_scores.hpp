@@ -56,11 +56,12 @@ struct Turn {
 
 struct MonitorEpisode {
     Counts steps;    ///< for a sliding monitor: all positions
-    Counts episode;  ///< one claim: the last verdict, or that a sliding monitor always holds
+    Counts episode;  ///< one prediction: the last verdict, or that a sliding monitor always holds
     std::optional<Turn> turn;
-    std::optional<Counts> ordering;  ///< one claim: sequential formulas, all stages truly visited
-    LabelRuns truth;                 ///< true labels of the steps
-    /// The first step (sliding monitors: position) at which the claim is wrong.
+    std::optional<Counts>
+        ordering;     ///< one prediction: sequential formulas, all stages truly visited
+    LabelRuns truth;  ///< true labels of the steps
+    /// The first step (sliding monitors: position) at which the prediction is wrong.
     std::optional<std::uint64_t> first_error;
     /// Per requested kind, the verdicts on variants of the episode, as in `episode`.
     std::vector<Counts> variants;
@@ -122,10 +123,10 @@ private:
     using Truths = std::vector<Track>;  ///< per labelled predicate, its label in each frame
 
     struct Tracks {
-        Track said;
-        Track is;
-        bool said_alarm = false;  ///< an alarm at some step
-        bool is_alarm = false;
+        Track predicted;
+        Track actual;
+        bool predicted_alarm = false;  ///< an alarm at some step
+        bool actual_alarm = false;
     };
 
     void note_frame(const episodes::Recording& recording, std::size_t i,

@@ -54,7 +54,7 @@ struct VariantsMade {
     std::uint64_t left_out = 0;  ///< episodes that are too short for one
 };
 
-/// Claims and truths of all episodes, most of them in temporary files.
+/// Predictions and truths of all episodes, most of them in temporary files.
 struct Judgement {
     struct Predicate {
         std::string name;
@@ -105,15 +105,16 @@ struct Coverage {
     Figure of_negatives;
 };
 
-/// Counts of claims, with intervals over episodes.
+/// Counts of predictions, with intervals over episodes.
 struct Score : ByRate<Figure> {
     Counts counts;
-    Figure gain;                     ///< F1 less the F1 of always claiming true
+    Figure gain;                     ///< F1 less the F1 of always predicting true
     std::optional<Counts> duration;  ///< the duration baseline (evaluate/figures.hpp)
     bool of_variants = false;        ///< whose length follows from their kind: no such baseline
 };
 
-/// Returns the rates of claims that ignore the data: "always_true", "always_false", "duration".
+/// Returns the rates of predictions that ignore the data: "always_true", "always_false",
+/// "duration".
 std::vector<std::pair<std::string, Rates>> baselines(const Score& score);
 
 struct PredicateScore {
@@ -157,7 +158,7 @@ struct EpisodeRow {
     std::optional<std::uint32_t> fold;  ///< from 1, if there are folds
     std::uint64_t frames = 0;
     std::vector<std::string> wrong;  ///< monitors with a wrong verdict on the episode
-    Counts claims;  ///< frames of all labelled predicates; without any, steps of all monitors
+    Counts predictions;  ///< frames of all labelled predicates; without any, steps of all monitors
     std::optional<Error> first_error;
     std::vector<std::pair<std::string, Counts>> predicates;  ///< by frames
 };
@@ -206,7 +207,7 @@ std::optional<double> f1_of_duration(const Judgement& judgement, std::size_t pre
 std::vector<EpisodeRow> by_episode(const Judgement& judgement);
 
 /// Warns about labels that are all alike or inverted, and about predicates that are no better than
-/// always claiming true.
+/// always predicting true.
 void warn_of_doubts(const check::Model& model, const Evaluation& evaluation, diag::Sink& sink);
 
 /// Figures of a predicate or monitor: the second spec's less the first's.

@@ -16,15 +16,15 @@ std::optional<double> share(std::uint64_t part, std::uint64_t whole) {
 
 }  // namespace
 
-void Counts::add(Label said, Label is) {
-    if (is == Label::unknown)
+void Counts::add(Label predicted, Label actual) {
+    if (actual == Label::unknown)
         ++unlabelled;
-    else if (said == Label::unknown)
-        ++(is == Label::yes ? unknown_positives : unknown_negatives);
-    else if (said == Label::yes)
-        ++(is == Label::yes ? true_positives : false_positives);
+    else if (predicted == Label::unknown)
+        ++(actual == Label::yes ? unknown_positives : unknown_negatives);
+    else if (predicted == Label::yes)
+        ++(actual == Label::yes ? true_positives : false_positives);
     else
-        ++(is == Label::yes ? false_negatives : true_negatives);
+        ++(actual == Label::yes ? false_negatives : true_negatives);
 }
 
 void Counts::add(const Counts& other, std::uint64_t times) {
@@ -67,10 +67,10 @@ std::vector<Rates> rates(const std::vector<Counts>& episodes, const Weights& wei
     return result;
 }
 
-Rates rates_of_constant(bool claim, std::uint64_t positives, std::uint64_t total) {
+Rates rates_of_constant(bool prediction, std::uint64_t positives, std::uint64_t total) {
     Counts counts;
-    (claim ? counts.true_positives : counts.false_negatives) = positives;
-    (claim ? counts.false_positives : counts.true_negatives) = total - positives;
+    (prediction ? counts.true_positives : counts.false_negatives) = positives;
+    (prediction ? counts.false_positives : counts.true_negatives) = total - positives;
     return rates(counts);
 }
 
@@ -78,7 +78,7 @@ Rates rates_of_constant(bool claim, std::uint64_t positives, std::uint64_t total
 
 namespace {
 
-/// Claims true for the numbers from the threshold on, or for those below it.
+/// Predicts true for the numbers from the threshold on, or for those below it.
 struct Rule {
     bool from = true;
     double threshold = 0;

@@ -1,6 +1,6 @@
-// Counts of claims that agree or disagree with the truth, and their rates. An unknown claim,
-// between two thresholds or of a missing sample, is no error, but never agrees either; a rate
-// without a case is undefined.
+// Counts of predictions that agree or disagree with the truth, and their rates. An unknown
+// prediction, between two thresholds or of a missing sample, is no error, but never agrees either;
+// a rate without a case is undefined.
 #pragma once
 
 #include <cstdint>
@@ -30,11 +30,11 @@ struct Counts {
     std::uint64_t false_positives = 0;
     std::uint64_t false_negatives = 0;
     std::uint64_t true_negatives = 0;
-    std::uint64_t unknown_positives = 0;  ///< true, and the claim is unknown
+    std::uint64_t unknown_positives = 0;  ///< true, and the prediction is unknown
     std::uint64_t unknown_negatives = 0;
     std::uint64_t unlabelled = 0;  ///< cases of unknown truth, which no other count includes
 
-    void add(Label said, Label is);
+    void add(Label predicted, Label actual);
     /// Adds the other counts, `times` over.
     void add(const Counts& other, std::uint64_t times = 1);
 
@@ -47,9 +47,9 @@ struct Counts {
     bool operator==(const Counts&) const = default;
 };
 
-/// Returns whether a claim is an error.
-constexpr bool is_wrong(Label said, Label is) {
-    return said != is && said != Label::unknown && is != Label::unknown;
+/// Returns whether a prediction is an error.
+constexpr bool is_wrong(Label predicted, Label actual) {
+    return predicted != actual && predicted != Label::unknown && actual != Label::unknown;
 }
 
 /// All counts with their names.
@@ -70,7 +70,7 @@ void fields(Archive& archive, Counts& counts) {
 /// A value for each rate.
 template <class T>
 struct ByRate {
-    /// 2 TP / (2 TP + FP + misses); undefined where nothing is true or claimed.
+    /// 2 TP / (2 TP + FP + misses); undefined where nothing is true or predicted.
     T f1;
     T precision;            ///< TP / (TP + FP)
     T recall;               ///< TP / positives
@@ -88,7 +88,7 @@ struct ByRate {
         visit("recall", recall);
         visit("agreement", agreement);
     }
-    /// Calls `visit(name, value)` for the share of unknown claims and the rates of errors.
+    /// Calls `visit(name, value)` for the share of unknown predictions and the rates of errors.
     template <class Visit>
     void for_each_error(Visit&& visit) const {
         visit("unknown", unknown);
@@ -99,7 +99,7 @@ struct ByRate {
 };
 
 struct Rates : ByRate<std::optional<double>> {
-    std::optional<double> gain;  ///< F1 less the F1 of always claiming true
+    std::optional<double> gain;  ///< F1 less the F1 of always predicting true
     /// The shares of the positives and of the negatives that are called so, on average.
     std::optional<double> decided;
 };
@@ -125,8 +125,8 @@ Rates rates(const Counts& counts);
 /// Returns for each resample the rates of the summed counts.
 std::vector<Rates> rates(const std::vector<Counts>& episodes, const Weights& weights);
 
-/// Returns the rates of a constant claim on `total` cases, `positives` of which are true.
-Rates rates_of_constant(bool claim, std::uint64_t positives, std::uint64_t total);
+/// Returns the rates of a constant prediction on `total` cases, `positives` of which are true.
+Rates rates_of_constant(bool prediction, std::uint64_t positives, std::uint64_t total);
 
 // ---- the duration baseline ----------------------------------------------------------------------
 // The duration baseline: a threshold on the length of an episode, or on the number of a step, and

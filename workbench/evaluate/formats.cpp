@@ -105,7 +105,7 @@ void add_remarks(std::string& text, const std::string& name, const Counts& count
                             diag::counted(counts.unlabelled, unit));
 }
 
-/// The unknown claims beside both errors. Nothing is printed where every claim is known.
+/// The unknown predictions beside both errors. Nothing is printed where every prediction is known.
 class Errors {
 public:
     void add(const std::string& name, const Score& score, const Coverage* coverage = nullptr) {
@@ -284,12 +284,13 @@ std::string by_episode_part(const Evaluation& evaluation) {
                               "first error", "wrong verdicts"}};
     for (std::size_t i = 0; i < std::min(episodes.size(), kMostEpisodes); ++i) {
         const EpisodeRow& e = episodes[i];
-        const Rates of_claims = rates(e.claims);
-        rows.push_back(
-            {e.path, std::to_string(e.frames), number(of_claims.f1), number(of_claims.agreement),
-             e.first_error ? fmt::format("step {}: {}", e.first_error->step, e.first_error->name)
-                           : "-",
-             e.wrong.empty() ? "-" : fmt::format("{}", fmt::join(e.wrong, ", "))});
+        const Rates of_predictions = rates(e.predictions);
+        rows.push_back({e.path, std::to_string(e.frames), number(of_predictions.f1),
+                        number(of_predictions.agreement),
+                        e.first_error
+                            ? fmt::format("step {}: {}", e.first_error->step, e.first_error->name)
+                            : "-",
+                        e.wrong.empty() ? "-" : fmt::format("{}", fmt::join(e.wrong, ", "))});
     }
     std::string text = "\n" + aligned(rows);
     if (episodes.size() > kMostEpisodes)
@@ -568,13 +569,13 @@ void fill(Object& to, const Judgement::Fold& fold) {
 }
 
 void fill(Object& to, const EpisodeRow& e) {
-    const Rates of_claims = rates(e.claims);
+    const Rates of_predictions = rates(e.predictions);
     to("episode", e.path);
     if (e.fold) to("fold", *e.fold);
     to("frames", e.frames);
     to("wrong_verdicts", e.wrong);
-    to("f1", of_claims.f1);
-    to("agreement", of_claims.agreement);
+    to("f1", of_predictions.f1);
+    to("agreement", of_predictions.agreement);
     if (e.first_error)
         to.nested("first_error", [&](Object& error) {
             error("step", e.first_error->step);
@@ -661,13 +662,13 @@ std::vector<std::string> predicates_of(const SideBySide& specs) {
 
 /// The row ends with F1 and agreement of each of the predicates.
 std::string row_of(const EpisodeRow& e, const std::vector<std::string>& predicates) {
-    const Rates of_claims = rates(e.claims);
-    std::string text =
-        fmt::format("{},{},{},{},{},{},{},{},{}", source::csv_cell(e.path),
-                    e.fold ? std::to_string(*e.fold) : "", e.frames, e.wrong.size(),
-                    fmt::join(e.wrong, " "), cell(of_claims.f1), cell(of_claims.agreement),
-                    e.first_error ? std::to_string(e.first_error->step) : "",
-                    e.first_error ? e.first_error->name : "");
+    const Rates of_predictions = rates(e.predictions);
+    std::string text = fmt::format("{},{},{},{},{},{},{},{},{}", source::csv_cell(e.path),
+                                   e.fold ? std::to_string(*e.fold) : "", e.frames, e.wrong.size(),
+                                   fmt::join(e.wrong, " "), cell(of_predictions.f1),
+                                   cell(of_predictions.agreement),
+                                   e.first_error ? std::to_string(e.first_error->step) : "",
+                                   e.first_error ? e.first_error->name : "");
     for (const std::string& name : predicates) {
         const auto of = std::find_if(e.predicates.begin(), e.predicates.end(),
                                      [&](const auto& one) { return one.first == name; });

@@ -1,4 +1,4 @@
-// Turns claims and truths of all episodes into figures with intervals.
+// Turns predictions and truths of all episodes into figures with intervals.
 #include <algorithm>
 #include <functional>
 
@@ -148,9 +148,9 @@ MonitorScore monitor_score(const Bootstrap& bootstrap, const Judgement& judgemen
     return result;
 }
 
-/// Returns the share of the claims with known truth that are wrong or unknown.
-double share_not_right(const Counts& claims) {
-    const auto agreement = rates(claims).agreement;
+/// Returns the share of the predictions with known truth that are wrong or unknown.
+double share_not_right(const Counts& predictions) {
+    const auto agreement = rates(predictions).agreement;
     return agreement ? 1 - *agreement : 0;
 }
 
@@ -171,7 +171,7 @@ EpisodeRow row_of(const Judgement& judgement, std::size_t e) {
         const PredicateEpisode predicate = judgement.predicates[i].episodes[place];
         const std::string& name = judgement.predicates[i].name;
         row.predicates.emplace_back(name, predicate.frames);
-        row.claims.add(predicate.frames);
+        row.predictions.add(predicate.frames);
         note(row.first_error, predicate.first_error, name, false);
     }
     const bool predicates_err = row.first_error.has_value();
@@ -179,7 +179,7 @@ EpisodeRow row_of(const Judgement& judgement, std::size_t e) {
         const MonitorEpisode monitor = judgement.monitors[m].episodes[place];
         const std::string& name = judgement.monitors[m].name;
         if (monitor.episode.wrong() > 0) row.wrong.push_back(name);
-        if (judgement.predicates.empty()) row.claims.add(monitor.steps);
+        if (judgement.predicates.empty()) row.predictions.add(monitor.steps);
         if (!predicates_err) note(row.first_error, monitor.first_error, name, true);
     }
     return row;
@@ -265,8 +265,8 @@ std::vector<EpisodeRow> by_episode(const Judgement& judgement) {
     std::vector<EpisodeRow> rows;
     for (std::size_t e = 0; e < judgement.place.size(); ++e) rows.push_back(row_of(judgement, e));
     std::stable_sort(rows.begin(), rows.end(), [](const EpisodeRow& a, const EpisodeRow& b) {
-        return std::pair(a.wrong.size(), share_not_right(a.claims)) >
-               std::pair(b.wrong.size(), share_not_right(b.claims));
+        return std::pair(a.wrong.size(), share_not_right(a.predictions)) >
+               std::pair(b.wrong.size(), share_not_right(b.predictions));
     });
     return rows;
 }

@@ -56,7 +56,7 @@ bool Statement::takes_one(const ir::Node& node) const {
 }
 
 bool Statement::goes_on(const ir::Node& node, std::uint64_t at) const {
-    return reading == Reading::for_good && !is_past(node) && !takes_one(node) &&
+    return semantics == Semantics::for_good && !is_past(node) && !takes_one(node) &&
            node.interval.high > last - at;
 }
 
@@ -428,7 +428,7 @@ std::vector<std::vector<bool>> supporting_steps(const Subject& subject, const Ju
 Support::Support(const Subject& subject, const Judged& judged, etlmon::Key least)
     : literals_(literals_of(subject, judged.status)),
       claim_({subject.graph, subject.root, subject.position, subject.last,
-              judged.status == Status::satisfied, judged.reading},
+              judged.status == Status::satisfied, judged.semantics},
              supporting_steps(subject, judged, literals_, least)) {
     for (std::uint64_t step = 0; step <= subject.last; ++step)
         for (Index atom = 0; atom < literals_.size(); ++atom)
@@ -478,7 +478,7 @@ public:
             if (!turns(candidate.altered)) continue;
             const Judged then = judge(subject_, &candidate.altered);
             return Change{candidate.sample, candidate.altered.measured, then.status,
-                          then.reading == Reading::for_good};
+                          then.semantics == Semantics::for_good};
         }
         return std::nullopt;
     }

@@ -26,7 +26,7 @@ struct Statement {
     std::uint64_t position = 0;
     std::uint64_t last = 0;
     bool satisfied = true;
-    Reading reading = Reading::so_far;
+    Semantics semantics = Semantics::so_far;
 
     /// Returns whether one operand, or one position of a window, suffices: so for the max of a
     /// satisfied formula and the min of a violated one.

@@ -75,7 +75,7 @@ private:
         const Formula& formula = subject_.graph.model().formulas[place.formula];
         const Span span = looked_at(formula, place.position, subject_.last + 1);
         const std::uint64_t last_position =
-            subject_.last + (judged_.reading == Reading::for_good ? 1 : 0);
+            subject_.last + (judged_.semantics == Semantics::for_good ? 1 : 0);
         for (std::size_t n = 0; n < formula.operands.size(); ++n) {
             const Polarities has = polarities(formula, n);
             for (const bool flipped : {false, true}) {
@@ -174,7 +174,7 @@ Explanation explain(const ir::Program& program, const Observations& observations
             (observations.is_missing(sample) ? result.missing : result.between).push_back(sample);
         return result;
     }
-    result.for_good = judged.reading == Reading::for_good;
+    result.for_good = judged.semantics == Semantics::for_good;
     const Sourced root = judged.at(subject.root, subject.position);
     result.robustness = etlmon::float_of(Subject::end_of(
         root.key, judged.status == Status::satisfied ? subject.low_shift : subject.high_shift));

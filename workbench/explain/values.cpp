@@ -56,13 +56,13 @@ std::vector<bool> closure(const ir::Graph& graph, const std::vector<NodeId>& roo
 }
 
 Values::Values(const ir::Graph& graph, const std::vector<bool>& nodes,
-               const Observations& observations, std::uint64_t last, Reading reading,
+               const Observations& observations, std::uint64_t last, Semantics semantics,
                const Altered* altered)
     : graph_(&graph),
       observations_(&observations),
       atoms_(observations.atoms().size()),
       seen_(last + 1),
-      reading_(reading),
+      semantics_(semantics),
       values_(nodes.size()) {
     for (NodeId id = 0; id < nodes.size(); ++id) {
         if (!nodes[id]) continue;
@@ -71,7 +71,7 @@ Values::Values(const ir::Graph& graph, const std::vector<bool>& nodes,
             values_[id] = temporal(node);
             continue;
         }
-        values_[id].resize(seen_ + (reading == Reading::for_good ? 1 : 0));
+        values_[id].resize(seen_ + (semantics == Semantics::for_good ? 1 : 0));
         for (std::size_t t = 0; t < values_[id].size(); ++t)
             values_[id][t] =
                 node.operands.empty() ? constant_or_literal(node, t, altered) : combined(node, t);
@@ -124,7 +124,7 @@ Values::Column Values::counted(const ir::Node& node) const {
         }
         result.push_back({lower.nth(max, node.index), upper.nth(max, node.index)});
     }
-    if (reading_ == Reading::for_good) result.push_back(unseen(node));
+    if (semantics_ == Semantics::for_good) result.push_back(unseen(node));
     return result;
 }
 
@@ -140,7 +140,7 @@ Values::Column Values::temporal(const ir::Node& node) const {
     const Column last = in_order(values_[node.operands.back()]);
     const Column left =
         node.operands.size() == 2 ? in_order(values_[node.operands.front()]) : Column{};
-    const bool is_open = !past && reading_ == Reading::for_good;
+    const bool is_open = !past && semantics_ == Semantics::for_good;
     const Bounds to_come = is_open ? values_[node.operands.back()].back() : Bounds{};
     Column result(seen_);
     const auto evaluate = [&](auto sense, Sourced unseen) {
@@ -153,7 +153,7 @@ Values::Column Values::temporal(const ir::Node& node) const {
     else
         evaluate(etlmon::Guarding(), is_open ? to_come.lower : kTrueItself);
     result = in_order(std::move(result));
-    if (reading_ == Reading::for_good) result.push_back(unseen(node));
+    if (semantics_ == Semantics::for_good) result.push_back(unseen(node));
     return result;
 }
 
@@ -227,19 +227,19 @@ bool Subject::supports(Status status, etlmon::Key key) const {
 
 /// A verdict that is final holds so far as well.
 Judged judge(const Subject& subject, const Altered* altered) {
-    const auto judged = [&](Reading reading) {
-        Values values(subject.graph, subject.nodes, subject.observations, subject.last, reading,
+    const auto judged = [&](Semantics semantics) {
+        Values values(subject.graph, subject.nodes, subject.observations, subject.last, semantics,
                       altered);
         const Bounds root = values.at(subject.root, subject.position);
         const Status status =
             subject.supports(Status::satisfied, root.lower.key)  ? Status::satisfied
             : subject.supports(Status::violated, root.upper.key) ? Status::violated
                                                                  : Status::unknown;
-        return Judged{status, reading, std::move(values)};
+        return Judged{status, semantics, std::move(values)};
     };
-    if (Judged for_good = judged(Reading::for_good); for_good.status != Status::unknown)
+    if (Judged for_good = judged(Semantics::for_good); for_good.status != Status::unknown)
         return for_good;
-    return judged(Reading::so_far);
+    return judged(Semantics::so_far);
 }
 
 }  // namespace etlc::explain

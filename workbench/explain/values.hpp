@@ -46,7 +46,7 @@ constexpr Bounds max_of(Bounds a, Bounds b) {
 }
 
 /// Values of the prefix as it ends, or bounds over every continuation of it (docs/semantics.md).
-enum class Reading : std::uint8_t { so_far, for_good };
+enum class Semantics : std::uint8_t { so_far, for_good };
 
 /// Changed measurements of one step.
 struct Altered {
@@ -63,7 +63,7 @@ class Values {
 public:
     /// Evaluates `nodes`, which include their operands, on the prefix 0..last.
     Values(const ir::Graph& graph, const std::vector<bool>& nodes, const Observations& observations,
-           std::uint64_t last, Reading reading, const Altered* altered = nullptr);
+           std::uint64_t last, Semantics semantics, const Altered* altered = nullptr);
 
     bool has(NodeId node) const { return node < values_.size() && !values_[node].empty(); }
     Bounds at(NodeId node, std::uint64_t position) const { return values_[node][position]; }
@@ -97,7 +97,7 @@ private:
     const Observations* observations_;
     std::size_t atoms_;
     std::size_t seen_;  ///< positions of the prefix
-    Reading reading_;
+    Semantics semantics_;
     /// [node][position]; empty: not evaluated. With bounds, the position after the prefix stands
     /// for the unseen future and has the lowest and the highest unseen value.
     std::vector<Column> values_;
@@ -128,7 +128,7 @@ struct Subject {
 
 struct Judged {
     Status status = Status::unknown;
-    Reading reading = Reading::so_far;  ///< whether the verdict is final
+    Semantics semantics = Semantics::so_far;  ///< whether the verdict is final
     Values values;
 
     /// Returns the deciding end: the pessimistic one where satisfied, else the optimistic one.

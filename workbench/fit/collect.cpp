@@ -153,7 +153,7 @@ std::vector<Batch> batches_of(const Collection& collection) {
     constexpr std::uint64_t kFrames = 1024;
     std::vector<Batch> result;
     std::vector<std::optional<std::size_t>> open(collection.folds.size());  // per fold
-    const std::vector<episodes::Recorded>& episodes = collection.readings.episodes();
+    const std::vector<episodes::Recorded>& episodes = collection.recordings.episodes();
     for (std::size_t e = 0; e < episodes.size(); ++e) {
         std::optional<std::size_t>& batch = open[collection.fold_of(e)];
         if (!batch || result[*batch].frames + episodes[e].frames > kFrames) {
@@ -174,14 +174,14 @@ struct Gathered {
 
 class Reader {
 public:
-    Reader(const check::Model& model, const std::vector<Need>& needs, const Readings& readings,
+    Reader(const check::Model& model, const std::vector<Need>& needs, const Recordings& recordings,
            const std::map<std::string, Batch>& batches, Shares shares)
         : model_(model),
           needs_(needs),
-          readings_(readings),
+          recordings_(recordings),
           batches_(batches),
           points_(by_point(needs)),
-          truth_(episodes::ground_truth(model, readings.wanted().predicates)),
+          truth_(episodes::ground_truth(model, recordings.wanted().predicates)),
           where_(truth_.model, formulas_of(needs)),
           shares_(shares),
           recent_(model, points_of(needs)) {
@@ -194,7 +194,7 @@ public:
         for (const std::size_t episode : batches_.at(first).episodes) {
             const auto done = add(episode, result.needs);
             if (done) continue;
-            result.fault = {readings_.episodes()[episode].path, done.failure()};
+            result.fault = {recordings_.episodes()[episode].path, done.failure()};
             break;
         }
         for (std::size_t p = 0; p < points_.size(); ++p) {
@@ -207,7 +207,7 @@ public:
 
 private:
     diag::Result<bool> add(std::size_t episode, std::vector<Collected>& collected) {
-        auto opened = readings_.open(episode);
+        auto opened = recordings_.open(episode);
         if (!opened) return opened.failure();
         episodes::Recording& frames = *opened;
         where_.reset();
@@ -262,7 +262,7 @@ private:
             const execute::Sample& sample = frames.samples()[input];
             if (sample.present) values.assign(sample.values.begin(), sample.values.end());
         }
-        for (const Index predicate : readings_.wanted().predicates) {
+        for (const Index predicate : recordings_.wanted().predicates) {
             const execute::Sample sample = episodes::sample_of(frames.label(predicate));
             frame_[truth_.inputs[predicate]].assign(sample.values.begin(), sample.values.end());
         }
@@ -276,7 +276,7 @@ private:
 
     const check::Model& model_;
     const std::vector<Need>& needs_;
-    const Readings& readings_;
+    const Recordings& recordings_;
     const std::map<std::string, Batch>& batches_;  ///< by the path of the first episode
     std::vector<PointNeeds> points_;
     std::vector<Blocks> blocks_;  ///< per point
@@ -330,11 +330,12 @@ std::optional<Collection> collect(const check::Model& model, const std::vector<N
         sink.report(recordings::in_trace(have_labels.failure(), request.episodes.front()));
         return std::nullopt;
     }
-    auto readings = Readings::read(wanted_for(model, needs, measured, *have_labels), request, sink);
-    if (!readings) return std::nullopt;
-    Collection all{std::move(*readings), {}, {}};
-    const std::size_t count = all.readings.episodes().size();
-    const auto groups = episodes::groups_of(all.readings.paths(), request.reading);
+    auto recordings =
+        Recordings::read(wanted_for(model, needs, measured, *have_labels), request, sink);
+    if (!recordings) return std::nullopt;
+    Collection all{std::move(*recordings), {}, {}};
+    const std::size_t count = all.recordings.episodes().size();
+    const auto groups = episodes::groups_of(all.recordings.paths(), request.reading);
     all.folds.assign(std::min<std::size_t>(kFolds, episodes::Groups(groups).count()),
                      std::vector<Collected>(needs.size()));
     all.dealt = episodes::dealt(groups, all.folds.size());
@@ -343,13 +344,13 @@ std::optional<Collection> collect(const check::Model& model, const std::vector<N
     std::vector<std::string> firsts;
     std::map<std::string, Batch> batches;  // by their first paths
     for (Batch& batch : batches_of(all)) {
-        firsts.push_back(all.readings.episodes()[batch.episodes.front()].path);
+        firsts.push_back(all.recordings.episodes()[batch.episodes.front()].path);
         batches.emplace(firsts.back(), std::move(batch));
     }
     std::vector<episodes::Fault> faults;
     const bool done = episodes::in_order<Gathered>(
         firsts, request, sink,
-        [&] { return std::make_unique<Reader>(model, needs, all.readings, batches, shares); },
+        [&] { return std::make_unique<Reader>(model, needs, all.recordings, batches, shares); },
         [&](std::size_t i, Gathered&& batch) {
             const std::size_t first = batches.at(firsts[i]).episodes.front();
             if (batch.fault) return faults.push_back(std::move(*batch.fault));
@@ -511,13 +512,13 @@ private:
 
 }  // namespace
 
-std::optional<Readings> Readings::read(episodes::Wanted wanted, const Request& request,
-                                       diag::Sink& sink) {
-    Readings result;
+std::optional<Recordings> Recordings::read(episodes::Wanted wanted, const Request& request,
+                                           diag::Sink& sink) {
+    Recordings result;
     result.wanted_ = std::make_unique<const episodes::Wanted>(std::move(wanted));
     result.reading_ = request.reading;
-    if (!result.reading_.kept)
-        result.reading_.kept = std::make_shared<episodes::KeptTraces>(request.most_kept);
+    if (!result.reading_.cache)
+        result.reading_.cache = std::make_shared<episodes::TraceCache>(request.cache_bytes);
     auto all = episodes::over_episodes<Read>(request.episodes, request, sink, [&] {
         return std::make_unique<OrderedReader>(*result.wanted_, result.reading_);
     });
@@ -541,13 +542,13 @@ std::optional<Readings> Readings::read(episodes::Wanted wanted, const Request& r
     return result;
 }
 
-std::vector<std::string> Readings::paths() const {
+std::vector<std::string> Recordings::paths() const {
     std::vector<std::string> result;
     for (const episodes::Recorded& episode : episodes_) result.push_back(episode.path);
     return result;
 }
 
-diag::Result<episodes::Recording> Readings::open(std::size_t episode) const {
+diag::Result<episodes::Recording> Recordings::open(std::size_t episode) const {
     return episodes::Recording::open(*wanted_, episodes_[episode].path, reading_);
 }
 

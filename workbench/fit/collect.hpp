@@ -73,17 +73,17 @@ struct Request {
     /// Called by any thread, one at a time.
     std::function<void(std::size_t done, std::size_t total)> progress;
     /// The most bytes of samples to keep in memory, unless `reading` keeps them.
-    std::size_t most_kept = episodes::kMostKept;
+    std::size_t cache_bytes = episodes::kCacheBytes;
 };
 
 using check::Index;
 
-class Readings {
+class Recordings {
 public:
     /// Leaves out episodes without a label that is wanted, unless all are. Returns nothing after an
     /// error.
-    static std::optional<Readings> read(episodes::Wanted wanted, const Request& request,
-                                        diag::Sink& sink);
+    static std::optional<Recordings> read(episodes::Wanted wanted, const Request& request,
+                                          diag::Sink& sink);
 
     /// Returns the episodes in the order of episodes/folds.hpp.
     const std::vector<episodes::Recorded>& episodes() const { return episodes_; }
@@ -156,7 +156,7 @@ struct Collected {
 
 /// Everything collected from all episodes.
 struct Collection {
-    Readings readings;
+    Recordings recordings;
     std::vector<std::vector<Collected>> folds;  ///< by fold, then by need
     std::vector<std::uint32_t> dealt;           ///< per episode, its fold
 

@@ -88,7 +88,7 @@ fitted::Entry entry_of(const check::Model& model, const Fitted& fitted, const So
     fitted::Entry entry;
     entry.name = fitted.name;
     entry.declaration = fitted.declaration;
-    entry.reads = check::reads(model, fitted, collection.readings.labelling());
+    entry.reads = check::reads(model, fitted, collection.recordings.labelling());
     entry.rows = fitted.rows;
     entry.columns = fitted.columns;
     entry.matrix = solution.filling.matrix;
@@ -97,7 +97,7 @@ fitted::Entry entry_of(const check::Model& model, const Fitted& fitted, const So
     entry.frames = solution.counts.holds;
     for (const Source* source : solution.medoids)
         entry.medoids.push_back(
-            {hash_of(collection.readings.episodes()[source->episode]), source->frame.step});
+            {hash_of(collection.recordings.episodes()[source->episode]), source->frame.step});
     return entry;
 }
 
@@ -124,7 +124,7 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
     for (const Index predicate : predicates) measured.push_back({predicate, predicate});
     const auto collection = collect(model, needs.all, measured, request, sink);
     if (!collection) return std::nullopt;
-    const std::vector<episodes::Recorded>& read = collection->readings.episodes();
+    const std::vector<episodes::Recorded>& read = collection->recordings.episodes();
     const auto recorded = episodes::recorded(read);
     episodes::warn_of_unmarked(recorded, sink);
     const thresholds::Allowance allowance =
@@ -235,7 +235,7 @@ std::string worst_frames(const check::Model& model, const Collection& collection
     for (const WorstFrame& frame : separation.worst)
         text += fmt::format(
             "  {} step {}: labelled {}, but ranks {} {:.0f} % of those labelled {}\n",
-            collection.readings.episodes()[frame.episode].path, frame.step, frame.positive,
+            collection.recordings.episodes()[frame.episode].path, frame.step, frame.positive,
             frame.positive ? "below" : "above", 100 * (1 - frame.ordered), !frame.positive);
     return text;
 }
@@ -245,12 +245,12 @@ std::string worst_frames(const check::Model& model, const Collection& collection
 std::string report(const check::Model& model, const Collection& collection,
                    const std::vector<Solution>& solutions, const Separations& separations) {
     std::uint64_t frames = 0;
-    for (const episodes::Recorded& episode : collection.readings.episodes())
+    for (const episodes::Recorded& episode : collection.recordings.episodes())
         frames += episode.frames;
     std::string text = fmt::format("Fitted on {}, {}:\n",
-                                   counted(collection.readings.episodes().size(), "episode"),
+                                   counted(collection.recordings.episodes().size(), "episode"),
                                    counted(frames, "frame"));
-    if (const auto& others = collection.readings.unlabelled(); !others.empty())
+    if (const auto& others = collection.recordings.unlabelled(); !others.empty())
         text += fmt::format("{} without labels left out: {}\n", counted(others.size(), "episode"),
                             data::listed(others));
     for (std::size_t i = 0; i < solutions.size(); ++i)

@@ -121,9 +121,9 @@ public:
     }
 
     diag::Result<Episode> score(const std::string& path) {
-        const std::size_t episode = collection_.readings.index_of(path);
+        const std::size_t episode = collection_.recordings.index_of(path);
         const std::size_t at = collection_.fold_of(episode);
-        auto frames = collection_.readings.open(episode);
+        auto frames = collection_.recordings.open(episode);
         if (!frames) return frames.failure();
         Episode result(predicates_.size());
         recent_.reset();
@@ -272,7 +272,7 @@ std::optional<Separations> separate(const std::vector<Filled>& filled, const Sol
         folds.push_back(std::make_unique<Fold>(
             Fold{fold.model, plan::measuring(fold.model, measures), std::move(means)}));
     }
-    const std::vector<std::string> paths = collection.readings.paths();
+    const std::vector<std::string> paths = collection.recordings.paths();
     const auto measured = episodes::over_episodes<Episode>(paths, request, sink, [&] {
         return std::make_unique<Measurer>(model, folds, collection, predicates);
     });

@@ -163,7 +163,7 @@ private:
                             "takes frames of both classes in two episodes at least, and a "
                             "variance within the classes; 'where' holds in {} of {}",
                             solution_.counts.episodes,
-                            counted(solver_.collection_.readings.episodes().size(), "episode"))};
+                            counted(solver_.collection_.recordings.episodes().size(), "episode"))};
         const Moments all = moments();
         solution_.constant = all.constants();
         if (fitted_.slot == Fitted::Slot::metric) {

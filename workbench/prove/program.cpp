@@ -332,12 +332,12 @@ diag::Failure failure(const std::string& what) {
 
 /// Waits for a compiler. Returns what it says where it fails.
 std::optional<std::string> complaint(data::Child& compiler) {
-    const std::string said = read_all(compiler);
+    const std::string output = read_all(compiler);
     if (compiler.exit_status() == 0) return std::nullopt;
-    const std::size_t at = std::min(said.find("error:"), said.size());
+    const std::size_t at = std::min(output.find("error:"), output.size());
     return fmt::format("the C++ compiler $CXX, or c++, does not compile the header for a proof{}{}",
-                       at < said.size() ? ": " : "",
-                       said.substr(at, std::min(said.find('\n', at), said.size()) - at));
+                       at < output.size() ? ": " : "",
+                       output.substr(at, std::min(output.find('\n', at), output.size()) - at));
 }
 
 template <class Type>
@@ -409,7 +409,7 @@ diag::Result<Program> Program::make(const plan::Plan& plan, const Request& reque
                                                   "-Istand_in -Iruntime -O1 main.cpp -o program"));
     if (!object || !whole) return failure("cannot run the shell, /bin/sh");
     for (data::Child* const compiler : {object.get(), whole.get()})
-        if (const auto said = complaint(*compiler)) return failure(*said);
+        if (const auto output = complaint(*compiler)) return failure(*output);
     const std::string parts = writable_parts(read(folder / "object.o"));
     if (!parts.empty())
         return failure("the class may have variables besides its members: its object has " + parts);
@@ -459,17 +459,18 @@ Answers::Entry Answers::next() {
     }
 }
 
-Said Answers::verdict() {
-    Said said;
-    said.may_be_missing = word() == 1;
-    for (std::uint32_t* const field : {&said.monitor, &said.step, &said.finishes}) *field = word();
-    said.numbers.decided = word() == 1;
-    for (std::size_t m = 0; m < monitors_; ++m) said.begun.push_back(word());
-    Numbers& numbers = said.numbers;
+Reported Answers::verdict() {
+    Reported reported;
+    reported.may_be_missing = word() == 1;
+    for (std::uint32_t* const field : {&reported.monitor, &reported.step, &reported.finishes})
+        *field = word();
+    reported.numbers.decided = word() == 1;
+    for (std::size_t m = 0; m < monitors_; ++m) reported.begun.push_back(word());
+    Numbers& numbers = reported.numbers;
     for (Diagram* const field : {&numbers.low, &numbers.high, &numbers.lower, &numbers.upper,
-                                 &said.satisfied, &said.violated, &said.final})
+                                 &reported.satisfied, &reported.violated, &reported.final})
         *field = known(word());
-    return said;
+    return reported;
 }
 
 State Answers::state() {

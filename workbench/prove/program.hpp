@@ -67,7 +67,7 @@ struct Window {
 };
 
 /// A verdict of the class.
-struct Said {
+struct Reported {
     bool may_be_missing = false;  ///< every sample; else none
     std::uint32_t monitor = 0;
     std::uint32_t step = 0;
@@ -110,7 +110,7 @@ public:
     };
     /// Returns the kind of the next entry, which is then read.
     Entry next();
-    Said verdict();
+    Reported verdict();
     State state();
     Window window();
     std::uint32_t word();

@@ -69,35 +69,39 @@ private:
 
     /// A verdict, and what it is about.
     struct Place {
-        const Said& said;
+        const Reported& reported;
         bool sliding;
         std::uint32_t position;
         bool decided;
         Key key;
     };
 
-    Place place(const Said& said) const {
-        const plan::Monitor& monitor = plan_.monitors[said.monitor];
-        const std::uint32_t begun = said.begun[said.monitor];
-        Place place{said, monitor.sliding, begun, true, {said.may_be_missing, said.monitor, begun}};
+    Place place(const Reported& reported) const {
+        const plan::Monitor& monitor = plan_.monitors[reported.monitor];
+        const std::uint32_t begun = reported.begun[reported.monitor];
+        Place place{reported,
+                    monitor.sliding,
+                    begun,
+                    true,
+                    {reported.may_be_missing, reported.monitor, begun}};
         if (!monitor.sliding) return place;
         // "`finish()` reports the last h positions, cut at the end of the trace, one per call"
         const std::uint32_t h = monitor.horizon;
-        place.decided = said.step + said.finishes >= h && said.finishes <= h;
-        place.position = place.decided ? said.step + said.finishes - h : 0;
+        place.decided = reported.step + reported.finishes >= h && reported.finishes <= h;
+        place.position = place.decided ? reported.step + reported.finishes - h : 0;
         return place;
     }
 
-    void compare(const Said& said) {
+    void compare(const Reported& reported) {
         ++proof_.verdicts;
-        const Place at = place(said);
-        begin_run(said);
-        Definition& definition = said.may_be_missing ? all_ : known_;
-        begin_step(said);
+        const Place at = place(reported);
+        begin_run(reported);
+        Definition& definition = reported.may_be_missing ? all_ : known_;
+        begin_step(reported);
         Numbers expected;
-        if (at.decided) expected = definition.verdict(said.monitor, said.step, at.position);
-        if (is_first_episode_ && said.may_be_missing && at.decided) check_machine(at, expected);
-        if (said.numbers.decided != at.decided)
+        if (at.decided) expected = definition.verdict(reported.monitor, reported.step, at.position);
+        if (is_first_episode_ && reported.may_be_missing && at.decided) check_machine(at, expected);
+        if (reported.numbers.decided != at.decided)
             return blame(at, "whether it is decided", Witness());
         if (!at.decided) return;
         truths_.empty() ? compare_numbers(at, expected) : compare_truths(at, expected);
@@ -105,18 +109,18 @@ private:
 
     /// Forgets what was promised before, where the class goes on from an earlier step: with other
     /// restarts. What a verdict promises binds the later ones of its own run.
-    void begin_run(const Said& said) {
-        if (said.step < last_step_) {
+    void begin_run(const Reported& reported) {
+        if (reported.step < last_step_) {
             bounds_.clear();
             promises_.clear();
         }
-        last_step_ = said.step;
+        last_step_ = reported.step;
     }
 
     // ---- steps of the first episode in which samples may be missing
 
-    void begin_step(const Said& said) {
-        if (!is_first_episode_ || !said.may_be_missing || said.step < begun_steps_) return;
+    void begin_step(const Reported& reported) {
+        if (!is_first_episode_ || !reported.may_be_missing || reported.step < begun_steps_) return;
         ++begun_steps_;
         repetition_.begin_step();
     }
@@ -124,7 +128,7 @@ private:
     void check_machine(const Place& at, const Numbers& expected) {
         if (!at.sliding && at.position > 0)
             return repetition_.give_up("a monitor restarts at every step");
-        repetition_.check(at.said.monitor, at.position, expected);
+        repetition_.check(at.reported.monitor, at.position, expected);
     }
 
     void end_step(const State& state) {
@@ -157,14 +161,14 @@ private:
     // ---- robustness
 
     void compare_numbers(const Place& at, const Numbers& expected) {
-        const Numbers& found = at.said.numbers;
+        const Numbers& found = at.reported.numbers;
         check(at, "robustness", found.low, expected.low);
         // Only its sign is seen, in the status.
         check(at, "the greatest possible robustness", found.high, expected.high, true);
         if (at.sliding) {
             check(at, "lower", found.lower, expected.lower);
             check(at, "upper", found.upper, expected.upper);
-        } else if (at.said.finishes == 0) {
+        } else if (at.reported.finishes == 0) {
             check_bounds(at, found, expected);
             last_[at.key] = found;
         } else {  // "a prefix monitor repeats its last verdict"
@@ -190,9 +194,9 @@ private:
     /// "final where lower >= 0 or upper < 0"; that of a repeating monitor also "once all that the
     /// formula looks ahead has been seen"
     Diagram final_by(const Place& at, Diagram lower_holds, Diagram upper_fails) {
-        const std::uint32_t ahead = plan_.monitors[at.said.monitor].ahead;
+        const std::uint32_t ahead = plan_.monitors[at.reported.monitor].ahead;
         const bool complete =
-            at.sliding || (ahead != plan::kUnbounded && at.said.step >= at.position + ahead);
+            at.sliding || (ahead != plan::kUnbounded && at.reported.step >= at.position + ahead);
         return complete ? kAlways : either(lower_holds, upper_fails);
     }
 
@@ -200,19 +204,19 @@ private:
     void check_status(const Place& at, const Numbers& found) {
         const auto sign = [&](Diagram of) { return space_.diagrams.at_zero(of); };
         const Diagram final = final_by(at, sign(found.lower), no(sign(found.upper)));
-        if (at.said.satisfied != sign(found.low) || at.said.violated != no(sign(found.high)) ||
-            at.said.final != final)
+        if (at.reported.satisfied != sign(found.low) ||
+            at.reported.violated != no(sign(found.high)) || at.reported.final != final)
             blame(at, "its status", Witness());
     }
 
     void check(const Place& at, const std::string& name, Diagram found, Diagram expected,
                bool at_zero = false) {
         if (proof_.fault || found == expected) return;
-        const Said& said = at.said;
-        const auto witness = difference(space_, found, expected, proof_.atoms, said.step + 1,
-                                        proof_.places, said.may_be_missing, at_zero);
+        const Reported& reported = at.reported;
+        const auto witness = difference(space_, found, expected, proof_.atoms, reported.step + 1,
+                                        proof_.places, reported.may_be_missing, at_zero);
         if (witness) return blame(at, name, *witness);
-        if (said.may_be_missing && is_first_episode_)
+        if (reported.may_be_missing && is_first_episode_)
             repetition_.is_inexact(!at_zero &&
                                    are_equal_in_ranges(space_, found, expected, proof_.atoms));
     }
@@ -220,18 +224,18 @@ private:
     // ---- truth values
 
     void compare_truths(const Place& at, const Numbers& expected) {
-        const Said& said = at.said;
-        check_truth(at, "satisfied", said.satisfied, expected.low);
-        check_truth(at, "violated", said.violated, no(expected.high));
+        const Reported& reported = at.reported;
+        check_truth(at, "satisfied", reported.satisfied, expected.low);
+        check_truth(at, "violated", reported.violated, no(expected.high));
         const Diagram due = final_by(at, expected.lower, no(expected.upper));
-        check_truth(at, "final", both(said.final, due), due);
+        check_truth(at, "final", both(reported.final, due), due);
         // It may be final earlier, if no later verdict contradicts it.
-        const Diagram early = both(said.final, no(due));
+        const Diagram early = both(reported.final, no(due));
         check_truth(at, "both final and unknown",
-                    both(early, no(either(said.satisfied, said.violated))), kNever);
+                    both(early, no(either(reported.satisfied, reported.violated))), kNever);
         Promise& promise = promises_[at.key];
-        promise.satisfied = either(promise.satisfied, both(early, said.satisfied));
-        promise.violated = either(promise.violated, both(early, said.violated));
+        promise.satisfied = either(promise.satisfied, both(early, reported.satisfied));
+        promise.violated = either(promise.violated, both(early, reported.violated));
         check_truth(at, "final, and later no longer satisfied",
                     both(promise.satisfied, no(expected.low)), kNever);
         check_truth(at, "final, and later no longer violated",
@@ -242,7 +246,7 @@ private:
         if (proof_.fault || found == expected) return;
         const Diagram differ = space_.diagrams.differ(found, expected);
         Witness witness = truths_where(space_.diagrams, differ, proof_.atoms, truths_,
-                                       at.said.step + 1, proof_.places);
+                                       at.reported.step + 1, proof_.places);
         witness.first_reaches = both(differ, expected) == kNever;
         blame(at, name, std::move(witness));
     }
@@ -256,11 +260,11 @@ private:
 
     void blame(const Place& at, const std::string& number, Witness witness) {
         if (proof_.fault) return;
-        const Said& said = at.said;
-        proof_.fault = Fault{said.monitor, said.step,          at.position, said.finishes,
-                             number,       std::move(witness), {}};
-        for (std::uint32_t m = 0; m < said.begun.size(); ++m)
-            if (said.begun[m] > 0) proof_.fault->restarts.emplace_back(m, said.begun[m]);
+        const Reported& reported = at.reported;
+        proof_.fault = Fault{reported.monitor, reported.step,      at.position, reported.finishes,
+                             number,           std::move(witness), {}};
+        for (std::uint32_t m = 0; m < reported.begun.size(); ++m)
+            if (reported.begun[m] > 0) proof_.fault->restarts.emplace_back(m, reported.begun[m]);
     }
 
     Diagram both(Diagram a, Diagram b) { return space_.diagrams.both(a, b); }

@@ -216,18 +216,18 @@ bool Images::may_be(const Possible& possible, Place place, bool is_true) const {
 }
 
 /// The function, where each end is what it may be.
-Diagram Images::in_ranges(Diagram of, const Possible& possible, Known& known) {
+Diagram Images::in_ranges(Diagram of, const Possible& possible, Cache& cache) {
     if (of <= kAlways) return of;
-    if (const auto found = known.find(of); found != known.end()) return found->second;
+    if (const auto found = cache.find(of); found != cache.end()) return found->second;
     const etlprove::Diagrams::Node node = diagrams_[of];
     const bool may_be_false = may_be(possible, node.place, false);
     const bool may_be_true = may_be(possible, node.place, true);
-    const Diagram without = may_be_false ? in_ranges(node.without, possible, known) : kNever;
-    const Diagram with = may_be_true ? in_ranges(node.with, possible, known) : kNever;
+    const Diagram without = may_be_false ? in_ranges(node.without, possible, cache) : kNever;
+    const Diagram with = may_be_true ? in_ranges(node.with, possible, cache) : kNever;
     const Diagram result = !may_be_false  ? with
                            : !may_be_true ? without
                                           : diagrams_.choose(node.place, without, with);
-    return known.emplace(of, result).first->second;
+    return cache.emplace(of, result).first->second;
 }
 
 /// Whether both lists from n on take the same values together, where these conditions hold.
@@ -251,7 +251,7 @@ bool Images::agree(std::size_t n, Diagram one, Diagram other) {
 
 bool Images::are_equal(const Functions& first, const Functions& second, const Possible* possible) {
     if (first.size() != second.size()) return false;
-    Known known;
+    Cache cache;
     most_diagrams_ = diagrams_.size() + kMostDiagrams;
     is_too_large_ = false;
     for (const std::vector<std::size_t>& group : groups(first, second)) {
@@ -259,8 +259,8 @@ bool Images::are_equal(const Functions& first, const Functions& second, const Po
         second_.clear();
         agreed_.clear();
         for (const std::size_t n : group) {
-            first_.push_back(possible ? in_ranges(first[n], *possible, known) : first[n]);
-            second_.push_back(possible ? in_ranges(second[n], *possible, known) : second[n]);
+            first_.push_back(possible ? in_ranges(first[n], *possible, cache) : first[n]);
+            second_.push_back(possible ? in_ranges(second[n], *possible, cache) : second[n]);
         }
         if (first_ == second_ || agree(0, kAlways, kAlways)) continue;
         failures_ += is_too_large_ ? 1 : 0;

@@ -96,7 +96,7 @@ public:
     bool gives_up() const { return failures_ >= kMostFailures; }
 
 private:
-    using Known = std::unordered_map<Diagram, Diagram>;
+    using Cache = std::unordered_map<Diagram, Diagram>;
     using Support = std::bitset<512>;
 
     static constexpr std::uint32_t kMostBranches = 20000;
@@ -105,7 +105,7 @@ private:
 
     const Support& support(Diagram of);
     std::vector<std::vector<std::size_t>> groups(const Functions& first, const Functions& second);
-    Diagram in_ranges(Diagram of, const Possible& possible, Known& known);
+    Diagram in_ranges(Diagram of, const Possible& possible, Cache& cache);
     bool may_be(const Possible& possible, Place place, bool is_true) const;
     bool agree(std::size_t n, Diagram one, Diagram other);
 

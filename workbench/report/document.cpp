@@ -77,7 +77,7 @@ Json scores_of(const Material& material, const check::Predicate& predicate) {
 struct Operating {
     double false_positive_rate = 0;
     double recall = 0;     ///< the true positive rate
-    double precision = 1;  ///< 1 without claims
+    double precision = 1;  ///< 1 without predictions
 };
 
 Json json_of(const Operating& at) {
@@ -151,9 +151,9 @@ Json distribution(const evaluate::Judgement& judgement, std::size_t i,
     double hits = 0;
     double false_alarms = 0;
     const auto here = [&] {
-        const double claims = hits + false_alarms;
+        const double predictions = hits + false_alarms;
         return Operating{false_alarms / negatives, hits / positives,
-                         claims == 0 ? 1 : hits / claims};
+                         predictions == 0 ? 1 : hits / predictions};
     };
     Operating drawn = here();
     curve.push_back(json_of(drawn));
@@ -216,9 +216,8 @@ Json duration_json(const Material& material, const check::Monitor& monitor) {
 Json monitor_json(const Material& material, const check::Model& model,
                   const plan::Monitor& monitor) {
     Json guarantees = Json::array();
-    for (const check::Claim& claim : check::claims(model, model.monitors[monitor.index]))
-        guarantees.push_back((claim.part.empty() ? "" : "of its part " + claim.part + ": ") +
-                             check::text(claim));
+    for (const check::Guarantee& one : check::guarantees(model, model.monitors[monitor.index]))
+        guarantees.push_back(check::text(one));
     const check::Monitor& declared = model.monitors[monitor.index];
     const std::string calibrated = declared.calibration ? check::of_shift(*declared.calibration)
                                    : declared.duration
@@ -277,16 +276,16 @@ Json pictures_json(const Pictures& pictures) {
 }
 
 /// Returns [path, frames, outcomes, missing, judged, parts, buckets, series, pictures], where
-/// judged is [wrong monitors, shares of wrong and of unknown claims, first error] or null.
+/// judged is [wrong monitors, shares of wrong and of unknown predictions, first error] or null.
 Json row_json(const Row& row, const evaluate::EpisodeRow* judged) {
     Json of_truth;
     if (judged != nullptr) {
-        const evaluate::Counts& claims = judged->claims;
+        const evaluate::Counts& predictions = judged->predictions;
         Json error;
         if (judged->first_error) error = {judged->first_error->step, judged->first_error->name};
-        const auto total = static_cast<double>(claims.total());
-        of_truth = {judged->wrong, number(static_cast<double>(claims.wrong()) / total),
-                    number(static_cast<double>(claims.unknown()) / total), error};
+        const auto total = static_cast<double>(predictions.total());
+        of_truth = {judged->wrong, number(static_cast<double>(predictions.wrong()) / total),
+                    number(static_cast<double>(predictions.unknown()) / total), error};
     }
     return {row.path,
             row.frames,

@@ -119,7 +119,7 @@ void TrackReader::begin(Tracks& tracks) {
     observations_ = std::make_unique<explain::Observations>(model(), scene_.plan.values,
                                                             scene_.predicates, scene_.plan.inputs);
     atoms_.emplace(observations_->plan());
-    said_.assign(scene_.plan.monitors.size(), {});
+    monitor_tracks_.assign(scene_.plan.monitors.size(), {});
     if (truths_)
         for (std::size_t i = 0; i < scene_.predicates.size(); ++i)
             if (std::binary_search(scene_.truth->labelled.begin(), scene_.truth->labelled.end(),
@@ -144,10 +144,10 @@ diag::Result<Tracks> TrackReader::score(const std::string& path) {
         return true;
     };
     const auto rest = [&] {
-        for (std::size_t m = 0; m < said_.size(); ++m)
+        for (std::size_t m = 0; m < monitor_tracks_.size(); ++m)
             if (monitors_.reports(scene_.plan.monitors[m].index))
-                said_[m].history.add_after_trace(monitors_.verdicts()[m],
-                                                 monitors_.evaluator().position(m));
+                monitor_tracks_[m].history.add_after_trace(monitors_.verdicts()[m],
+                                                           monitors_.evaluator().position(m));
         return true;
     };
     const auto done = episodes::replay(*recording, followers, frame, rest);
@@ -164,8 +164,8 @@ diag::Result<Tracks> TrackReader::score(const std::string& path) {
 
 void TrackReader::note_frame(const episodes::Recording& recording, Tracks& tracks) {
     observations_->add(atoms_->evaluator());
-    for (std::size_t m = 0; m < said_.size(); ++m) {
-        said_[m].history.add(monitors_.verdicts()[m], monitors_.evaluator().position(m));
+    for (std::size_t m = 0; m < monitor_tracks_.size(); ++m) {
+        monitor_tracks_[m].history.add(monitors_.verdicts()[m], monitors_.evaluator().position(m));
         if (truth_of_[m] != kNone) note_truth(m);
     }
     for (Codes& track : tracks.codes)
@@ -182,7 +182,7 @@ void TrackReader::note_frame(const episodes::Recording& recording, Tracks& track
 void TrackReader::note_truth(std::size_t monitor) {
     const plan::Monitor& of = scene_.plan.monitors[monitor];
     const Verdict& is = truths_->verdict(truth_of_[monitor]);
-    said_[monitor].truth.push_back(code_of(is) % kFinal);
+    monitor_tracks_[monitor].truth.push_back(code_of(is) % kFinal);
     if (of.restarts == check::Restarts::when_final && monitors_.verdicts()[monitor].final())
         truths_->restart(truth_of_[monitor]);
 }
@@ -220,8 +220,8 @@ void TrackReader::add_measurements(Tracks& tracks) const {
 }
 
 void TrackReader::add_verdicts(Tracks& tracks) const {
-    for (std::size_t m = 0; m < said_.size(); ++m) {
-        const explain::History& history = said_[m].history;
+    for (std::size_t m = 0; m < monitor_tracks_.size(); ++m) {
+        const explain::History& history = monitor_tracks_[m].history;
         tracks.outcomes.push_back(outcome_of(history, scene_.plan.monitors[m].sliding));
         Numbers robustness{"robustness", m, {}};
         Numbers lower{"lower", m, {}};
@@ -241,7 +241,8 @@ void TrackReader::add_verdicts(Tracks& tracks) const {
                 tracks.numbers.push_back(std::move(*bound));
         tracks.numbers.push_back(std::move(robustness));
         tracks.codes.push_back(std::move(status));
-        if (!said_[m].truth.empty()) tracks.codes.push_back({"monitor_truth", m, said_[m].truth});
+        if (!monitor_tracks_[m].truth.empty())
+            tracks.codes.push_back({"monitor_truth", m, monitor_tracks_[m].truth});
     }
 }
 
@@ -254,9 +255,9 @@ Mark TrackReader::mark(explain::Sample sample, std::uint64_t last, bool holds) c
 }
 
 void TrackReader::add_reasons(Tracks& tracks) const {
-    for (std::size_t m = 0; m < said_.size(); ++m) {
+    for (std::size_t m = 0; m < monitor_tracks_.size(); ++m) {
         const plan::Monitor& monitor = scene_.plan.monitors[m];
-        const explain::History& history = said_[m].history;
+        const explain::History& history = monitor_tracks_[m].history;
         const std::uint64_t step = history.usual_step(monitor.sliding, tracks.frames - 1);
         const Verdict& verdict = history.verdicts[step];
         if (!verdict.decided()) continue;
@@ -278,8 +279,8 @@ void TrackReader::add_reasons(Tracks& tracks) const {
 }
 
 // Draws the timelines of one trace as an SVG picture, for papers and slides (`etlc run --svg`): a
-// lane for each predicate and monitor, with its chart and the strips of its claims and truths, as
-// the page shows them. The size does not depend on the number of steps: with more steps than
+// lane for each predicate and monitor, with its chart and the strips of its predictions and truths,
+// as the page shows them. The size does not depend on the number of steps: with more steps than
 // pixels, a line goes through the least and the greatest number of each pixel.
 
 namespace {

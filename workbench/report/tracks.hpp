@@ -1,4 +1,4 @@
-// One episode as the page shows it: what was measured, claimed and true at every step, and
+// One episode as the page shows it: what was measured, predicted and true at every step, and
 // explanations of the verdicts. The evaluator of `etlc run` runs the monitors, on the samples that
 // the generated class would get.
 #pragma once
@@ -133,7 +133,7 @@ public:
     diag::Result<Tracks> score(const std::string& path);
 
 private:
-    struct Said {
+    struct MonitorTrack {
         explain::History history;
         std::vector<std::uint32_t> truth;
     };
@@ -155,7 +155,7 @@ private:
     std::optional<episodes::Follower> truths_;
     std::unique_ptr<explain::Observations> observations_;
     std::optional<episodes::Follower> atoms_;
-    std::vector<Said> said_;       ///< per monitor of the plan
+    std::vector<MonitorTrack> monitor_tracks_;  ///< per monitor of the plan
     std::vector<Index> truth_of_;  ///< per monitor of the plan: monitor of the ground truth
 };
 

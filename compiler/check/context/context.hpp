@@ -42,12 +42,12 @@ struct Matrix {
 
 /// A loaded matrix, by path and key, for callers that check a spec repeatedly. It is valid while
 /// the file has the same time and size.
-struct KnownMatrix {
+struct CachedMatrix {
     std::filesystem::file_time_type time;
     std::uintmax_t size = 0;
     Matrix matrix;
 };
-using KnownMatrices = std::map<std::pair<std::string, std::string>, KnownMatrix>;
+using MatrixCache = std::map<std::pair<std::string, std::string>, CachedMatrix>;
 
 /// Limit on the depth of formulas with their lets written out, so that later stages may recurse.
 inline constexpr std::uint32_t kMaxDepth = 1000;
@@ -110,7 +110,7 @@ struct Context {
     /// Files read so far, by path and key; empty after an error.
     std::map<std::pair<std::string, std::string>, std::optional<Matrix>> matrices{};
     /// Contents from earlier checks; null: every file is read.
-    KnownMatrices* known = nullptr;
+    MatrixCache* cache = nullptr;
     std::set<std::string> dependencies{};
 
     diag::Diagnostic& report(diag::Code code, Span span, std::string message) {

@@ -16,7 +16,7 @@ void take_first(Index& mine, Index operands) {
 }
 
 /// Inputs that may leave a formula unknown, and how many steps back it reads.
-struct Reading {
+struct Dependence {
     std::set<Index> inputs;
     std::uint64_t back = 0;
 };
@@ -49,21 +49,21 @@ std::uint64_t steps_back(const Model& model, const Expr& expression) {
     return back + past.steps - (past.kind == Past::Kind::ago ? 0 : 1);
 }
 
-std::vector<Reading> readings(const Model& model) {
-    std::vector<Reading> result(model.formulas.size());
+std::vector<Dependence> dependences(const Model& model) {
+    std::vector<Dependence> result(model.formulas.size());
     for (Index f = 0; f < model.formulas.size(); ++f) {  // operands come first
         const Formula& formula = model.formulas[f];
-        Reading& reading = result[f];
-        reading.inputs = inputs_of(model, formula);
+        Dependence& dependence = result[f];
+        dependence.inputs = inputs_of(model, formula);
         if (formula.kind == Formula::Kind::predicate)
-            reading.back = steps_back(model, model.predicates[formula.index].expression);
+            dependence.back = steps_back(model, model.predicates[formula.index].expression);
         for (const Index operand : formula.operands) {
-            reading.inputs.insert(result[operand].inputs.begin(), result[operand].inputs.end());
-            reading.back = std::max(reading.back, result[operand].back);
+            dependence.inputs.insert(result[operand].inputs.begin(), result[operand].inputs.end());
+            dependence.back = std::max(dependence.back, result[operand].back);
         }
         if (looks_back(formula.kind))
-            reading.back =
-                sum(reading.back,
+            dependence.back =
+                sum(dependence.back,
                     steps_back(formula) == kUnbounded ? Gap::kForGood : steps_back(formula));
     }
     return result;
@@ -206,7 +206,7 @@ Decidable decidable(const Formula& formula, const std::vector<Decidable>& f, Las
 }  // namespace
 
 std::uint64_t steps_read_back(const Model& model, Index formula) {
-    return readings(model)[formula].back;
+    return dependences(model)[formula].back;
 }
 
 std::uint64_t past_needed(const Model& model, const Predicate& predicate) {
@@ -253,14 +253,15 @@ std::vector<Reach> reaches(const Model& model) {
 }
 
 std::vector<Gap> gaps(const Model& model) {
-    const std::vector<Reading> all = readings(model);
+    const std::vector<Dependence> all = dependences(model);
     std::vector<Gap> result;
     for (const Monitor& monitor : model.monitors) {
-        const Reading& reading = all[monitor.formula];
+        const Dependence& dependence = all[monitor.formula];
         // A prefix monitor stays at one position, whose sample is lost.
-        const std::uint64_t steps =
-            monitor.sliding ? sum(reading.back, monitor.horizon + std::uint64_t{1}) : Gap::kForGood;
-        result.push_back({{reading.inputs.begin(), reading.inputs.end()}, steps});
+        const std::uint64_t steps = monitor.sliding
+                                        ? sum(dependence.back, monitor.horizon + std::uint64_t{1})
+                                        : Gap::kForGood;
+        result.push_back({{dependence.inputs.begin(), dependence.inputs.end()}, steps});
     }
     return result;
 }

@@ -143,10 +143,10 @@ const Let* judged_let(const Model& model, Index formula) {
     return nullptr;
 }
 
-void count_groups(const Threshold& threshold, Claim& claim) {
+void count_groups(const Threshold& threshold, Guarantee& guarantee) {
     if (!threshold.by_group) return;
     for (const std::uint64_t n : {threshold.n, threshold.inner_n})
-        if (n > 0) claim.groups = claim.groups == 0 ? n : std::min(claim.groups, n);
+        if (n > 0) guarantee.groups = guarantee.groups == 0 ? n : std::min(guarantee.groups, n);
 }
 
 bool bounds_misses(const Threshold& threshold) {
@@ -231,9 +231,9 @@ std::string why_nothing(const Model& model, const Bounds& bounds) {
                        name(negated));
 }
 
-/// Returns the claims about a formula or conjunct, at least one.
-std::vector<Claim> claims_about(const Model& model, Literal part, Values values) {
-    Claim base;
+/// Returns the guarantees about a formula or conjunct, at least one.
+std::vector<Guarantee> guarantees_about(const Model& model, Literal part, Values values) {
+    Guarantee base;
     base.formula = part.formula;
     base.negated = part.negated;
     if (const Let* let = judged_let(model, part.formula)) {
@@ -253,29 +253,30 @@ std::vector<Claim> claims_about(const Model& model, Literal part, Values values)
             no_at_zero |= fails_at_zero(of, polarity);
     }
     if (!base.why.empty()) return {base};
-    std::vector<Claim> result;
-    const auto add = [&](Claim::Kind kind, const std::vector<std::string>& rates) {
-        Claim claim = base;
-        claim.kind = kind;
-        claim.bound = sum(rates);
+    std::vector<Guarantee> result;
+    const auto add = [&](Guarantee::Kind kind, const std::vector<std::string>& rates) {
+        Guarantee guarantee = base;
+        guarantee.kind = kind;
+        guarantee.bound = sum(rates);
         const bool of_violations =
-            kind != Claim::Kind::missed_success && kind != Claim::Kind::violated_wrongly;
-        claim.zero_aside = of_violations && no_at_zero && values != Values::boolean;
-        if (Decimal::parse(claim.bound) >= Decimal::parse("1"))
-            base.why = fmt::format("the alphas of its predicates add up to {}", claim.bound);
+            kind != Guarantee::Kind::missed_success && kind != Guarantee::Kind::violated_wrongly;
+        guarantee.zero_aside = of_violations && no_at_zero && values != Values::boolean;
+        if (Decimal::parse(guarantee.bound) >= Decimal::parse("1"))
+            base.why = fmt::format("the alphas of its predicates add up to {}", guarantee.bound);
         else
-            result.push_back(std::move(claim));
+            result.push_back(std::move(guarantee));
     };
     const Bounds bounds = bounds_of(model, predicates);
     const auto& [satisfied, violated, all, of_both] = bounds;
     if (all.empty()) {
-        add(Claim::Kind::exact, {});
+        add(Guarantee::Kind::exact, {});
     } else if (!of_both && satisfied.holds() != violated.holds()) {
-        add(violated.holds() ? Claim::Kind::missed_success : Claim::Kind::missed_alarm, all);
+        add(violated.holds() ? Guarantee::Kind::missed_success : Guarantee::Kind::missed_alarm,
+            all);
     } else if (satisfied.holds() || violated.holds()) {
-        if (satisfied.holds()) add(Claim::Kind::satisfied_wrongly, satisfied.rates);
-        if (violated.holds()) add(Claim::Kind::violated_wrongly, violated.rates);
-        if (satisfied.holds() && violated.holds()) add(Claim::Kind::wrong, all);
+        if (satisfied.holds()) add(Guarantee::Kind::satisfied_wrongly, satisfied.rates);
+        if (violated.holds()) add(Guarantee::Kind::violated_wrongly, violated.rates);
+        if (satisfied.holds() && violated.holds()) add(Guarantee::Kind::wrong, all);
     } else {
         base.why = why_nothing(model, bounds);
     }
@@ -283,31 +284,32 @@ std::vector<Claim> claims_about(const Model& model, Literal part, Values values)
     return result;
 }
 
-/// Returns the claims of a monitor that is calibrated as a whole.
-std::vector<Claim> claims_as_a_whole(const Monitor& monitor) {
+/// Returns the guarantees of a monitor that is calibrated as a whole.
+std::vector<Guarantee> guarantees_as_a_whole(const Monitor& monitor) {
     const Threshold& threshold = *monitor.calibration;
     const bool by_share = threshold.origin == ThresholdOrigin::risk;
-    std::vector<Claim> result;
-    const auto add = [&](Claim::Kind kind, const std::vector<std::string>& rates) {
-        Claim& claim = result.emplace_back();
-        claim.kind = kind;
-        claim.formula = monitor.formula;
-        claim.bound = sum(rates);
-        count_groups(threshold, claim);
+    std::vector<Guarantee> result;
+    const auto add = [&](Guarantee::Kind kind, const std::vector<std::string>& rates) {
+        Guarantee& guarantee = result.emplace_back();
+        guarantee.kind = kind;
+        guarantee.formula = monitor.formula;
+        guarantee.bound = sum(rates);
+        count_groups(threshold, guarantee);
     };
     const std::string& of_alarms = threshold.rate_of_false_positives();
     if (threshold.against == Against::both && !by_share) {
-        add(Claim::Kind::satisfied_wrongly, {of_alarms});
-        add(Claim::Kind::violated_wrongly, {threshold.alpha});
-        add(Claim::Kind::wrong, {of_alarms, threshold.alpha});
+        add(Guarantee::Kind::satisfied_wrongly, {of_alarms});
+        add(Guarantee::Kind::violated_wrongly, {threshold.alpha});
+        add(Guarantee::Kind::wrong, {of_alarms, threshold.alpha});
         // One error is bounded by its rate in any case; both together may be certain.
         if (Decimal::parse(result.back().bound) >= Decimal::parse("1")) result.pop_back();
         return result;
     }
     if (threshold.against != Against::missed_success)
-        add(by_share ? Claim::Kind::satisfied_share : Claim::Kind::missed_alarm, {of_alarms});
+        add(by_share ? Guarantee::Kind::satisfied_share : Guarantee::Kind::missed_alarm,
+            {of_alarms});
     if (threshold.against != Against::missed_alarm)
-        add(by_share ? Claim::Kind::violated_share : Claim::Kind::missed_success,
+        add(by_share ? Guarantee::Kind::violated_share : Guarantee::Kind::missed_success,
             {threshold.alpha});
     return result;
 }
@@ -349,13 +351,14 @@ void for_each_literal(const Model& model, Index formula,
 namespace {
 
 /// Returns what the predicates guarantee, for the whole formula or for each conjunct.
-std::vector<Claim> claims_of_predicates(const Model& model, const Monitor& monitor, Values values) {
-    std::vector<Claim> result = claims_about(model, {monitor.formula, false}, values);
-    if (result.front().kind != Claim::Kind::nothing) return result;
+std::vector<Guarantee> guarantees_of_predicates(const Model& model, const Monitor& monitor,
+                                                Values values) {
+    std::vector<Guarantee> result = guarantees_about(model, {monitor.formula, false}, values);
+    if (result.front().kind != Guarantee::Kind::nothing) return result;
     const std::vector<Literal> conjuncts = conjuncts_of(model, {monitor.formula, false});
     if (conjuncts.size() < 2) return result;
     for (const Literal conjunct : conjuncts)
-        for (Claim& part : claims_about(model, conjunct, values)) {
+        for (Guarantee& part : guarantees_about(model, conjunct, values)) {
             part.part = shown(model, conjunct.formula);
             if (conjunct.negated) part.part = fmt::format("!({})", part.part);
             result.push_back(std::move(part));
@@ -365,16 +368,16 @@ std::vector<Claim> claims_of_predicates(const Model& model, const Monitor& monit
 
 }  // namespace
 
-std::vector<Claim> claims(const Model& model, const Monitor& monitor, Values values) {
-    if (monitor.calibration) return claims_as_a_whole(monitor);
-    std::vector<Claim> result = claims_of_predicates(model, monitor, values);
+std::vector<Guarantee> guarantees(const Model& model, const Monitor& monitor, Values values) {
+    if (monitor.calibration) return guarantees_as_a_whole(monitor);
+    std::vector<Guarantee> result = guarantees_of_predicates(model, monitor, values);
     if (!monitor.duration) return result;
-    std::erase_if(result, [](const Claim& claim) {
-        return claim.kind == Claim::Kind::nothing || claim.kind == Claim::Kind::exact;
+    std::erase_if(result, [](const Guarantee& one) {
+        return one.kind == Guarantee::Kind::nothing || one.kind == Guarantee::Kind::exact;
     });
     const Threshold& threshold = monitor.duration->threshold;
-    Claim alarms;
-    alarms.kind = Claim::Kind::false_alarm;
+    Guarantee alarms;
+    alarms.kind = Guarantee::Kind::false_alarm;
     alarms.formula = monitor.formula;
     alarms.bound = Decimal::parse(threshold.alpha).text();
     count_groups(threshold, alarms);
@@ -385,13 +388,13 @@ std::vector<Claim> claims(const Model& model, const Monitor& monitor, Values val
 namespace {
 
 /// Returns what some verdict does with at most that probability.
-std::string_view what(Claim::Kind kind) {
+std::string_view what(Guarantee::Kind kind) {
     switch (kind) {
-        case Claim::Kind::missed_success: return "misses a success";
-        case Claim::Kind::missed_alarm: return "misses an alarm";
-        case Claim::Kind::false_alarm: return "is violated for good";
-        case Claim::Kind::satisfied_wrongly: return "is satisfied wrongly";
-        case Claim::Kind::violated_wrongly: return "is violated wrongly";
+        case Guarantee::Kind::missed_success: return "misses a success";
+        case Guarantee::Kind::missed_alarm: return "misses an alarm";
+        case Guarantee::Kind::false_alarm: return "is violated for good";
+        case Guarantee::Kind::satisfied_wrongly: return "is satisfied wrongly";
+        case Guarantee::Kind::violated_wrongly: return "is violated wrongly";
         default: return "is wrong";
     }
 }
@@ -405,29 +408,39 @@ std::string percent(const std::string& rate) {
 
 }  // namespace
 
-std::string text(const Claim& claim) {
-    const std::string_view aside = claim.zero_aside ? ", except at robustness 0" : "";
+std::string text(const Guarantee& guarantee) {
+    const std::string part = guarantee.part.empty() ? "" : fmt::format("part {}: ", guarantee.part);
+    const std::string_view aside = guarantee.zero_aside ? ", except at robustness 0" : "";
     const std::string groups =
-        claim.groups > 0 ? ", from " + diag::counted(claim.groups, "group") : "";
-    const auto share = [&](const char* said, const char* is) {
+        guarantee.groups > 0 ? ", from " + diag::counted(guarantee.groups, "group") : "";
+    const auto share = [&](const char* predicted, const char* actual) {
         return fmt::format(
-            "on average over calibrations and {}, {} at no more than {} % of the steps at which it "
+            "{}on average over calibrations and {}, {} at no more than {} % of the steps at which "
+            "it "
             "is truly {}{}",
-            claim.groups > 0 ? "episodes of new groups" : "new episodes", said,
-            percent(claim.bound), is, groups);
+            part, guarantee.groups > 0 ? "episodes of new groups" : "new episodes", predicted,
+            percent(guarantee.bound), actual, groups);
     };
-    switch (claim.kind) {
-        case Claim::Kind::nothing: return "no guarantee: " + claim.why;
-        case Claim::Kind::exact:
-            return fmt::format("exact{}: no predicate is calibrated, and each is its own truth",
-                               aside);
-        case Claim::Kind::satisfied_share: return share("satisfied", "violated");
-        case Claim::Kind::violated_share: return share("violated", "satisfied");
+    switch (guarantee.kind) {
+        case Guarantee::Kind::nothing: return part + "no guarantee: " + guarantee.why;
+        case Guarantee::Kind::exact:
+            return fmt::format("{}exact{}: no predicate is calibrated, and each is its own truth",
+                               part, aside);
+        case Guarantee::Kind::satisfied_share: return share("satisfied", "violated");
+        case Guarantee::Kind::violated_share: return share("violated", "satisfied");
         default: break;
     }
-    return fmt::format("P(some verdict of {} {}) <= {}{}{}",
-                       claim.groups > 0 ? "an episode of a new group" : "a new episode",
-                       what(claim.kind), claim.bound, groups, aside);
+    return fmt::format("{}P(some verdict of {} {}) <= {}{}{}", part,
+                       guarantee.groups > 0 ? "an episode of a new group" : "a new episode",
+                       what(guarantee.kind), guarantee.bound, groups, aside);
+}
+
+std::string exchangeability(bool by_group) {
+    return fmt::format("Probabilities are over the {} together, which must be exchangeable{}.",
+                       by_group ? "groups of demonstrations and the new group"
+                                : "demonstrations and the new episode",
+                       by_group ? "; a group counts once, with the worst of its demonstrations"
+                                : ", per episode as recorded");
 }
 
 std::string place(const Threshold& threshold, bool inner) {

@@ -2,9 +2,9 @@
 // for each conjunct. Robustness is monotonic in every literal of the negation normal form: if all
 // calibrated predicates are positive and none misses its truth, no verdict misses a success of the
 // ground-truth monitor; if all are negative, none misses an alarm. A union bound adds the alphas.
-// There is no claim about a predicate without conformal calibration that is not its own truth. A
-// robustness of 0 counts as satisfied even if the comparison is false; claims about violations
-// mention this exception.
+// There is no guarantee about a predicate without conformal calibration that is not its own truth.
+// A robustness of 0 counts as satisfied even if the comparison is false; guarantees about
+// violations mention this exception.
 //
 // A predicate against both errors has a bound on each, and says neither between its thresholds.
 // While every frame keeps its bounds, the truth of a predicate lies in its value, so by induction
@@ -23,7 +23,7 @@
 
 namespace etlc::check {
 
-struct Claim {
+struct Guarantee {
     enum class Kind : std::uint8_t {
         nothing,
         exact,           ///< nothing is calibrated, and every predicate is its own truth
@@ -53,15 +53,16 @@ struct Claim {
 };
 
 /// Returns the guarantees of a monitor calibrated as a whole; otherwise that of its calibrated
-/// duration, if it has one, and the claims about the whole
+/// duration, if it has one, and the guarantees about the whole
 /// formula (up to three where predicates are calibrated against both errors) and, if that is
 /// `nothing`, about its conjuncts. `values` are those that the monitor
 /// computes with; truths are decided by the comparisons themselves.
-std::vector<Claim> claims(const Model& model, const Monitor& monitor,
-                          Values values = Values::robustness);
+std::vector<Guarantee> guarantees(const Model& model, const Monitor& monitor,
+                                  Values values = Values::robustness);
 
-/// Returns the claim in words: "P(some verdict of a new episode misses a success) <= 0.1".
-std::string text(const Claim& claim);
+/// Returns the guarantee in words: "P(some verdict of a new episode misses a success) <= 0.1"; that
+/// of a conjunct after "part F a: ".
+std::string text(const Guarantee& guarantee);
 
 /// Returns "37 of 40", the rank of a conformal threshold, or "4 of 4 groups"; "none of 3" if the
 /// scores are too few and the threshold is infinite. `inner`: of the one against false positives.
@@ -81,9 +82,16 @@ std::string of_shift(const Threshold& shift);
 /// held the threshold back. docs/calibration.md derives it.
 std::string miss_bound(const Predicate& predicate);
 
-/// Explains "except at robustness 0" to readers of claims.
+/// Explains "except at robustness 0" to readers of guarantees.
 inline constexpr std::string_view kZeroAside =
     "Robustness 0 counts as satisfied, even if a comparison that is its own truth is false there.";
+
+/// Explains bounds on missed successes to readers of guarantees.
+inline constexpr std::string_view kMissingAside =
+    "Bounds on successes exclude steps with missing samples.";
+
+/// Explains probabilities to readers of guarantees. `by_group`: groups of episodes count.
+std::string exchangeability(bool by_group);
 
 /// Describes a duration after calibration: "within 54 steps (1.8 s), from 120 demonstrations; score
 /// 115 of 120, coverage 0.911 to 0.986".

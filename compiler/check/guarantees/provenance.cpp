@@ -37,9 +37,9 @@ std::string_view word(Restarts restarts) {
     return kWords[static_cast<std::size_t>(restarts)];
 }
 
-class Reading {
+class Writer {
 public:
-    Reading(const Model& model, const Labelling& labelling) : model_(model), labelling_(labelling) {
+    Writer(const Model& model, const Labelling& labelling) : model_(model), labelling_(labelling) {
         // Constants and durations count as the numbers that replaced them; list elements are added
         // where they are used.
         const auto& [name, retargetable, constants, file, step_seconds, rounded, rounding, encoders,
@@ -289,21 +289,21 @@ std::string difference(const std::string& key, const std::string& then, const st
 }  // namespace
 
 Reads reads(const Model& model, Index predicate, const Labelling& labelling) {
-    Reading reading(model, labelling);
-    reading.add_calibrated(predicate);
-    return std::move(reading).take();
+    Writer writer(model, labelling);
+    writer.add_calibrated(predicate);
+    return std::move(writer).take();
 }
 
 Reads reads(const Model& model, const Monitor& monitor, const Labelling& labelling) {
-    Reading reading(model, labelling);
-    reading.add_monitor(monitor);
-    return std::move(reading).take();
+    Writer writer(model, labelling);
+    writer.add_monitor(monitor);
+    return std::move(writer).take();
 }
 
 Reads reads(const Model& model, const Fitted& fitted, const Labelling& labelling) {
-    Reading reading(model, labelling);
-    reading.add_fitted(fitted);
-    return std::move(reading).take();
+    Writer writer(model, labelling);
+    writer.add_fitted(fitted);
+    return std::move(writer).take();
 }
 
 bool replaces_truths(const Reads& reads) {

@@ -84,19 +84,19 @@ std::optional<Matrix> read_file(Context& c, const ast::Load& load, const std::st
 }
 
 /// Only files without errors are cached.
-std::optional<Matrix> known_or_read(Context& c, const ast::Load& load, const std::string& path) {
-    if (c.known == nullptr) return read_file(c, load, path);
+std::optional<Matrix> cached_or_read(Context& c, const ast::Load& load, const std::string& path) {
+    if (c.cache == nullptr) return read_file(c, load, path);
     std::error_code error;
     const auto time = std::filesystem::last_write_time(path, error);
     const auto size = error ? 0 : std::filesystem::file_size(path, error);
     if (error) return read_file(c, load, path);
-    const auto found = c.known->find({path, load.key});
-    if (found != c.known->end() && found->second.time == time && found->second.size == size) {
+    const auto found = c.cache->find({path, load.key});
+    if (found != c.cache->end() && found->second.time == time && found->second.size == size) {
         c.dependencies.insert(path);
         return found->second.matrix;
     }
     auto matrix = read_file(c, load, path);
-    if (matrix) c.known->insert_or_assign({path, load.key}, KnownMatrix{time, size, *matrix});
+    if (matrix) c.cache->insert_or_assign({path, load.key}, CachedMatrix{time, size, *matrix});
     return matrix;
 }
 
@@ -128,7 +128,7 @@ bool exists(const std::string& path) {
 std::optional<Matrix> read_matrix(Context& c, const ast::Load& load) {
     const std::string path = beside_spec(c, load.path);
     const auto [at, is_new] = c.matrices.try_emplace({path, load.key});
-    if (is_new) at->second = known_or_read(c, load, path);
+    if (is_new) at->second = cached_or_read(c, load, path);
     return at->second;
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 using reference::Alteration;
 using reference::Explained;
-using reference::Said;
+using reference::Outcome;
 using reference::SampleSet;
 using reference::Status;
 
@@ -27,14 +27,14 @@ constexpr int kTracesPerExplained = 3;
 constexpr int kExplainedTries = 3000;
 constexpr std::size_t kLongest = 40;
 
-std::string words(Said said) {
+std::string words(Outcome said) {
     const char* status = said.status == Status::satisfied  ? "satisfied"
                          : said.status == Status::violated ? "violated"
                                                            : "unknown";
     return std::string(status) + (said.for_good ? " for good" : "");
 }
 
-Said said_by(explain::Status status, bool for_good) {
+Outcome outcome_from(explain::Status status, bool for_good) {
     return {status == explain::Status::satisfied  ? Status::satisfied
             : status == explain::Status::violated ? Status::violated
                                                   : Status::unknown,
@@ -83,13 +83,13 @@ public:
         const auto bad = first_mismatch();
         if (!bad) return {};
         return fmt::format("position {} after step {}, {}: {}", position_, step_,
-                           words(reference_.said()), *bad);
+                           words(reference_.outcome()), *bad);
     }
 
 private:
     std::optional<std::string> first_mismatch() const {
-        const Said said = said_by(found_.status, found_.for_good);
-        if (said != reference_.said()) return fmt::format("explained as {}", words(said));
+        const Outcome said = outcome_from(found_.status, found_.for_good);
+        if (said != reference_.outcome()) return fmt::format("explained as {}", words(said));
         if (found_.status == explain::Status::unknown) return {};
         if (auto bad = samples()) return bad;
         if (auto bad = critical(reference_)) return bad;
@@ -102,12 +102,12 @@ private:
 
     std::optional<std::string> samples() const {
         const SampleSet samples = set_of(found_.samples);
-        if (reference_.said_with_only(samples) != reference_.said())
+        if (reference_.outcome_with_only(samples) != reference_.outcome())
             return fmt::format("{} do not suffice", show(samples));
         for (const reference::Sample& sample : samples) {
             SampleSet rest = samples;
             rest.erase(sample);
-            if (reference_.said_with_only(rest) == reference_.said())
+            if (reference_.outcome_with_only(rest) == reference_.outcome())
                 return fmt::format("{} would do without {}", show(samples), show({sample}));
         }
         if (const SampleSet expected = reference_.explanation(); samples != expected)
@@ -149,8 +149,8 @@ private:
         return calibration ? calibration->value : 0;
     }
 
-    bool turned(Said then) const {
-        const Said now = reference_.said();
+    bool turned(Outcome then) const {
+        const Outcome now = reference_.outcome();
         return then.status != now.status || (now.for_good && !then.for_good);
     }
 
@@ -159,10 +159,10 @@ private:
         if (found_.change) {
             const explain::Change& change = *found_.change;
             const auto with = [&](float measured) {
-                return reference_.said_with(altered(change.sample, measured));
+                return reference_.outcome_with(altered(change.sample, measured));
             };
-            const auto as_said = [&](Said then) {
-                return then == said_by(change.status, change.for_good) && turned(then);
+            const auto as_said = [&](Outcome then) {
+                return then == outcome_from(change.status, change.for_good) && turned(then);
             };
             if (!as_said(with(change.measured)) && !as_said(with(beyond(change))))
                 return fmt::format("{} as {:.9g}: {}", show(set_of({change.sample})),
@@ -178,7 +178,7 @@ private:
         if (observations_.is_missing(sample)) return {};
         const float now = observations_.measured(sample);
         for (const float other : smaller_ones(sample, now)) {
-            const Said then = reference_.said_with(altered(sample, other));
+            const Outcome then = reference_.outcome_with(altered(sample, other));
             if (turned(then))
                 return fmt::format("{} as {:.9g} instead of {:.9g}: {}", show(set_of({sample})),
                                    other, now, words(then));

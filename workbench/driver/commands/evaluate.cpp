@@ -142,7 +142,7 @@ bool evaluate(const std::vector<SpecToJudge>& specs, const Request& request) {
     asked.allow_overlap = request.allow_overlap;
     asked.limits = request.limits;
     asked.variants = request.evaluate.variants;
-    if (request.folds > 0) asked.reading.kept = std::make_shared<episodes::KeptTraces>();
+    if (request.folds > 0) asked.reading.cache = std::make_shared<episodes::TraceCache>();
     if (!check_names(models, asked.reading.names, sink)) return false;
     asked.episodes = find_shared_episodes(asked.sharing, request.data, request.groups, sink);
     if (sink.has_errors()) return false;

@@ -68,8 +68,8 @@ bool report(const source::File& spec, const Compiled& compiled, const Request& r
         }
         truths = std::move(*found);
     }
-    constexpr std::size_t kMostKept = std::size_t{64} << 20U;  // for figures, then for tracks
-    wanted.reading.kept = std::make_shared<episodes::KeptTraces>(kMostKept);
+    constexpr std::size_t kCacheBytes = std::size_t{64} << 20U;  // for figures, then for tracks
+    wanted.reading.cache = std::make_shared<episodes::TraceCache>(kCacheBytes);
     report::Material material{spec, compiled};
     material.thresholds = thresholds_of(model, spec.path(), request);
     material.why_no_truth = truths.why_not;

@@ -295,10 +295,10 @@ namespace {
 
 diag::Result<std::unique_ptr<data::Trace>> open_unlabelled(
     const std::string& path, const std::vector<data::Channel>& channels, const ReadOptions& options,
-    std::shared_ptr<KnownIdentities>* identities) {
+    std::shared_ptr<IdentityCache>* identities) {
     const auto renamed = recordings::renamed(channels, options.names);
-    if (!options.kept) return recordings::open_trace(path, renamed);
-    auto opened = options.kept->open(path, renamed);
+    if (!options.cache) return recordings::open_trace(path, renamed);
+    auto opened = options.cache->open(path, renamed);
     if (!opened) return opened.failure();
     if (identities != nullptr) *identities = opened->identities;
     return std::move(opened->trace);
@@ -308,7 +308,7 @@ diag::Result<std::unique_ptr<data::Trace>> open_unlabelled(
 
 diag::Result<std::unique_ptr<data::Trace>> open_labelled(
     const std::string& path, const std::vector<data::Channel>& channels, const ReadOptions& options,
-    std::shared_ptr<KnownIdentities>* identities) {
+    std::shared_ptr<IdentityCache>* identities) {
     auto trace = open_unlabelled(path, channels, options, identities);
     const EpisodeLabels* const labels = options.labels ? options.labels->of(path) : nullptr;
     if (!trace || labels == nullptr) return trace;

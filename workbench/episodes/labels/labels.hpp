@@ -16,7 +16,7 @@
 #include "check/model/model.hpp"
 #include "data/files/file.hpp"
 #include "diag/diag.hpp"
-#include "episodes/kept/kept.hpp"
+#include "episodes/cache/cache.hpp"
 #include "recordings/open.hpp"
 
 namespace etlc::episodes {
@@ -134,7 +134,7 @@ private:
 struct ReadOptions {
     recordings::NamesInFile names;           ///< names of inputs and labels in the files
     std::shared_ptr<const LabelSet> labels;  ///< null: none beside the files
-    std::shared_ptr<KeptTraces> kept;        ///< what was read; null: files are read each time
+    std::shared_ptr<TraceCache> cache;       ///< what was read; null: files are read each time
 };
 
 /// Opens an episode as recordings::open_trace does, with its labels as Boolean channels
@@ -143,7 +143,7 @@ struct ReadOptions {
 /// it is kept.
 diag::Result<std::unique_ptr<data::Trace>> open_labelled(
     const std::string& path, const std::vector<data::Channel>& channels, const ReadOptions& options,
-    std::shared_ptr<KnownIdentities>* identities = nullptr);
+    std::shared_ptr<IdentityCache>* identities = nullptr);
 
 /// Makes labels unknown in the `within` steps before a change and in those from it on. Unknown
 /// labels between two that differ are a change along their length; the ends are none.

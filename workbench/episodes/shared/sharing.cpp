@@ -148,19 +148,19 @@ using diag::Code;
 
 constexpr std::uint64_t kLargestContents = std::uint64_t{1} << 40U;
 
-struct Kept {
+struct Cached {
     std::vector<std::string> episodes;
     std::vector<std::uint64_t> contents;
 };
 
 template <class Archive>
-void fields(Archive& archive, Kept& kept) {
-    archive(kept.episodes, kept.contents);
+void fields(Archive& archive, Cached& cache) {
+    archive(cache.episodes, cache.contents);
 }
 
-std::optional<Kept> read(const std::string& path) {
+std::optional<Cached> read(const std::string& path) {
     const auto bytes = data::read_file(path, kLargestContents, Code::unreadable_part);
-    return bytes ? data::unpacked<Kept>(*bytes) : std::nullopt;
+    return bytes ? data::unpacked<Cached>(*bytes) : std::nullopt;
 }
 
 }  // namespace
@@ -171,18 +171,18 @@ std::uint64_t content_of(const std::string& episode) {
 }
 
 std::vector<std::uint64_t> contents_of(const std::vector<std::string>& episodes,
-                                       const std::string& kept) {
-    if (!kept.empty())
-        if (auto found = read(kept);
+                                       const std::string& cache) {
+    if (!cache.empty())
+        if (auto found = read(cache);
             found && found->episodes == episodes && found->contents.size() == episodes.size())
             return std::move(found->contents);
     std::vector<std::uint64_t> contents;
     contents.reserve(episodes.size());
     for (const std::string& episode : episodes) contents.push_back(content_of(episode));
     // If writing fails, the next process reads the episodes again.
-    if (!kept.empty())
-        static_cast<void>(data::write_file_atomically(kept, data::packed(Kept{episodes, contents}),
-                                                      Code::unwritable_output));
+    if (!cache.empty())
+        static_cast<void>(data::write_file_atomically(
+            cache, data::packed(Cached{episodes, contents}), Code::unwritable_output));
     return contents;
 }
 

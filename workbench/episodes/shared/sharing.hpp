@@ -86,10 +86,10 @@ private:
 /// The end of an .npz file has checksums of its arrays.
 std::uint64_t content_of(const std::string& episode);
 
-/// Returns the numbers of all episodes, in order. `kept`: a file to read them from, or to write
+/// Returns the numbers of all episodes, in order. `cache`: a file to read them from, or to write
 /// them to; empty: none.
 std::vector<std::uint64_t> contents_of(const std::vector<std::string>& episodes,
-                                       const std::string& kept);
+                                       const std::string& cache);
 
 // ---- calls that share the reading ---------------------------------------------------------------
 

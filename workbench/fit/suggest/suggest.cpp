@@ -210,12 +210,12 @@ std::optional<Separations> measure(const check::Model& spec, const std::vector<M
     const Needs needs = needs_of(spec);
     const auto collection = collect(spec, needs.all, measured, request, sink);
     if (!collection) return std::nullopt;
-    const auto recorded = episodes::recorded(collection->readings.episodes());
+    const auto recorded = episodes::recorded(collection->recordings.episodes());
     episodes::warn_of_unmarked(recorded, sink);
     episodes::admit(spec, recorded, {}, {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
-    suggested.episodes = collection->readings.episodes().size();
-    for (const episodes::Recorded& episode : collection->readings.episodes())
+    suggested.episodes = collection->recordings.episodes().size();
+    for (const episodes::Recorded& episode : collection->recordings.episodes())
         suggested.frames += episode.frames;
     suggested.folds = collection->folds.size();
     if (suggested.folds < 2) {

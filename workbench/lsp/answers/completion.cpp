@@ -390,13 +390,11 @@ Sentences about(const Model& model, const check::Monitor& monitor, bool complete
                 const Planned* planned) {
     Sentences facts{kind_of(monitor)};
     if (complete) {
-        for (const check::Claim& claim : check::claims(model, monitor)) {
-            if (!claim.part.empty())
-                facts.push_back(fmt::format("Part {}: {}.", claim.part, check::text(claim)));
-            else if (claim.kind == check::Claim::Kind::nothing)
-                facts.push_back(fmt::format("No guarantee: {}.", claim.why));
+        for (const check::Guarantee& guarantee : check::guarantees(model, monitor)) {
+            if (guarantee.part.empty() && guarantee.kind == check::Guarantee::Kind::nothing)
+                facts.push_back(fmt::format("No guarantee: {}.", guarantee.why));
             else
-                facts.push_back(fmt::format("Guarantee: {}.", check::text(claim)));
+                facts.push_back(fmt::format("Guarantee: {}.", check::text(guarantee)));
         }
     }
     if (monitor.calibration && complete)

@@ -12,8 +12,7 @@
 
 namespace etlc::lsp {
 
-Analysis::Analysis(std::string path, std::string text, Encoding encoding,
-                   check::KnownMatrices& known)
+Analysis::Analysis(std::string path, std::string text, Encoding encoding, check::MatrixCache& cache)
     : file(std::move(path), std::move(text)), lines(file.text(), encoding) {
     spec = parse::parse(file, sink);
     has_syntax_errors = sink.has_errors();
@@ -21,7 +20,7 @@ Analysis::Analysis(std::string path, std::string text, Encoding encoding,
     options.open_trace = recordings::open_trace;
     options.allow_missing = true;
     checked =
-        std::make_unique<const check::Inspected>(check::inspect(spec, file, options, known, sink));
+        std::make_unique<const check::Inspected>(check::inspect(spec, file, options, cache, sink));
 }
 
 const Names& Analysis::names() const {
@@ -55,7 +54,7 @@ void Document::forget() {
 
 const Analysis& Document::analysis() {
     if (!analysis_)
-        analysis_ = std::make_unique<Analysis>(path_of_uri(uri_), text_, encoding_, known_);
+        analysis_ = std::make_unique<Analysis>(path_of_uri(uri_), text_, encoding_, cache_);
     return *analysis_;
 }
 

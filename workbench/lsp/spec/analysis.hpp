@@ -80,8 +80,8 @@ const Declared* declaration_of(const Names& names, const Occurrence& occurrence)
 
 class Analysis {
 public:
-    /// `known`: the files of the spec that were read.
-    Analysis(std::string path, std::string text, Encoding encoding, check::KnownMatrices& known);
+    /// `cache`: of the files that specs load.
+    Analysis(std::string path, std::string text, Encoding encoding, check::MatrixCache& cache);
     Analysis(const Analysis&) = delete;  // `lines` refers to `file`
     Analysis& operator=(const Analysis&) = delete;
 
@@ -140,7 +140,7 @@ private:
     std::string text_;
     std::int64_t version_;
     Encoding encoding_;
-    check::KnownMatrices known_;
+    check::MatrixCache cache_;
     std::unique_ptr<Analysis> analysis_;
     std::unique_ptr<Planned> planned_;
 };

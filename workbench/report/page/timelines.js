@@ -1,5 +1,5 @@
 // The timelines of an episode: one drawing, one time axis, a lane for each predicate and monitor.
-// A lane has a chart, and strips below it: claims, truths, and where they differ.
+// A lane has a chart, and strips below it: predictions, truths, and where they differ.
 
 const laneSize = { title: 18, predicate: 64, monitor: 54, strip: 7, gap: 12 };
 const laneMargin = { left: 62, right: 14 };

@@ -275,29 +275,29 @@ private:
     }
 
     /// Returns the monitors that restart on a way, and adds those of which it does not say.
-    static Set restarted_on(const Way& way, const Answers& answers, Set& unsaid) {
+    static Set restarted_on(const Way& way, const Answers& answers, Set& unknown) {
         Set set = 0;
         for (uint32_t m = 0; m < answers.size(); ++m) {
             if (!Subject::repeats(m)) continue;
             const Set bit = Set{1} << m;
-            bool is_said = answers[m].final() <= kAlways;
+            bool is_known = answers[m].final() <= kAlways;
             if (answers[m].final() == kAlways) set |= bit;
             for (const auto& [asked, answered] : way.finals) {
                 if (asked != answers[m].final()) continue;
-                is_said = true;
+                is_known = true;
                 if (answered) set |= bit;
             }
-            if (!is_said) unsaid |= bit;
+            if (!is_known) unknown |= bit;
         }
         return set;
     }
 
     /// Joins the ways with the fewest restarts, and compares the others with them.
     void join(const State& from, const std::vector<Way>& all, bool may_restart, Result& result) {
-        std::vector<Set> sets, unsaid(all.size(), 0);
+        std::vector<Set> sets, unknown(all.size(), 0);
         Set fewest = ~Set{0};
         for (size_t w = 0; w < all.size(); ++w) {
-            sets.push_back(may_restart ? restarted_on(all[w], result.answers, unsaid[w]) : 0);
+            sets.push_back(may_restart ? restarted_on(all[w], result.answers, unknown[w]) : 0);
             fewest &= sets[w];
         }
         bool is_first = true;
@@ -314,7 +314,7 @@ private:
         for (size_t w = 0; w < all.size(); ++w) {
             if (!counts(from, all[w], sets[w], result.answers)) stop(kOtherRestarts);
             // A monitor of whose verdict a way does not say anything restarts on it, or does not.
-            for (Set more = unsaid[w];; more = (more - 1) & unsaid[w]) {
+            for (Set more = unknown[w];; more = (more - 1) & unknown[w]) {
                 if (!is_as_asked(from, all[w], sets[w] | more, result)) stop(kOtherRestarts);
                 if (more == 0) break;
             }

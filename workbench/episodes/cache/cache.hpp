@@ -21,12 +21,12 @@
 namespace etlc::episodes {
 
 /// The most bytes of samples that a call keeps, over all episodes.
-inline constexpr std::size_t kMostKept = std::size_t{256} << 20U;
+inline constexpr std::size_t kCacheBytes = std::size_t{256} << 20U;
 
 /// A thread-safe count of free bytes.
-class Room {
+class FreeBytes {
 public:
-    explicit Room(std::size_t bytes) : left_(bytes) {}
+    explicit FreeBytes(std::size_t bytes) : left_(bytes) {}
 
     /// Takes `count` times `bytes`; returns false where fewer are free.
     bool take(std::uint64_t count, std::size_t bytes);
@@ -44,7 +44,7 @@ struct Identity {
 
 /// The identities of an episode by the inputs that they are of, so that each is computed once.
 /// Thread-safe.
-class KnownIdentities {
+class IdentityCache {
 public:
     std::shared_ptr<const Identity> find(const std::string& inputs) const;
     void add(const std::string& inputs, std::shared_ptr<const Identity> identity);
@@ -55,13 +55,13 @@ private:
 };
 
 /// Thread-safe. It outlives the traces that it opens.
-class KeptTraces {
+class TraceCache {
 public:
-    explicit KeptTraces(std::size_t most = kMostKept) : room_(most) {}
+    explicit TraceCache(std::size_t most = kCacheBytes) : free_(most) {}
 
     struct Opened {
         std::unique_ptr<data::Trace> trace;
-        std::shared_ptr<KnownIdentities> identities;  ///< of its frames; null: they are not kept
+        std::shared_ptr<IdentityCache> identities;  ///< of its frames; null: they are not kept
     };
     /// Opens an episode as recordings::open_trace does: from memory if these channels are kept,
     /// else from its file, and keeps them once it is read to its end.
@@ -82,7 +82,7 @@ private:
         std::uint64_t frames = 0;
         std::size_t bytes = 0;
         std::map<Key, std::shared_ptr<const Column>> columns;
-        std::shared_ptr<KnownIdentities> identities;
+        std::shared_ptr<IdentityCache> identities;
     };
 
     static std::optional<Stamp> stamp_of(const std::string& path);
@@ -90,11 +90,11 @@ private:
         return {channel.name, channel.kind, channel.width};
     }
     /// Returns what is kept of a file with this stamp.
-    Episode kept(const std::string& path, const Stamp& stamp) const;
+    Episode cached(const std::string& path, const Stamp& stamp) const;
     /// Keeps more of an episode, whose bytes were taken from the room.
     void keep(const std::string& path, Episode more);
 
-    Room room_;
+    FreeBytes free_;
     mutable std::mutex changing_;
     std::map<std::string, Episode> episodes_;
 };

@@ -17,7 +17,7 @@
 namespace etlc::tests {
 namespace {
 
-constexpr int kClaimDraws = 120;
+constexpr int kNewEpisodeDraws = 120;
 constexpr int kFresh = 8;  ///< episodes per draw
 
 /// x is near 0 where the label holds; s may lie exactly on the threshold of its comparisons.
@@ -52,43 +52,44 @@ std::vector<std::string> drawn(Random& random, int count) {
 
 /// For every monitor with a guarantee: the number of fresh episodes, and of those with a verdict
 /// that the guarantee excludes.
-struct KeptClaims {
-    check::Claim claim;
+struct Kept {
+    check::Guarantee guarantee;
     int episodes = 0;
     int broken = 0;
 };
 
 /// `zero_aside`: ignore verdicts with robustness 0.
-bool breaks(const check::Claim& claim, const etlmon::Verdict& said, const etlmon::Verdict& is) {
-    const bool alarm =
-        is.violated() && said.satisfied() && !(claim.zero_aside && said.robustness == 0);
-    const bool success = is.satisfied() && said.violated();
-    switch (claim.kind) {
-        case check::Claim::Kind::missed_success: return success;
-        case check::Claim::Kind::missed_alarm: return alarm;
-        case check::Claim::Kind::exact: return success || alarm;
+bool breaks(const check::Guarantee& guarantee, const etlmon::Verdict& predicted,
+            const etlmon::Verdict& actual) {
+    const bool alarm = actual.violated() && predicted.satisfied() &&
+                       !(guarantee.zero_aside && predicted.robustness == 0);
+    const bool success = actual.satisfied() && predicted.violated();
+    switch (guarantee.kind) {
+        case check::Guarantee::Kind::missed_success: return success;
+        case check::Guarantee::Kind::missed_alarm: return alarm;
+        case check::Guarantee::Kind::exact: return success || alarm;
         default: break;
     }
     return false;
 }
 
 void count(const Compiled& monitors, const Compiled& truths, Random& random,
-           std::map<std::string, KeptClaims>& kept) {
-    execute::Evaluator said(monitors.plan);
-    execute::Evaluator is(truths.plan);
+           std::map<std::string, Kept>& kept) {
+    execute::Evaluator predicted(monitors.plan);
+    execute::Evaluator actual(truths.plan);
     const Drawn episode(random);
     std::set<std::string> broken;
     for (std::size_t t = 0; t < episode.x.size(); ++t) {
         std::vector<execute::Sample> samples{{true, {episode.x[t]}}, {true, {episode.s[t]}}};
-        const auto& verdicts = said.step(samples);
+        const auto& verdicts = predicted.step(samples);
         samples.push_back({true, {episode.label[t] ? 1.0F : 0.0F}});
-        const auto& truth = is.step(samples);
+        const auto& truth = actual.step(samples);
         for (std::size_t m = 0; m < verdicts.size(); ++m) {
             const check::Monitor& monitor =
                 monitors.model->monitors[monitors.plan.monitors[m].index];
-            KeptClaims& of = kept[monitor.name];
-            of.claim = check::claims(*monitors.model, monitor, monitors.plan.values)[0];
-            if (breaks(of.claim, verdicts[m], truth[m])) broken.insert(monitor.name);
+            Kept& of = kept[monitor.name];
+            of.guarantee = check::guarantees(*monitors.model, monitor, monitors.plan.values)[0];
+            if (breaks(of.guarantee, verdicts[m], truth[m])) broken.insert(monitor.name);
         }
     }
     for (auto& [name, of] : kept) {
@@ -98,11 +99,11 @@ void count(const Compiled& monitors, const Compiled& truths, Random& random,
 }
 
 /// Calibrates again for every draw. Skips draws with too few scores.
-std::map<std::string, KeptClaims> draws(const std::string& spec, bool of_predicates,
-                                        bool of_monitors, check::Values values) {
-    std::map<std::string, KeptClaims> kept;
+std::map<std::string, Kept> draws(const std::string& spec, bool of_predicates, bool of_monitors,
+                                  check::Values values) {
+    std::map<std::string, Kept> kept;
     Random random(2027);
-    for (int draw = 0; draw < kClaimDraws; ++draw) {
+    for (int draw = 0; draw < kNewEpisodeDraws; ++draw) {
         std::string thresholds;
         const Files first(drawn(random, 10));
         if (of_predicates) {
@@ -131,16 +132,16 @@ std::map<std::string, KeptClaims> draws(const std::string& spec, bool of_predica
     return kept;
 }
 
-void expect_kept(const std::map<std::string, KeptClaims>& all, const std::string& which) {
+void expect_kept(const std::map<std::string, Kept>& all, const std::string& which) {
     for (const auto& [name, kept] : all) {
-        EXPECT_GT(kept.episodes, kClaimDraws * kFresh / 2) << which;
+        EXPECT_GT(kept.episodes, kNewEpisodeDraws * kFresh / 2) << which;
         const double bound =
-            kept.claim.bound.empty() || kept.claim.kind == check::Claim::Kind::exact
+            kept.guarantee.bound.empty() || kept.guarantee.kind == check::Guarantee::Kind::exact
                 ? 0
-                : std::stod(kept.claim.bound);
+                : std::stod(kept.guarantee.bound);
         const double share = static_cast<double>(kept.broken) / kept.episodes;
         EXPECT_LE(share, bound + 3 * std::sqrt(bound * (1 - bound) * kFresh / kept.episodes))
-            << which << " " << name << ": " << check::text(kept.claim);
+            << which << " " << name << ": " << check::text(kept.guarantee);
     }
 }
 
@@ -160,7 +161,7 @@ std::string drawn_spec(const std::string& threshold, const std::string& monitors
     return "spec t; input x, s : f32; predicate a = x <= " + threshold + ";\n" + monitors;
 }
 
-TEST(Claims, AreKept) {
+TEST(Guarantees, AreKept) {
     using enum check::Values;
     const std::string unions = drawn_spec("calibrated(conformal, alpha = 0.25)", kUnions);
     expect_kept(draws(unions, true, false, robustness), "predicates");

@@ -39,7 +39,7 @@ monitor m = F (p && q && both);
 /// Drifting points with some missing samples.
 class Episodes {
 public:
-    Episodes() : folder_(fs::temp_directory_path() / fmt::format("readings.{}", ::getpid())) {
+    Episodes() : folder_(fs::temp_directory_path() / fmt::format("trace_cache.{}", ::getpid())) {
         fs::create_directories(folder_);
         std::mt19937 random(5);
         const auto number = [&] { return static_cast<double>(random() % 2000) / 1000 - 1; };
@@ -76,7 +76,7 @@ std::string fitted(const check::Model& model, const Request& request) {
     return fitted::write(result->file) + result->report;
 }
 
-TEST(Readings, AreTheSameFromMemoryAndFromFiles) {
+TEST(Recordings, AreTheSameFromMemoryAndFromFiles) {
     check::Options options;
     options.allow_unfitted = true;
     options.allow_uncalibrated = true;
@@ -86,7 +86,7 @@ TEST(Readings, AreTheSameFromMemoryAndFromFiles) {
     const std::string all_kept = fitted(*spec.model, episodes.request);
     ASSERT_NE(all_kept.find("both"), std::string::npos) << all_kept;
     for (const std::size_t bytes : {std::size_t{0}, std::size_t{6000}, std::size_t{20000}}) {
-        episodes.request.most_kept = bytes;
+        episodes.request.cache_bytes = bytes;
         for (const unsigned jobs : {1U, 3U}) {
             episodes.request.jobs = jobs;
             EXPECT_EQ(fitted(*spec.model, episodes.request), all_kept) << bytes << " bytes";
@@ -140,8 +140,8 @@ struct Opened {
     bool was_kept = false;
 };
 
-Opened opened(episodes::KeptTraces& kept, const std::string& path, const Channels& channels) {
-    const auto found = kept.open(path, channels);
+Opened opened(episodes::TraceCache& cache, const std::string& path, const Channels& channels) {
+    const auto found = cache.open(path, channels);
     if (!found) return {found.failure().message};
     const bool was_kept = found->trace->length() > 0;  // a CSV file does not give it
     return {samples(*found->trace, channels.size()), was_kept};
@@ -152,62 +152,62 @@ std::string in_file(const std::string& path, const Channels& channels) {
     return trace ? samples(**trace, channels.size()) : trace.failure().message;
 }
 
-TEST(KeptTraces, HaveTheSamplesOfTheirFiles) {
+TEST(TraceCache, HasTheSamplesOfItsFiles) {
     const Episodes all;
     data::Channel required = kAbsent;
     required.optional = false;
-    for (const std::size_t bytes : {std::size_t{0}, std::size_t{3000}, episodes::kMostKept}) {
-        episodes::KeptTraces kept(bytes);
+    for (const std::size_t bytes : {std::size_t{0}, std::size_t{3000}, episodes::kCacheBytes}) {
+        episodes::TraceCache cache(bytes);
         for (const std::string& path : all.request.episodes)
             for (const Channels& channels :
                  {Channels{kZ}, {kZ, kX}, {kSeen, kAbsent, kX}, {kZ, required}, {kX, kZ, kAbsent}})
-                EXPECT_EQ(opened(kept, path, channels).samples, in_file(path, channels));
+                EXPECT_EQ(opened(cache, path, channels).samples, in_file(path, channels));
         const bool keeps = bytes > 0;
-        EXPECT_EQ(opened(kept, all.request.episodes[0], {kZ}).was_kept, keeps) << bytes;
-        EXPECT_EQ(opened(kept, all.request.episodes[6], {kX, kZ, kSeen}).was_kept,
-                  bytes == episodes::kMostKept);
-        EXPECT_FALSE(opened(kept, all.request.episodes[0], {kZ, required}).was_kept);
+        EXPECT_EQ(opened(cache, all.request.episodes[0], {kZ}).was_kept, keeps) << bytes;
+        EXPECT_EQ(opened(cache, all.request.episodes[6], {kX, kZ, kSeen}).was_kept,
+                  bytes == episodes::kCacheBytes);
+        EXPECT_FALSE(opened(cache, all.request.episodes[0], {kZ, required}).was_kept);
     }
 }
 
-TEST(KeptTraces, ReadChangedFilesAgain) {
+TEST(TraceCache, ReadsChangedFilesAgain) {
     const Episodes all;
     const std::string& path = all.request.episodes[0];
-    episodes::KeptTraces kept;
-    const std::string before = opened(kept, path, {kX}).samples;
-    ASSERT_TRUE(opened(kept, path, {kX}).was_kept);
+    episodes::TraceCache cache;
+    const std::string before = opened(cache, path, {kX}).samples;
+    ASSERT_TRUE(opened(cache, path, {kX}).was_kept);
     std::ofstream(path) << "z[0],z[1],z[2],x,seen\n1,2,3,0.1,1\n";
     for (const bool was_kept : {false, true}) {
-        const Opened now = opened(kept, path, {kX});
+        const Opened now = opened(cache, path, {kX});
         EXPECT_EQ(now.samples, "has 0.1 ");
         EXPECT_EQ(now.was_kept, was_kept);
     }
-    EXPECT_EQ(opened(kept, path, {kX, kZ}).samples, "has has 0.1 1,2,3 ");
+    EXPECT_EQ(opened(cache, path, {kX, kZ}).samples, "has has 0.1 1,2,3 ");
     std::ofstream(path) << "z[0],z[1],z[2],x,seen\n1,2,3,oops,1\n";
-    EXPECT_EQ(opened(kept, path, {kX}).samples, in_file(path, {kX}));
-    EXPECT_FALSE(opened(kept, path, {kX}).was_kept) << "an episode with an error";
+    EXPECT_EQ(opened(cache, path, {kX}).samples, in_file(path, {kX}));
+    EXPECT_FALSE(opened(cache, path, {kX}).was_kept) << "an episode with an error";
     fs::remove(path);
-    EXPECT_EQ(opened(kept, path, {kX}).samples, in_file(path, {kX}));
+    EXPECT_EQ(opened(cache, path, {kX}).samples, in_file(path, {kX}));
 }
 
 /// Only what was read to its end is kept, and its room is free again if it was not.
-TEST(KeptTraces, AreWhole) {
+TEST(TraceCache, KeepsWholeEpisodes) {
     const Episodes all;
     const std::string& path = all.request.episodes[0];
-    episodes::KeptTraces kept(kSteps * (sizeof(double) + 1));  // room for one `x`
+    episodes::TraceCache cache(kSteps * (sizeof(double) + 1));  // room for one `x`
     for (int time = 0; time < 3; ++time) {
-        const auto half = kept.open(path, {kX});
+        const auto half = cache.open(path, {kX});
         data::Sample sample;
         for (std::size_t step = 0; step < kSteps / 2; ++step) half->trace->next(sample);
     }
-    EXPECT_FALSE(opened(kept, path, {kX}).was_kept);
-    EXPECT_TRUE(opened(kept, path, {kX}).was_kept);
-    EXPECT_FALSE(opened(kept, all.request.episodes[1], {kX}).was_kept);
-    EXPECT_FALSE(opened(kept, all.request.episodes[1], {kX}).was_kept) << "there is no room";
+    EXPECT_FALSE(opened(cache, path, {kX}).was_kept);
+    EXPECT_TRUE(opened(cache, path, {kX}).was_kept);
+    EXPECT_FALSE(opened(cache, all.request.episodes[1], {kX}).was_kept);
+    EXPECT_FALSE(opened(cache, all.request.episodes[1], {kX}).was_kept) << "there is no room";
 }
 
-TEST(Room, IsNeverOverdrawn) {
-    episodes::Room room(100);
+TEST(FreeBytes, AreNeverOverdrawn) {
+    episodes::FreeBytes room(100);
     EXPECT_FALSE(room.take(11, 10));
     EXPECT_FALSE(room.take(UINT64_MAX, 10)) << "more than there are bytes to count";
     EXPECT_TRUE(room.take(9, 10));

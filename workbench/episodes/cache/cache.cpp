@@ -1,4 +1,4 @@
-#include "episodes/kept/kept.hpp"
+#include "episodes/cache/cache.hpp"
 
 #include <sys/stat.h>
 
@@ -9,26 +9,26 @@
 
 namespace etlc::episodes {
 
-bool Room::take(std::uint64_t count, std::size_t bytes) {
+bool FreeBytes::take(std::uint64_t count, std::size_t bytes) {
     std::size_t left = left_;
     while (bytes == 0 || count <= left / bytes)
         if (left_.compare_exchange_weak(left, left - count * bytes)) return true;
     return false;
 }
 
-std::shared_ptr<const Identity> KnownIdentities::find(const std::string& inputs) const {
+std::shared_ptr<const Identity> IdentityCache::find(const std::string& inputs) const {
     const std::lock_guard lock(changing_);
     const auto found = all_.find(inputs);
     return found == all_.end() ? nullptr : found->second;
 }
 
-void KnownIdentities::add(const std::string& inputs, std::shared_ptr<const Identity> identity) {
+void IdentityCache::add(const std::string& inputs, std::shared_ptr<const Identity> identity) {
     const std::lock_guard lock(changing_);
     all_.try_emplace(inputs, std::move(identity));
 }
 
 /// The samples of a channel: in float32 while that is exact, else in double.
-class KeptTraces::Column {
+class TraceCache::Column {
 public:
     /// `has`: whether the file has the channel.
     Column(std::uint32_t width, bool has) : width_(width), has_(has) {}
@@ -101,10 +101,10 @@ private:
 };
 
 /// A file whose samples are kept while it is read.
-class KeptTraces::Keeper final : public data::Trace {
+class TraceCache::Keeper final : public data::Trace {
 public:
     /// `known`: what is kept of the file already.
-    Keeper(KeptTraces& all, std::string path, const Episode& known,
+    Keeper(TraceCache& all, std::string path, const Episode& known,
            std::unique_ptr<data::Trace> trace, const std::vector<data::Channel>& channels)
         : all_(all), path_(std::move(path)), trace_(std::move(trace)) {
         episode_.stamp = known.stamp;
@@ -148,13 +148,13 @@ private:
         for (const auto& [channel, column] : new_) bytes += column->bytes_per_frame();
         if (episode_.frames == 1) {
             const std::uint64_t frames = std::max<std::uint64_t>(1, trace_->length());
-            if (!all_.room_.take(frames, bytes)) return false;
+            if (!all_.free_.take(frames, bytes)) return false;
             episode_.bytes = frames * bytes;
             for (const auto& [channel, column] : new_) column->reserve(frames);
         }
         const std::size_t needed = episode_.frames * bytes;
         if (needed <= episode_.bytes) return true;
-        if (!all_.room_.take(1, needed - episode_.bytes)) return false;
+        if (!all_.free_.take(1, needed - episode_.bytes)) return false;
         episode_.bytes = needed;
         return true;
     }
@@ -168,10 +168,10 @@ private:
         if (new_.empty()) return;
         new_.clear();
         episode_.columns.clear();
-        all_.room_.give_back(episode_.bytes);
+        all_.free_.give_back(episode_.bytes);
     }
 
-    KeptTraces& all_;
+    TraceCache& all_;
     std::string path_;
     Episode episode_;
     std::unique_ptr<data::Trace> trace_;
@@ -179,7 +179,7 @@ private:
 };
 
 /// A kept episode as a trace.
-class KeptTraces::Player final : public data::Trace {
+class TraceCache::Player final : public data::Trace {
 public:
     Player(const Episode& episode, const std::vector<data::Channel>& channels)
         : frames_(episode.frames) {
@@ -205,11 +205,11 @@ private:
     std::uint64_t next_ = 0;
 };
 
-diag::Result<KeptTraces::Opened> KeptTraces::open(const std::string& path,
+diag::Result<TraceCache::Opened> TraceCache::open(const std::string& path,
                                                   const std::vector<data::Channel>& channels) {
     const auto stamp = stamp_of(path);
     Episode episode;
-    if (stamp) episode = kept(path, *stamp);
+    if (stamp) episode = cached(path, *stamp);
     const bool all = std::all_of(channels.begin(), channels.end(), [&](const auto& channel) {
         const auto found = episode.columns.find(key_of(channel));
         return found != episode.columns.end() && (found->second->has() || channel.optional);
@@ -223,7 +223,7 @@ diag::Result<KeptTraces::Opened> KeptTraces::open(const std::string& path,
                   episode.identities};
 }
 
-std::optional<KeptTraces::Stamp> KeptTraces::stamp_of(const std::string& path) {
+std::optional<TraceCache::Stamp> TraceCache::stamp_of(const std::string& path) {
     struct stat found {};
     if (::stat(data::trace_file(path).c_str(), &found) != 0) return std::nullopt;
     if (!S_ISREG(found.st_mode) && !S_ISDIR(found.st_mode)) return std::nullopt;
@@ -232,22 +232,22 @@ std::optional<KeptTraces::Stamp> KeptTraces::stamp_of(const std::string& path) {
                  found.st_ctim.tv_nsec};
 }
 
-KeptTraces::Episode KeptTraces::kept(const std::string& path, const Stamp& stamp) const {
+TraceCache::Episode TraceCache::cached(const std::string& path, const Stamp& stamp) const {
     const std::lock_guard lock(changing_);
     const auto found = episodes_.find(path);
     if (found != episodes_.end() && found->second.stamp == stamp) return found->second;
     Episode none;
     none.stamp = stamp;
-    none.identities = std::make_shared<KnownIdentities>();
+    none.identities = std::make_shared<IdentityCache>();
     return none;
 }
 
-void KeptTraces::keep(const std::string& path, Episode more) {
+void TraceCache::keep(const std::string& path, Episode more) {
     const std::lock_guard lock(changing_);
     Episode& kept = episodes_[path];
     const bool is_same = kept.stamp == more.stamp && kept.frames == more.frames;
     if (!is_same) {
-        room_.give_back(kept.bytes);
+        free_.give_back(kept.bytes);
         kept = std::move(more);
         return;
     }
@@ -256,7 +256,7 @@ void KeptTraces::keep(const std::string& path, Episode more) {
     if (kept.columns.size() > before)
         kept.bytes += more.bytes;
     else  // another thread was faster
-        room_.give_back(more.bytes);
+        free_.give_back(more.bytes);
 }
 
 }  // namespace etlc::episodes
