@@ -15,12 +15,13 @@ namespace detail {
 /// The most floats in a sum, and the greatest divisor.
 constexpr uint32_t kMostNumbers = 1u << 24;
 
-/// A sum of at most kMostNumbers finite floats, without rounding: a two's complement number in
-/// units of 2^-149, the least float.
+/// A sum of at most kMostNumbers finite floats, without rounding, in units of 2^-149, the least
+/// float: parts of 64 bits, 32 places apart. No part overflows, so carries can wait until the sum
+/// is asked for.
 class ExactSum {
  public:
   constexpr void reset() noexcept {
-    for (uint32_t& word : words_) word = 0;
+    for (uint32_t& half : halves_) half = 0;
   }
 
   /// Adds a finite float, or takes one away that was added before.
@@ -29,21 +30,84 @@ class ExactSum {
     const uint32_t shift = exponent == 0 ? 0 : exponent - 1;
     const uint32_t digits = exponent == 0 ? fraction : fraction | kOne;
     const bool negative = ((bits & kSignBit) != 0) != take_away;
-    uint32_t at = shift / 32;
-    uint64_t rest = change(at, digits << (shift % 32), 0, negative);
-    rest = change(++at, (digits >> 1) >> (31 - shift % 32), rest, negative);
-    while (rest != 0 && ++at < kWords) rest = change(at, 0, rest, negative);
+    change(shift / 32, digits << (shift % 32), negative);
+    change(shift / 32 + 1, (digits >> 1) >> (31 - shift % 32), negative);
   }
 
-  /// Returns the bits of the sum divided by n, rounded to the nearest float, ties to even. Divides
-  /// bytes, and shifts words, since small processors divide and shift 32 bits only.
-  uint32_t divided_by(uint32_t n) const noexcept {
-    const bool negative = (words_[kWords - 1] & kSignBit) != 0;
+  /// Returns the bits of the sum divided by n, rounded to the nearest float, ties to even.
+  ETLMON_STEP uint32_t divided_by(uint32_t n) const noexcept {
+#if defined(__GNUC__) && UINTPTR_MAX > 0xffffffffu
+    // Nearly always three parts are all there is, and these processors divide 64 bits: the first
+    // 64 of the sum decide, with whether others follow.
+    uint32_t top = kParts - 1;
+    while (top > 2 && part(top) == 0) --top;
+    uint64_t below = 0;
+    for (uint32_t i = 0; i + 2 < top; ++i) below |= part(i);
+    const uint64_t second = part(top - 1) + over(part(top - 2));
+    const uint64_t first = part(top) + over(second);
+    const bool negative = (first >> 63) != 0;
+    uint64_t low = (second << 32) | (part(top - 2) & 0xffffffffu);
+    uint64_t high = negative ? ~first + (low == 0 ? 1 : 0) : first;
+    low = negative ? 0 - low : low;
+    if (below == 0 && (high | low) == 0) return 0;
+    if (below == 0) {
+      const int32_t zeros = high != 0 ? __builtin_clzll(high) : 64 + __builtin_clzll(low);
+      if (zeros >= 64) high = low;
+      if (zeros >= 64) low = 0;
+      const uint32_t by = static_cast<uint32_t>(zeros) % 64;
+      high = (high << by) | (low >> 1 >> (63 - by));
+      const uint64_t quotient = high / n;  // at least 40 bits
+      const bool inexact = high - quotient * n != 0 || low << by != 0;
+      const int32_t more = __builtin_clzll(quotient);
+      const int32_t unit = static_cast<int32_t>(top - 2) * 32 + 64 + 40 - zeros - more;
+      const uint64_t digits = quotient << more, kept = digits >> 40;
+      const uint64_t lost = (digits << 24) + (inexact ? 2 : 0) + kept % 2;
+      if (unit >= 0) {  // 24 digits fit in a float
+        const uint32_t result = (static_cast<uint32_t>(unit) << kFraction) +
+                                static_cast<uint32_t>(kept) + (lost > uint64_t{1} << 63 ? 1 : 0);
+        return negative ? result | kSignBit : result;
+      }
+    }
+#endif
+    return divided_slowly(n);
+  }
+
+ private:
+  static constexpr uint32_t kFraction = 23;          // bits
+  static constexpr uint32_t kOne = 1u << kFraction;  // the bit that normal floats do not store
+  static constexpr uint32_t kParts = 9;              // 277 bits of a float
+  static constexpr uint32_t kWords = 10;             // and 24 of their number, and a sign
+
+  uint64_t part(uint32_t at) const noexcept {
+    uint64_t result = 0;
+    copy_bytes(&result, halves_ + 2 * at, sizeof result);
+    return result;
+  }
+  void change(uint32_t at, uint32_t by, bool negative) noexcept {
+    const uint64_t sign = negative ? ~uint64_t{0} : 0;  // signs are unpredictable: no branch
+    const uint64_t changed = part(at) + ((by ^ sign) - sign);
+    copy_bytes(halves_ + 2 * at, &changed, sizeof changed);
+  }
+  /// Returns what the next part takes over: the upper half, with its sign.
+  static uint64_t over(uint64_t part) noexcept {
+    return (part >> 32) | ((part >> 63) == 0 ? 0 : ~uint64_t{0} << 32);
+  }
+
+  /// The same for any sum. Divides bytes, and shifts words, since small processors divide and shift
+  /// 32 bits only.
+  uint32_t divided_slowly(uint32_t n) const noexcept {
     uint32_t size[kWords];
-    uint64_t carry = negative ? 1 : 0;
+    uint64_t carry = 0;
     for (uint32_t i = 0; i < kWords; ++i) {
-      carry += negative ? ~words_[i] : words_[i];
+      carry += i < kParts ? part(i) : 0;
       size[i] = static_cast<uint32_t>(carry);
+      carry = over(carry);
+    }
+    const bool negative = (size[kWords - 1] & kSignBit) != 0;
+    carry = negative ? 1 : 0;
+    for (uint32_t& word : size) {
+      carry += negative ? ~word : word;
+      word = static_cast<uint32_t>(carry);
       carry >>= 32;
     }
     uint32_t top = kWords - 1;
@@ -65,19 +129,6 @@ class ExactSum {
                               ? least(low, rest, n)
                               : nearest(high, low, unit, inexact);
     return negative ? bits | kSignBit : bits;
-  }
-
- private:
-  static constexpr uint32_t kFraction = 23;          // bits
-  static constexpr uint32_t kOne = 1u << kFraction;  // the bit that normal floats do not store
-  static constexpr uint32_t kWords = 10;  // 277 bits of a float, 24 of their number, and a sign
-
-  /// Adds to a word, or subtracts from it. Returns what the next word has to take over.
-  uint64_t change(uint32_t at, uint32_t part, uint64_t rest, bool negative) noexcept {
-    const uint64_t word = words_[at];
-    const uint64_t changed = negative ? word - part - rest : word + part + rest;
-    words_[at] = static_cast<uint32_t>(changed);
-    return (changed >> 32) & 1u;
   }
 
   /// Rounds a quotient in units of the least float, and what is left of it.
@@ -107,7 +158,7 @@ class ExactSum {
     return ((unit + dropped) << kFraction) + kept + (up ? 1u : 0u);
   }
 
-  uint32_t words_[kWords];
+  uint32_t halves_[2 * kParts];
 };
 
 }  // namespace detail

@@ -48,7 +48,8 @@ constexpr bool is_nan_bits(uint32_t bits) noexcept {
 
 /// Takes a step of a mean of the last n over caller-owned storage of n numbers. Returns the bits of
 /// the mean; with infinities of both signs it has none.
-inline uint32_t mean_push(uint32_t* storage, MeanState& state, uint32_t n, uint32_t bits) noexcept {
+ETLMON_STEP uint32_t mean_push(uint32_t* storage, MeanState& state, uint32_t n,
+                               uint32_t bits) noexcept {
   if (is_nan_bits(bits)) {  // a window that it is in has no mean
     state.reset();
     return detail::kMissingBits;
