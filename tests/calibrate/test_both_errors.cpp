@@ -34,7 +34,7 @@ using check::Guarantee;
 using episodes::Label;
 using Labels = std::vector<Label>;
 
-/// Returns what a verdict predicted. episodes::label_of() does not link where its flags are others.
+/// Returns what a verdict predicts. episodes::label_of() does not link where its flags are others.
 Label called(const etlmon::Verdict& verdict) {
     return verdict.satisfied() ? Label::yes : verdict.violated() ? Label::no : Label::unknown;
 }

@@ -52,7 +52,7 @@ std::vector<std::string> drawn(Random& random, int count) {
 
 /// For every monitor with a guarantee: the number of fresh episodes, and of those with a verdict
 /// that the guarantee excludes.
-struct Kept {
+struct Tally {
     check::Guarantee guarantee;
     int episodes = 0;
     int broken = 0;
@@ -74,7 +74,7 @@ bool breaks(const check::Guarantee& guarantee, const etlmon::Verdict& predicted,
 }
 
 void count(const Compiled& monitors, const Compiled& truths, Random& random,
-           std::map<std::string, Kept>& kept) {
+           std::map<std::string, Tally>& kept) {
     execute::Evaluator predicted(monitors.plan);
     execute::Evaluator actual(truths.plan);
     const Drawn episode(random);
@@ -87,7 +87,7 @@ void count(const Compiled& monitors, const Compiled& truths, Random& random,
         for (std::size_t m = 0; m < verdicts.size(); ++m) {
             const check::Monitor& monitor =
                 monitors.model->monitors[monitors.plan.monitors[m].index];
-            Kept& of = kept[monitor.name];
+            Tally& of = kept[monitor.name];
             of.guarantee = check::guarantees(*monitors.model, monitor, monitors.plan.values)[0];
             if (breaks(of.guarantee, verdicts[m], truth[m])) broken.insert(monitor.name);
         }
@@ -99,9 +99,9 @@ void count(const Compiled& monitors, const Compiled& truths, Random& random,
 }
 
 /// Calibrates again for every draw. Skips draws with too few scores.
-std::map<std::string, Kept> draws(const std::string& spec, bool of_predicates, bool of_monitors,
-                                  check::Values values) {
-    std::map<std::string, Kept> kept;
+std::map<std::string, Tally> draws(const std::string& spec, bool of_predicates, bool of_monitors,
+                                   check::Values values) {
+    std::map<std::string, Tally> kept;
     Random random(2027);
     for (int draw = 0; draw < kNewEpisodeDraws; ++draw) {
         std::string thresholds;
@@ -132,7 +132,7 @@ std::map<std::string, Kept> draws(const std::string& spec, bool of_predicates, b
     return kept;
 }
 
-void expect_kept(const std::map<std::string, Kept>& all, const std::string& which) {
+void expect_kept(const std::map<std::string, Tally>& all, const std::string& which) {
     for (const auto& [name, kept] : all) {
         EXPECT_GT(kept.episodes, kNewEpisodeDraws * kFresh / 2) << which;
         const double bound =
