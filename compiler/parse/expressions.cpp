@@ -32,11 +32,6 @@ ExprKind expr_kind(const Token& op) {
     }
 }
 
-template <class Context>
-Context& only_child(const ParserRuleContext& context) {
-    return *dynamic_cast<Context*>(context.children.front());
-}
-
 bool is_single(const ParserRuleContext& context) {
     return context.children.size() == 1;
 }

@@ -165,7 +165,6 @@ private:
     bool leads_to(const Forms& forms, const Seen& before, const Seen& now);
     bool take_equal_values(const Seen& before, const Seen& now);
     std::uint32_t period() const;
-    Place first_place(std::uint32_t step) const;
 
     std::uint32_t places_;
     const std::vector<Atom>& atoms_;

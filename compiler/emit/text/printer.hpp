@@ -41,7 +41,6 @@ public:
         line(text);
     }
     void indent() { ++depth_; }
-    void dedent() { --depth_; }
     std::size_t column() const { return 2 * depth_; }
 
     std::string take() { return std::move(text_); }
