@@ -79,14 +79,13 @@ class ExactSum {
   static constexpr uint32_t kWords = 10;             // and 24 of their number, and a sign
 
   uint64_t part(uint32_t at) const noexcept {
-    uint64_t result = 0;
-    copy_bytes(&result, halves_ + 2 * at, sizeof result);
-    return result;
+    return halves_[2 * at] | (static_cast<uint64_t>(halves_[2 * at + 1]) << 32);
   }
   void change(uint32_t at, uint32_t by, bool negative) noexcept {
     const uint64_t sign = negative ? ~uint64_t{0} : 0;  // signs are unpredictable: no branch
     const uint64_t changed = part(at) + ((by ^ sign) - sign);
-    copy_bytes(halves_ + 2 * at, &changed, sizeof changed);
+    halves_[2 * at] = static_cast<uint32_t>(changed);
+    halves_[2 * at + 1] = static_cast<uint32_t>(changed >> 32);
   }
   /// Returns what the next part takes over: the upper half, with its sign.
   static uint64_t over(uint64_t part) noexcept {
@@ -104,11 +103,10 @@ class ExactSum {
       carry = over(carry);
     }
     const bool negative = (size[kWords - 1] & kSignBit) != 0;
-    carry = negative ? 1 : 0;
-    for (uint32_t& word : size) {
-      carry += negative ? ~word : word;
-      word = static_cast<uint32_t>(carry);
-      carry >>= 32;
+    bool carries = negative;
+    for (uint32_t i = 0; negative && i < kWords; ++i) {
+      size[i] = ~size[i] + (carries ? 1 : 0);
+      carries = carries && size[i] == 0;
     }
     uint32_t top = kWords - 1;
     while (top > 2 && size[top] == 0) --top;
