@@ -494,6 +494,11 @@ std::string npy_bytes(const std::vector<std::uint64_t>& shape, const std::vector
     return bytes;
 }
 
+std::string npy_of_uint8(const std::vector<std::uint64_t>& shape,
+                         const std::vector<std::uint8_t>& values) {
+    return npy_head("|u1", shape).append(values.begin(), values.end());
+}
+
 std::string npz_bytes(const std::vector<ArchiveMember>& members) {
     zip_error_t error;
     zip_error_init(&error);

@@ -79,6 +79,9 @@ diag::Result<std::vector<ZipMember>> read_zip_layout(std::uint64_t size, const R
 
 /// Writes values in row-major order, one for each element of the shape, as float32.
 std::string npy_bytes(const std::vector<std::uint64_t>& shape, const std::vector<float>& values);
+/// Writes values in row-major order as uint8.
+std::string npy_of_uint8(const std::vector<std::uint64_t>& shape,
+                         const std::vector<std::uint8_t>& values);
 
 struct ArchiveMember {
     std::string name;  ///< with its ending: "goal.npy"
