@@ -385,6 +385,7 @@ void print_class(Printer& out, const Context& context) {
     print_why_of(out, context);
     if (asks_what_exists(context.plan)) print_exists(out, context);
     if (context.on_demand) declare_advance(out);
+    declare_parts(out, context);
     print_adaptation_constants(out, context);
     print_state(out, all);
     out.close("};");

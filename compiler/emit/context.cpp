@@ -119,7 +119,19 @@ std::string Context::value(plan::Slot slot) const {
     if (is_predicate || stream.op == StreamOp::flag)
         return now + (is_predicate ? names.predicate_atom : names.flag_atom).at(stream.index);
     const bool is_register = stream.op == StreamOp::running || stream.op == StreamOp::since;
-    return is_register ? names.streams[slot].member : names.streams[slot].local;
+    return is_register ? names.streams[slot].member : local(slot);
+}
+
+std::string Context::local(plan::Slot slot) const {
+    const std::vector<plan::Slot>& shared = parts.shared_streams;
+    return (std::binary_search(shared.begin(), shared.end(), slot) ? "shared." : "") +
+           names.streams[slot].local;
+}
+
+std::string Context::reading(std::uint32_t index) const {
+    const std::vector<std::uint32_t>& shared = parts.shared_readings;
+    return (std::binary_search(shared.begin(), shared.end(), index) ? "shared." : "") +
+           names.readings[index].local;
 }
 
 std::string Context::low(plan::Slot slot) const {
@@ -135,7 +147,9 @@ std::string Context::high(plan::Slot slot) const {
 std::string reading_declaration(const Context& context, std::uint32_t reading) {
     const bool declared = context.on_demand && context.plan.readings[reading].operands.empty() &&
                           !open_monitors(context, context.dependents.of_reading[reading]).empty();
-    return (declared ? "" : "const Reading ") + context.names.readings[reading].local;
+    const std::string name = context.reading(reading);
+    return (declared || name != context.names.readings[reading].local ? "" : "const Reading ") +
+           name;
 }
 
 std::string open_monitors(const Context& context, const std::vector<std::size_t>& monitors) {

@@ -22,6 +22,17 @@ namespace etlc::emit {
 /// predicates have maps to the empty string.
 std::map<plan::Key, std::string> unseen_ends(const plan::Plan& plan, const Names& names);
 
+/// The functions that judge() calls for some monitors each, since compilers take more than linear
+/// time for long functions. Streams and readings of none of them are computed by judge() itself.
+struct Parts {
+    std::uint32_t count = 0;
+    std::vector<std::uint32_t> of_stream, of_reading, of_monitor;  ///< kNone: judge() itself
+    std::vector<plan::Slot> shared_streams;  ///< computed by judge() itself, and not members
+    std::vector<std::uint32_t> shared_readings;
+    bool share() const { return !shared_streams.empty() || !shared_readings.empty(); }
+};
+Parts parts_of(const plan::Plan& plan, const plan::Dependents& dependents, bool on_demand);
+
 struct Context {
     const plan::Plan& plan;
     const ir::Graph& graph;
@@ -34,6 +45,7 @@ struct Context {
     /// Predicates are measured when a verdict first depends on them: one function does a step.
     bool on_demand;
     plan::Dependents dependents;
+    Parts parts = parts_of(plan, dependents, on_demand);
     std::vector<plan::Demand> demand = plan::demands(plan);  ///< per stream
     std::map<plan::Key, std::string> ends = unseen_ends(plan, names);
     plan::RecorderColumns recorded = plan::recorder_columns(plan);
@@ -80,6 +92,9 @@ struct Context {
     std::vector<plan::Slot> by_work(std::vector<plan::Slot> slots) const;
     /// Returns code for the stream in judge(): `now.at_a`, a local, a register or a constant.
     std::string value(plan::Slot slot) const;
+    std::string local(plan::Slot slot) const;
+    /// Returns code for the reading in judge().
+    std::string reading(std::uint32_t index) const;
     /// Returns code for the low or high key of a stream: "reach_.low", "etlmon::key_of(0.31f)".
     std::string low(plan::Slot slot) const;
     std::string high(plan::Slot slot) const;
@@ -109,13 +124,15 @@ void print_class(Printer& out, const Context& context);
 void print_measure(Printer& out, const Context& context);
 void print_atoms_on_demand(Printer& out, const Context& context);
 void print_judge(Printer& out, const Context& context);
+/// Declares the functions that judge() calls.
+void declare_parts(Printer& out, const Context& context);
 /// Opens the definition of one of the functions of a step: "Verdicts", "judge(...)".
 void open_half(Printer& out, const Context& context, std::string_view result,
                std::string_view function);
 /// Prints measure() and judge() of a Boolean class as one function, since the verdicts decide what
 /// is measured.
 void print_advance(Printer& out, const Context& context);
-void print_streams(Printer& out, const Context& context);
+void print_streams(Printer& out, const Context& context, std::uint32_t part = plan::kNone);
 void print_reading(Printer& out, const Context& context, std::uint32_t reading);
 void print_tables(Printer& out, const Context& context);
 void print_pending(Printer& out, const Context& context, std::uint32_t reading);

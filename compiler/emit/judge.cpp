@@ -1,5 +1,7 @@
 // Prints judge(): from the robustness of every predicate at this step to the verdicts.
 
+#include <algorithm>
+
 #include "emit/context.hpp"
 
 namespace etlc::emit {
@@ -45,7 +47,7 @@ bool is_deciding(const Context& context) {
 
 std::string prefix_verdict(const Context& context, std::size_t m) {
     const plan::Monitor& monitor = context.plan.monitors[m];
-    const std::string& reading = context.names.readings[monitor.reading].local;
+    const std::string reading = context.reading(monitor.reading);
     const std::string when = complete(context, m);
     if (is_deciding(context)) return deciding(monitor, "prefix", m, reading, when);
     return fmt::format("etlmon::prefix_verdict({}{})",
@@ -84,9 +86,10 @@ void print_reading_while_open(Printer& out, const Context& context, std::uint32_
     out.close();
 }
 
-void print_readings(Printer& out, const Context& context) {
+void print_readings(Printer& out, const Context& context, std::uint32_t part = plan::kNone) {
     const plan::Plan& plan = context.plan;
-    if (plan.readings.empty()) return;
+    const std::vector<std::uint32_t>& parts = context.parts.of_reading;
+    if (std::find(parts.begin(), parts.end(), part) == parts.end()) return;
     const bool ends =
         plan.has_sliding && !context.on_demand;  // the prefix does not grow during finish()
     if (ends) {
@@ -94,6 +97,7 @@ void print_readings(Printer& out, const Context& context) {
         out.open("if (finishes_ == 0) {");
     }
     for (std::uint32_t r = 0; r < plan.readings.size(); ++r) {
+        if (parts[r] != part) continue;
         out.gap();
         print_comment(out, "//", context.place(plan.readings[r].node), 4);
         context.on_demand ? print_reading_while_open(out, context, r)
@@ -101,7 +105,8 @@ void print_readings(Printer& out, const Context& context) {
     }
     if (!ends) return;
     for (const auto& [m, name] : context.names.verdict_member)
-        print_wrapped(out, fmt::format("{} = {};", name, prefix_verdict(context, m)));
+        if (context.parts.of_monitor[m] == part)
+            print_wrapped(out, fmt::format("{} = {};", name, prefix_verdict(context, m)));
     out.close();
 }
 
@@ -168,8 +173,118 @@ void print_advance(Printer& out, const Context& context) {
     out.close();
 }
 
+namespace {
+
+void print_verdicts(Printer& out, const Context& context, std::uint32_t part) {
+    for (std::size_t m = 0; m < context.plan.monitors.size(); ++m) {
+        if (context.parts.of_monitor[m] != part) continue;
+        const std::string answer = "verdicts." + context.plan.monitors[m].name;
+        print_wrapped(out, fmt::format("{} = {};", answer, verdict(context, m)));
+    }
+}
+
+/// `unused`: what precedes a parameter that not every part reads.
+std::string parameters_of_parts(const Context& context, std::string_view unused = "") {
+    return fmt::format(
+        "{0}const Atoms& now, {1}Verdicts& verdicts", unused,
+        context.parts.share() ? fmt::format("{}const Shared& shared, ", unused) : "");
+}
+
+void print_part(Printer& out, const Context& context, std::uint32_t part) {
+    print_wrapped(out, fmt::format("inline void Monitor::judge_{}({}) noexcept {{", part + 1,
+                                   parameters_of_parts(context, "[[maybe_unused]] ")));
+    out.indent();
+    out.line("using etlmon::max_of;");
+    out.line("using etlmon::min_of;");
+    out.gap();
+    print_streams(out, context, part);
+    print_readings(out, context, part);
+    out.gap();
+    print_verdicts(out, context, part);
+    out.close();
+    out.line();
+}
+
+}  // namespace
+
+namespace {
+
+/// Returns the part of each monitor: as many as fit in one function of those that follow.
+std::vector<std::uint32_t> parts_of_monitors(const plan::Plan& plan) {
+    constexpr std::uint64_t kInAPart = 256;  // operations
+    std::vector<std::uint32_t> parts;
+    std::uint32_t part = 0;
+    std::uint64_t sum = 0;
+    for (const plan::Cost& cost : plan.monitor_costs) {
+        sum += cost.operations;
+        if (sum > kInAPart && sum > cost.operations) {
+            ++part;
+            sum = cost.operations;
+        }
+        parts.push_back(part);
+    }
+    return parts;
+}
+
+/// Returns the part that all these monitors are in; kNone if there is none, or lets are among them.
+std::uint32_t common_part(const Parts& parts, const std::vector<std::size_t>& users) {
+    if (users.empty() || users.back() >= parts.of_monitor.size()) return plan::kNone;
+    const std::uint32_t first = parts.of_monitor[users.front()];
+    return parts.of_monitor[users.back()] == first ? first : plan::kNone;  // both ascend
+}
+
+bool is_local(plan::StreamOp op) {
+    using Op = plan::StreamOp;
+    return op != Op::constant && op != Op::predicate && op != Op::flag && op != Op::running &&
+           op != Op::since;
+}
+
+}  // namespace
+
+Parts parts_of(const plan::Plan& plan, const plan::Dependents& dependents, bool on_demand) {
+    constexpr std::uint64_t kInOneFunction = 2048;  // operations
+    Parts parts;
+    parts.of_monitor = parts_of_monitors(plan);
+    parts.count = parts.of_monitor.empty() ? 0 : parts.of_monitor.back() + 1;
+    if (on_demand || parts.count < 2 || plan.cost.operations <= kInOneFunction) {
+        parts.count = 0;
+        parts.of_monitor.assign(plan.monitors.size(), plan::kNone);
+    }
+    for (const auto& users : dependents.of_stream)
+        parts.of_stream.push_back(common_part(parts, users));
+    for (const auto& users : dependents.of_reading)
+        parts.of_reading.push_back(common_part(parts, users));
+    if (parts.count == 0) return parts;
+    for (plan::Slot slot = 0; slot < plan.streams.size(); ++slot)
+        if (parts.of_stream[slot] == plan::kNone && is_local(plan.streams[slot].op))
+            parts.shared_streams.push_back(slot);
+    for (std::uint32_t r = 0; r < plan.readings.size(); ++r)
+        if (parts.of_reading[r] == plan::kNone) parts.shared_readings.push_back(r);
+    return parts;
+}
+
+void declare_parts(Printer& out, const Context& context) {
+    if (context.parts.count == 0) return;
+    if (context.parts.share()) {
+        print_doc(out, "What several parts of judge() read.");
+        out.open("struct Shared {");
+        for (const plan::Slot slot : context.parts.shared_streams)
+            out.line("Value {};", context.names.streams[slot].local);
+        for (const std::uint32_t r : context.parts.shared_readings)
+            out.line("Reading {};", context.names.readings[r].local);
+        out.close("};");
+        out.line();
+    }
+    print_doc(out, "The parts of judge(), each for some of the monitors.");
+    for (std::uint32_t part = 0; part < context.parts.count; ++part)
+        print_wrapped(out, fmt::format("void judge_{}({}) noexcept;", part + 1,
+                                       parameters_of_parts(context)));
+    out.line();
+}
+
 void print_judge(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
+    for (std::uint32_t part = 0; part < context.parts.count; ++part) print_part(out, context, part);
     const bool reads_atoms =
         !context.names.predicate_atom.empty() || !context.names.flag_atom.empty() || plan.recorder;
     open_half(out, context, "Verdicts",
@@ -177,14 +292,14 @@ void print_judge(Printer& out, const Context& context) {
     out.line("using etlmon::max_of;");
     out.line("using etlmon::min_of;");
     out.gap();
+    if (context.parts.share()) out.line("Shared shared;");
     print_streams(out, context);
     print_readings(out, context);
     out.gap();
     out.line("Verdicts verdicts;");
-    for (std::size_t m = 0; m < plan.monitors.size(); ++m) {
-        const std::string answer = "verdicts." + plan.monitors[m].name;
-        print_wrapped(out, fmt::format("{} = {};", answer, verdict(context, m)));
-    }
+    print_verdicts(out, context, plan::kNone);
+    for (std::uint32_t part = 0; part < context.parts.count; ++part)
+        out.line("judge_{}(now, {}verdicts);", part + 1, context.parts.share() ? "shared, " : "");
     print_lets(out, context);
     print_progress(out, context, "verdicts");
     print_record(out, context, "verdicts");

@@ -279,8 +279,7 @@ void print_reading(Printer& out, const Context& context, std::uint32_t r) {
         case Reading::Kind::combination: break;
     }
     std::vector<std::string> parts;
-    for (std::uint32_t operand : reading.operands)
-        parts.push_back(context.names.readings[operand].local);
+    for (std::uint32_t operand : reading.operands) parts.push_back(context.reading(operand));
     print_wrapped(out, fmt::format("{} = {};", reading_declaration(context, r),
                                    call(reading.max ? "max_of" : "min_of", parts)));
 }

@@ -140,8 +140,11 @@ std::string while_open(const Context& context, Slot slot) {
 /// Returns the statement with its declaration. In a Boolean monitor, streams with state are updated
 /// only while some verdict depends on them, and others are evaluated on demand.
 Statement whole_statement(const Context& context, Slot slot) {
-    const auto& [name, member] = context.names.streams[slot];
-    if (name.empty()) return {};  // an atom or a constant
+    const std::string& member = context.names.streams[slot].member;
+    if (context.names.streams[slot].local.empty()) return {};  // an atom or a constant
+    const std::string name = context.local(slot);
+    if (name != context.names.streams[slot].local)
+        return {statement(context, slot, name + " = "), ""};
     const Stream& stream = context.plan.streams[slot];
     if (context.lazy(slot) && stream.op == StreamOp::within)
         return {lazy_within(context, stream, name), ""};
@@ -158,8 +161,9 @@ Statement whole_statement(const Context& context, Slot slot) {
 
 }  // namespace
 
-void print_streams(Printer& out, const Context& context) {
+void print_streams(Printer& out, const Context& context, std::uint32_t part) {
     for (Slot slot = 0; slot < context.plan.streams.size(); ++slot) {
+        if (context.parts.of_stream[slot] != part) continue;
         const Statement statement = whole_statement(context, slot);
         if (statement.text.empty()) continue;
         const plan::NodeId node = context.plan.streams[slot].node;

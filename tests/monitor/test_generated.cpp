@@ -200,6 +200,23 @@ TEST_P(Generated, AgreesWithTheReference) {
     EXPECT_GE(control.allocations, watched * (build.counts_malloc ? 3 : 1));
 }
 
+// Compilers take minutes for one function of 1,000 monitors.
+TEST(LargeClasses, JudgeInParts) {
+    std::string text = "spec large;\n";
+    for (int i = 0; i < 120; ++i)
+        text += fmt::format(
+            "input a{0} : bool;\ninput b{0} : bool;\n"
+            "monitor m{0} = G (a{0} -> F[0, 20 steps] b{0});\n",
+            i);
+    GeneratedProgram program("LargeClass");
+    const auto model = load(text);
+    ASSERT_TRUE(model);
+    ASSERT_TRUE(program.add(*model));
+    const std::string header = read_text((program.folder() / "large.hpp").string());
+    EXPECT_NE(header.find("judge_10(now, verdicts);"), std::string::npos);
+    EXPECT_EQ(header.find("Shared"), std::string::npos);
+}
+
 INSTANTIATE_TEST_SUITE_P(Builds, Generated, testing::Range(std::size_t{0}, kBuilds.size()),
                          [](const auto& build) { return kBuilds[build.param].name; });
 
