@@ -202,19 +202,35 @@ TEST_P(Generated, AgreesWithTheReference) {
 
 // Compilers take minutes for one function of 1,000 monitors.
 TEST(LargeClasses, JudgeInParts) {
-    std::string text = "spec large;\n";
-    for (int i = 0; i < 120; ++i)
+    std::string text = "spec large;\ninput calm : bool;\nlet still = H[0, 3 steps] calm;\n";
+    for (int i = 0; i < 100; ++i)
         text += fmt::format(
-            "input a{0} : bool;\ninput b{0} : bool;\n"
-            "monitor m{0} = G (a{0} -> F[0, 20 steps] b{0});\n",
-            i);
+            "input a{0}, b{0} : bool;\n"
+            "{1}monitor m{0} = G (a{0} && still -> F[0, 20 steps] b{0});\n",
+            i, i % 3 == 1 ? "repeating " : "");
     GeneratedProgram program("LargeClass");
     const auto model = load(text);
     ASSERT_TRUE(model);
     ASSERT_TRUE(program.add(*model));
     const std::string header = read_text((program.folder() / "large.hpp").string());
-    EXPECT_NE(header.find("judge_10(now, verdicts);"), std::string::npos);
-    EXPECT_EQ(header.find("Shared"), std::string::npos);
+    EXPECT_NE(header.find("judge_8(now, shared, verdicts);"), std::string::npos);
+    EXPECT_NE(header.find("shared."), std::string::npos);
+    ASSERT_TRUE(program.compile(kGccFastMath));
+    std::vector<Request> requests;
+    for (std::uint64_t n = 0; n < 2; ++n) {
+        const TraceShape shape{.steps = 40, .missing = 0.05 * static_cast<double>(n)};
+        requests.push_back(
+            {0, random_trace(*model, 20 + n, shape), random_trace(*model, 30 + n, shape)});
+    }
+    const auto result = program.run(requests);
+    ASSERT_EQ(result.answers.size(), requests.size());
+    const Expectation expected{program.model(0),
+                               PlanRunner(program.model(0), kRoomy).dependencies(), 0,
+                               check::Values::robustness};
+    for (std::size_t n = 0; n < requests.size(); ++n) {
+        const auto mismatch = expected.mismatch(requests[n], result.answers[n]);
+        EXPECT_FALSE(mismatch) << *mismatch;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Builds, Generated, testing::Range(std::size_t{0}, kBuilds.size()),
