@@ -20,7 +20,6 @@
 #include "execute/evaluator.hpp"
 #include "npy_bytes.hpp"
 #include "parse/parse.hpp"
-#include "plan/program/value_type.hpp"
 #include "random.hpp"
 
 namespace etlc::tests {
@@ -153,12 +152,6 @@ public:
         diag::Sink sink;
         plain_ = compile(model_, {}, sink);
         evaluator_ = std::make_unique<execute::Evaluator>(plain_->plan);
-        evaluator_->replace_predicate_values([&](check::Index p) {
-            const check::Predicate& predicate = model_.predicates[p];
-            values_[p] = plan::value_of(predicate, evaluator_->distance(p),
-                                        predicate.threshold.value, check::Values::robustness);
-            return *values_[p];
-        });
     }
     const check::Duration& duration() const { return *model_.monitors[0].duration; }
 
@@ -169,6 +162,7 @@ public:
             samples_ = samples;
             values_.assign(model_.predicates.size(), std::nullopt);
             evaluator_->step(samples);
+            for (check::Index p = 0; p < values_.size(); ++p) take(p);
             scorer_.add(values_, *this);
         }
         return *scorer_.score();
@@ -180,11 +174,22 @@ public:
     std::uint64_t frames() const override { return 0; }
 
 private:
+    /// Scalars are measured alike in all builds.
+    void take(check::Index p) {
+        const check::Predicate& predicate = model_.predicates[p];
+        const float delta = evaluator_->distance(p);
+        if (std::isnan(delta)) return;
+        const float epsilon = predicate.threshold.value;
+        const std::int32_t key =
+            etlmon::key_of(predicate.upper_bound() ? epsilon - delta : delta - epsilon);
+        values_[p] = {key, key};
+    }
+
     check::Model model_;
     calibrate::DurationScorer scorer_;
     std::optional<Compiled> plain_;
     std::unique_ptr<execute::Evaluator> evaluator_;
-    std::vector<std::optional<plan::Value>> values_;
+    std::vector<std::optional<calibrate::Ends>> values_;
     std::vector<execute::Sample> samples_;
 };
 

@@ -45,7 +45,7 @@ std::uint32_t between(std::uint32_t low, std::uint32_t high) {
 }
 
 /// Robustness 0 counts as satisfied, but a Boolean class decides by the comparison.
-plan::Value decided(const check::Predicate& predicate, plan::Value value) {
+Ends decided(const check::Predicate& predicate, Ends value) {
     if (value.high == 0 && predicate.strict()) value.high = -1;
     if (value.low == 0 && !predicate.strict()) value.low = 1;
     return value;
@@ -75,10 +75,10 @@ void DurationScorer::reset() {
     steps_ = 0;
 }
 
-void DurationScorer::add(const std::vector<std::optional<plan::Value>>& values,
+void DurationScorer::add(const std::vector<std::optional<Ends>>& values,
                          const episodes::Frames& frames) {
     for (const Index p : predicates_) {
-        std::optional<plan::Value> value = values[p];
+        std::optional<Ends> value = values[p];
         if (value) value = decided(model_.predicates[p], *value);
         values_.push_back(value);
     }
@@ -131,8 +131,10 @@ diag::Result<bool> DurationScorer::is_violated(std::uint32_t steps) {
     const auto compiled = with(steps);
     if (!compiled) return compiled.failure();
     execute::Evaluator evaluator((*compiled)->plan);
-    std::vector<std::optional<plan::Value>> now(model_.predicates.size());
-    evaluator.replace_predicate_values([&](Index p) { return *now[p]; });
+    std::vector<std::optional<Ends>> now(model_.predicates.size());
+    evaluator.replace_predicate_values([&](Index p) {
+        return etlmon::Value{now[p]->low, now[p]->high};
+    });
     std::vector<execute::Sample> samples(model_.inputs.size());
     const auto first = model_.inputs.size() - predicates_.size();
     for (std::uint32_t step = 0; step < steps_; ++step) {

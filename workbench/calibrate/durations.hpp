@@ -21,6 +21,13 @@ namespace etlc::calibrate {
 
 using check::Index;
 
+/// A predicate at a step, in the build that is worst for the monitor: keys of its least robustness
+/// (`high`), and of the greatest (`low`), whose negation is the least.
+struct Ends {
+    std::int32_t low = 0;
+    std::int32_t high = 0;
+};
+
 /// Returns the monitors with a calibrated duration.
 std::vector<Index> timed_monitors(const check::Model& model);
 
@@ -31,9 +38,8 @@ public:
     DurationScorer(const check::Model& model, Index monitor);
 
     void reset();
-    /// Adds a step. `values`: per predicate of the model, the least robustness of it (`high`) and
-    /// of its negation (`low`) in any build; nothing where it was not measured.
-    void add(const std::vector<std::optional<plan::Value>>& values, const episodes::Frames& frames);
+    /// Adds a step. `values`: per predicate of the model; nothing where it was not measured.
+    void add(const std::vector<std::optional<Ends>>& values, const episodes::Frames& frames);
     /// Returns the least duration with which the steps do not violate the monitor for good, +inf
     /// where all do. Where a longer one makes it falser, returns the greatest one, negated: -inf
     /// where none violates it, +inf where all do. Fails where the monitor exceeds the limits of a
@@ -48,9 +54,9 @@ private:
     check::Model model_;  ///< of this monitor, in which an input stands for each predicate
     std::vector<Index> predicates_;
     std::vector<Index> flags_;
-    std::map<std::uint32_t, Compiled> plans_;         ///< by duration, for the next episodes
-    std::vector<std::optional<plan::Value>> values_;  ///< step by step, per element of predicates_
-    std::vector<std::optional<bool>> bools_;          ///< likewise of flags_
+    std::map<std::uint32_t, Compiled> plans_;  ///< by duration, for the next episodes
+    std::vector<std::optional<Ends>> values_;  ///< step by step, per element of predicates_
+    std::vector<std::optional<bool>> bools_;   ///< likewise of flags_
     std::uint32_t steps_ = 0;
 };
 

@@ -98,7 +98,7 @@ private:
     episodes::Wanted wanted_;
     episodes::Wanted divided_;  ///< the same with the labels that divide episodes
     std::vector<DurationScorer> durations_;
-    std::vector<std::optional<plan::Value>> values_;  ///< of this step, per measured predicate
+    std::vector<std::optional<Ends>> values_;  ///< of this step, per measured predicate
 };
 
 MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plans,
@@ -126,8 +126,9 @@ MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plan
     execute::Evaluator& highest = highest_.evaluator();
     highest.after_pasts([&] { pasts_.step(highest); });
     highest.replace_predicate_values([&](Index p) {
-        values_[p] = spread(model_, p, highest, pasts_);
-        return *values_[p];
+        const plan::Value value = spread(model_, p, highest, pasts_);
+        values_[p] = {value.low, value.high};
+        return value;
     });
 }
 
