@@ -250,7 +250,7 @@ std::pair<int, int> false_alarms(const Timed& timed, int sets) {
 
 TEST(Durations, FalseAlarmsAreWithinAlpha) {
     for (const Timed& timed : kTimed) {
-        const auto [alarms, all] = false_alarms(timed, full() ? 2000 : 200);
+        const auto [alarms, all] = false_alarms(timed, full() ? 2000 : 60);
         const double rate = static_cast<double>(alarms) / all;
         EXPECT_LE(rate, 0.2 + 3 * std::sqrt(0.2 * 0.8 / all * 10)) << timed.formula;
         fmt::print("{}: {} of {} new episodes are violated for good, alpha = 0.2\n", timed.formula,
