@@ -56,9 +56,8 @@ std::uint64_t first_alarm(Model& model, const Monitor& monitor, const Duration& 
 /// Returns why the monitor can have no calibrated duration; empty if it can.
 std::string why_not(const Monitor& monitor) {
     if (monitor.sliding)
-        return "a sliding monitor judges every position, and the guarantee is about one "
-               "verdict "
-               "of an episode; write a monitor 'G (...)'";
+        return "a sliding monitor judges every position, and the guarantee is about one verdict of "
+               "an episode; write a monitor 'G (...)'";
     if (monitor.restarts != Restarts::never)
         return "it judges an episode several times, and the guarantee is about one verdict; remove "
                "'restartable' or 'repeating'";
