@@ -38,6 +38,10 @@ done <"$document" >"$folder/document.md"
 
 [ -z "$fence" ] || { echo "the last block is not closed"; exit 1; }
 [ "$commands" -ge 3 ] || { echo "only $commands commands were found"; exit 1; }
+if grep -n '^bash: ' "$folder/document.md"; then
+    echo "bash cannot run this command, so its output is no example"
+    exit 1
+fi
 if [ "${ETLC_UPDATE:-}" = 1 ]; then
     cp "$folder/document.md" "$document"
 else
