@@ -79,8 +79,9 @@ void duration_members(Archive& archive, auto& entry) {
 
 template <class Archive>
 void members(Archive& archive, auto& entry, bool of_monitor) {
-    archive("method", entry.method,
-            artifacts::Words{{"f1", "conformal", "class_conditional", "adaptive", "risk"}});
+    archive(
+        "method", entry.method,
+        artifacts::Words{{"f1", "conformal", "class_conditional", "adaptive", "risk", "normal"}});
     const bool rated = entry.method != "f1";
     rate_member(archive, "alpha", entry.alpha, rated,
                 rated ? "a number between 0 and 1" : "no such key for f1");

@@ -1,5 +1,6 @@
-// Tests calibrated durations: the score of an episode against the verdicts of the same monitor with
-// the duration written in it, and the rate of false alarms in drawn episodes.
+// Tests what is calibrated on normal episodes alone. Durations: the score of an episode against the
+// verdicts of the same monitor with the duration written in it, and the rate of false alarms in
+// drawn episodes. `normal` thresholds and shifts: that rate, from files to deployed monitors.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -328,6 +329,116 @@ TEST(Durations, OfTheCommandIsTheScoreAtTheRank) {
         const auto known = check::check(parse::parse(file, found), file, options, found);
         ASSERT_TRUE(known) << found.sorted().front().message;
         EXPECT_EQ(known->monitors[0].duration->steps, *entry.duration);
+    }
+}
+
+// ---- normal -------------------------------------------------------------------------------------
+
+/// A spec that is calibrated with `normal`: thresholds of predicates, or of the monitor as a whole.
+struct Normal {
+    const char* predicate;  ///< what x is compared with
+    const char* monitor;
+};
+
+constexpr Normal kNormal[] = {
+    {"calibrated(normal, alpha = 0.2)", "monitor m = G a"},
+    {"calibrated(normal, alpha = 0.2)", "monitor m = G (flag -> F[0, 2] a)"},
+    {"calibrated(normal, alpha = 0.2)", "monitor m = G (b -> a) && F[0, 40] a"},
+    {"calibrated(normal, alpha = 0.2)", "sliding monitor m = a || X a"},
+    {"0", "monitor m = G (b -> F[0, 3] a) calibrated(normal, alpha = 0.2)"},
+    {"0", "monitor m = G !held[2 steps] b calibrated(normal, alpha = 0.2)"},
+    {"0", "monitor m = F[0, 5] (a && b) calibrated(normal, alpha = 0.2)"},
+    {"0", "monitor m = a U[0, 4] b calibrated(normal, alpha = 0.2)"},
+    {"0", "sliding monitor m = F[0, 2] c calibrated(normal, alpha = 0.2)"},
+};
+
+/// Checks the spec, with these thresholds if there are any.
+check::Model normal_model(const Normal& normal, const thresholds::File* known) {
+    diag::Sink sink;
+    const source::File file(
+        "t.etl", fmt::format("spec t; input x, y : f32; input flag : bool; predicate a = x <= {};\n"
+                             "predicate b = y > 0; predicate c = x + y < 1;\n{};",
+                             normal.predicate, normal.monitor));
+    check::Options options;
+    options.thresholds = known;
+    options.allow_uncalibrated = known == nullptr;
+    options.allow_uncalibrated_monitors = known == nullptr;
+    auto model = check::check(parse::parse(file, sink), file, options, sink);
+    EXPECT_TRUE(model) << normal.monitor << sink.sorted().front().message;
+    return std::move(*model);
+}
+
+/// Calibrates as `etlc calibrate` does; nothing if it refuses.
+std::optional<thresholds::File> fitted_to(const check::Model& model,
+                                          const std::vector<std::string>& paths) {
+    calibrate::Request request;
+    request.episodes = paths;
+    request.allow_overlap = "drawn alike";
+    request.jobs = 1;
+    diag::Sink sink;
+    const auto result = model.monitors[0].calibration
+                            ? calibrate::calibrate_monitors(model, {}, request, sink)
+                            : calibrate::calibrate(model, request, sink);
+    if (!result) return std::nullopt;
+    return result->file;
+}
+
+/// Returns whether the monitor is violated for good at some step or position of the episode.
+bool raises_alarm(const Compiled& compiled, const Episode& episode) {
+    execute::Evaluator evaluator(compiled.plan);
+    bool alarm = false;
+    for (const auto& samples : episode.steps) alarm |= evaluator.step(samples)[0].alarm();
+    for (std::uint32_t left = compiled.plan.monitors[0].horizon; left > 0; --left)
+        alarm |= evaluator.finish()[0].alarm();
+    return alarm;
+}
+
+TEST(Normal, FalseAlarmsAreWithinAlpha) {
+    for (const Normal& normal : kNormal) {
+        Random random(71);
+        const check::Model model = normal_model(normal, nullptr);
+        int alarms = 0;
+        int deployed = 0;
+        const int sets = full() ? 2000 : 8;
+        for (int set = 0; set < sets; ++set) {
+            std::vector<Episode> episodes;
+            std::vector<std::unique_ptr<TemporaryPath>> files;
+            std::vector<std::string> paths;
+            for (int i = 0; i < 10; ++i) {
+                episodes.push_back(random_episode(
+                    random, static_cast<std::size_t>(random.between(6, 15)), 0.02, 0.3));
+                const auto size = static_cast<float>(random.between(1, 9));
+                for (auto& step : episodes.back().steps)
+                    for (float& x : step[0].values) x *= size;
+                std::string text = "x,y,flag\n";
+                for (const auto& step : episodes.back().steps)
+                    for (std::size_t input = 0; input < 3; ++input)
+                        text += fmt::format(
+                            "{}{}",
+                            step[input].present ? fmt::format("{}", step[input].values[0]) : "",
+                            input < 2 ? "," : "\n");
+                files.push_back(std::make_unique<TemporaryPath>(fmt::format("n{}.csv", i), text));
+                paths.push_back(files.back()->path());
+            }
+            for (std::size_t last = 0; last < 10; ++last) {
+                std::vector<std::string> others = paths;
+                others.erase(others.begin() + static_cast<std::ptrdiff_t>(last));
+                const auto file = fitted_to(model, others);
+                if (!file) continue;  // refused, so nothing is deployed
+                diag::Sink sink;
+                const auto compiled = compile(normal_model(normal, &*file), {}, sink);
+                ASSERT_TRUE(compiled);
+                ++deployed;
+                alarms += raises_alarm(*compiled, episodes[last]) ? 1 : 0;
+            }
+        }
+        const int all = 10 * sets;
+        EXPECT_LE(static_cast<double>(alarms) / all, 0.2 + 3 * std::sqrt(0.2 * 0.8 / all * 10))
+            << normal.monitor;
+        EXPECT_GT(deployed, all / 10) << normal.monitor;
+        EXPECT_GT(alarms, 0) << normal.monitor;
+        fmt::print("{}: {} false alarms in {} new episodes, {} deployed, alpha = 0.2\n",
+                   normal.monitor, alarms, all, deployed);
     }
 }
 

@@ -49,6 +49,8 @@ constexpr const char* kDeclarations =
     "predicate surely = x <= calibrated(conformal, alpha = 0.1, against = both) missing true;\n"
     "predicate never = x <= calibrated(conformal, alpha = 0.1, against = both) missing false;\n"
     "predicate share = x <= calibrated(risk, alpha = 0.1, against = both);\n"
+    "predicate usual = x <= calibrated(normal, alpha = 0.1);\n"
+    "predicate gapless = y <= calibrated(normal, alpha = 0.1) missing false;\n"
     "let after = !a && O a; truth after = flag;\n";
 
 /// Returns all guarantees of one monitor, the parts in brackets.
@@ -98,6 +100,24 @@ TEST(Guarantees, NothingWhereNothingIsKnown) {
     EXPECT_EQ(guarantees_of("F fall a"), "no guarantee: 'a' occurs both plain and negated");
     EXPECT_EQ(guarantees_of("F (half && rest)"),
               "no guarantee: the alphas of its predicates add up to 1");
+}
+
+/// The truth of a predicate by `normal` is that it holds.
+TEST(Guarantees, OfNormalEpisodes) {
+    const std::string alarms = "P(a false alarm in a new normal episode) <= 0.1";
+    EXPECT_EQ(guarantees_of("G usual"), alarms);
+    EXPECT_EQ(guarantees_of("G !held[3] !usual"), alarms);
+    EXPECT_EQ(guarantees_of("G (flag -> F[0, 3] usual)"), alarms);
+    EXPECT_EQ(guarantees_of("G (s <= 1) calibrated(normal, alpha = 0.1)"), alarms);
+    const std::string verdict = "P(some verdict of a new normal episode is ";
+    EXPECT_EQ(guarantees_of("F !usual"), verdict + "satisfied wrongly) <= 0.1");
+    EXPECT_EQ(guarantees_of("G (usual && b)"), verdict + "violated wrongly) <= 0.15");
+    EXPECT_EQ(guarantees_of("G gapless"),
+              "no guarantee: 'gapless' is false when its sample is missing");
+    EXPECT_EQ(guarantees_of("G (usual <-> flag)"),
+              "no guarantee: 'usual' occurs both plain and negated");
+    EXPECT_EQ(guarantees_of("G (usual && !a)"),
+              "no guarantee: 'usual' occurs plain and 'a' negated");
 }
 
 /// Predicates against both errors bound both, for formulas of any polarity.

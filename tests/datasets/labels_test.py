@@ -238,6 +238,53 @@ def folders_agree(made):
     assert "the episodes lie in 'a', 'b' and 'elsewhere', and none of these is a predicate" in said
 
 
+def outcomes_agree(made):
+    """Folders and a table say alike which episodes succeed; calibration on normal episodes leaves
+    the others out."""
+    spec = SPEC.split("predicate")[0] + "predicate near = min l2(z, bay) <= {};\n" \
+        "monitor calm = G near;\n"
+    pathlib.Path("normal.etl").write_text(spec.format("calibrated(normal, alpha = 0.25)"))
+    pathlib.Path("fixed.etl").write_text(spec.format(3))
+    lines, kept = [], []
+    for number, (z, _) in enumerate(made):
+        folder = ("success", "failure", "success")[number % 3]
+        os.makedirs(f"outcomes/{folder}", exist_ok=True)
+        npz(f"outcomes/{folder}/{number}", {"z": z})
+        lines.append([f"{folder}/{number}", "", 9 if number == 1 else "", "", folder])
+        if folder == "success":
+            kept.append(f"outcomes/{folder}/{number}.npz")
+    table = ["--labels", "outcomes.csv", "--data", "outcomes/*/*.npz"]
+    folders = ["--label-by", "folder", "--data", "outcomes/*/*.npz"]
+    said = []
+    for words in (folders, table):
+        columns = "episode,predicate,start,end,outcome"
+        write_table("outcomes.csv", lines, columns)
+        figures = json.loads(call("evaluate", "fixed.etl", *words, "--json", "-"))["monitors"]
+        said.append(figures["calm"]["outcomes"])
+        call("calibrate", "normal.etl", *words, "-o", "some.json")
+        call("calibrate", "normal.etl", "--data", *kept, "-o", "kept.json")
+        some, only = (json.loads(pathlib.Path(name).read_text())["predicates"]["near"]
+                      for name in ("some.json", "kept.json"))
+        assert some["scores"] == only["scores"] and len(some["scores"]) == 8, (some, only)
+    assert said[0]["failures"] == 4 and said[0]["successes"] == 8, said[0]
+    # The table says when an episode failed; folders do not.
+    times = [name for name in said[0] if name.startswith("warning")]
+    assert all(said[0][name] == said[1][name] for name in said[0] if name not in times), said
+    for line, why in (
+        (["success/0", "", "", "", "failed"], "found 'failed', expected success, failure or"),
+        (["success/0", "near", "", "", "success"], "stands in a row of its own"),
+        (["success/0", "", 3, "", "success"], "only a failure has a start"),
+        (["success/0", "", "", "", ""], "names no predicate"),
+        (["success/0", "", "", "", "failure"], "calls 'outcomes/success/0.npz' a failure"),
+    ):
+        write_table("outcomes.csv", [*lines, line], columns)
+        error = call("evaluate", "fixed.etl", *table, status=1)
+        assert why in error and "outcomes.csv:14:" in error, error
+    write_table("outcomes.csv", [["0", "success"]], "episode,outcome")
+    error = call("evaluate", "normal.etl", "--labels", "outcomes.csv", "--data", kept[0], status=1)
+    assert "'near' is calibrated, but there is no thresholds file" in error, error
+
+
 def groups_of_files_agree(made):
     names = [f"data/demo_{number}" for number in range(EPISODES)]
     halves, words = (["a.h5"], ["b.h5"]), ["--episodes", "data/*"]
@@ -409,6 +456,7 @@ def main():
     seconds_are_steps(made)
     fits_agree(made)
     folders_agree(made)
+    outcomes_agree(made)
     groups_of_files_agree(made)
     videos_agree()
     data_sets_agree()

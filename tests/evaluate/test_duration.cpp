@@ -96,11 +96,13 @@ std::vector<Labelled> labels_of(const LabelRuns& episode) {
     return labels;
 }
 
-/// Twice a threshold, and whether numbers from it on, or below it, are true.
+/// Twice the two ends: true from the one and below the other.
 struct Rule {
-    std::uint64_t twice = 0;
-    bool from = true;
-    bool says(std::uint64_t number) const { return (2 * number >= twice) == from; }
+    std::uint64_t from = 0;
+    std::uint64_t below = kEndless;
+    static constexpr std::uint64_t kEndless = 1000;
+
+    bool says(std::uint64_t number) const { return from <= 2 * number && 2 * number < below; }
 };
 
 /// F1, then the number that agree.
@@ -111,23 +113,32 @@ std::pair<double, std::uint64_t> merit(const Rule& rule, const std::vector<Label
     return {rates(counts).f1.value_or(0), counts.true_positives + counts.true_negatives};
 }
 
+/// Tries always, never, and all first and last numbers that are true.
 Rule best(const std::vector<Labelled>& labels, std::uint64_t greatest) {
-    Rule best{0, true};
+    Rule best;
     const auto better = [&](const Rule& a, const Rule& b) {
         return merit(a, labels) > merit(b, labels);
     };
-    if (better({0, false}, best)) best = {0, false};
-    for (const bool from : {true, false}) {
-        for (std::uint64_t low = 1; low <= greatest; ++low) {
-            if (!better({2 * low, from}, best)) continue;
-            std::uint64_t high = low;
-            while (high < greatest &&
-                   merit({2 * (high + 1), from}, labels) == merit({2 * low, from}, labels))
-                ++high;
-            best = {low + high, from};
+    if (better({0, 0}, best)) best = {0, 0};
+    const auto is_labelled = [&](std::uint64_t number) {
+        return std::any_of(labels.begin(), labels.end(),
+                           [&](const Labelled& one) { return one.first == number; });
+    };
+    for (std::uint64_t last = 0; last <= greatest; ++last)
+        for (std::uint64_t first = last + 1; first-- > 0;) {
+            if (!is_labelled(first) || !is_labelled(last)) continue;
+            if (!better({2 * first, 2 * last + 1}, best)) continue;
+            best = {2 * first, 2 * last + 1};
         }
-    }
-    return best;
+    if (best.below == 0 || best.below == Rule::kEndless) return best;
+    // Each end moves halfway to the next label, away from the first and the last one.
+    const std::uint64_t last = best.below / 2;
+    const std::uint64_t first = best.from / 2;
+    std::uint64_t before = first;
+    while (before > 0 && !is_labelled(before - 1)) --before;
+    std::uint64_t after = last + 1;
+    while (after <= greatest && !is_labelled(after)) ++after;
+    return {before == 0 ? 0 : before + first, after > greatest ? Rule::kEndless : last + 1 + after};
 }
 
 TEST(Duration, IsTheBestThresholdOnAllOtherEpisodes) {

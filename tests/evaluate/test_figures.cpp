@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 
 #include "episodes/bootstrap.hpp"
 #include "evaluate/figures.hpp"
+#include "evaluate/outcomes.hpp"
 
 namespace etlc::evaluate {
 namespace {
@@ -213,6 +215,120 @@ TEST(Bootstrap, OfOneEpisodeHasNoInterval) {
     };
     EXPECT_FALSE(Bootstrap(1).figure(one).interval);
     EXPECT_TRUE(Bootstrap(2).figure(one).interval);
+}
+
+// ---- outcomes -----------------------------------------------------------------------------------
+
+using Kind = episodes::Outcome::Kind;
+
+std::vector<Judged> random_episodes(std::mt19937& random) {
+    std::vector<Judged> episodes(1 + random() % 30);
+    const std::uint32_t folds = 1 + random() % 2;
+    for (Judged& one : episodes) {
+        one.outcome.kind = static_cast<Kind>(random() % 8 < 6 ? 2 + random() % 2 : random() % 2);
+        one.frames = 3 + random() % 6;
+        if (one.failed() && random() % 3 == 0) one.outcome.failed_at = 1 + random() % one.frames;
+        one.fold = static_cast<std::uint32_t>(random() % folds);
+        if (random() % 2 == 0) one.alarm = random() % one.frames;
+        one.least_upper = static_cast<float>(random() % 5) - 2;
+        if (random() % 8 == 0) one.least_upper = std::numeric_limits<float>::infinity();
+    }
+    return episodes;
+}
+
+std::optional<double> balanced(const std::vector<Judged>& episodes, auto has_alarm) {
+    double of[2][2] = {};
+    for (std::size_t e = 0; e < episodes.size(); ++e)
+        if (episodes[e].failed() || episodes[e].succeeded())
+            of[episodes[e].failed()][has_alarm(e)] += 1;
+    if (of[0][0] + of[0][1] == 0 || of[1][0] + of[1][1] == 0) return std::nullopt;
+    return (of[0][0] / (of[0][0] + of[0][1]) + of[1][1] / (of[1][0] + of[1][1])) / 2;
+}
+
+/// Tries all pairs of lengths on all other episodes. Of equals the rule that a scan finds first:
+/// the least last length, then the greatest first one.
+bool alarm_by_duration(const std::vector<Judged>& episodes, std::size_t judged) {
+    std::vector<Judged> others = episodes;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(judged));
+    double best = balanced(others, [](std::size_t) { return false; }).value_or(1);
+    bool alarm = false;
+    for (std::uint64_t last = 0; last < 12; ++last)
+        for (std::uint64_t first = last + 1; first-- > 0;) {
+            const auto within = [&](const Judged& one) {
+                return first <= one.frames && one.frames <= last;
+            };
+            const auto here = balanced(others, [&](std::size_t e) { return within(others[e]); });
+            if (!here || *here <= best + 1e-9) continue;
+            best = *here;
+            alarm = within(episodes[judged]);
+        }
+    return alarm;
+}
+
+TEST(Outcomes, AreTheSharesThatTheirNamesSay) {
+    std::mt19937 random(3);
+    int judged_by_duration = 0;
+    for (int round = 0; round < 1000; ++round) {
+        const std::vector<Judged> episodes = random_episodes(random);
+        const auto found = outcome_score(Bootstrap(episodes.size()), episodes, false);
+        std::vector<std::int64_t> warnings;
+        std::uint64_t successes = 0;
+        std::uint64_t failures = 0;
+        double pairs = 0;
+        double ordered = 0;
+        for (const Judged& one : episodes) {
+            successes += one.succeeded() ? 1 : 0;
+            failures += one.failed() ? 1 : 0;
+            if (!one.failed()) continue;
+            if (one.alarm)
+                warnings.push_back(static_cast<std::int64_t>(one.outcome.failed_at > 0
+                                                                 ? one.outcome.failed_at
+                                                                 : one.frames - 1) -
+                                   static_cast<std::int64_t>(*one.alarm));
+            for (const Judged& other : episodes) {
+                if (!other.succeeded() || other.fold != one.fold) continue;
+                pairs += 1;
+                ordered += one.least_upper < other.least_upper    ? 1
+                           : one.least_upper == other.least_upper ? 0.5
+                                                                  : 0;
+            }
+        }
+        ASSERT_EQ(found.has_value(), successes + failures > 0);
+        if (!found) continue;
+        EXPECT_EQ(found->successes, successes);
+        EXPECT_EQ(found->failures, failures);
+        EXPECT_EQ(found->detected_count, warnings.size());
+        expect_near(found->balanced_accuracy.value, balanced(episodes, [&](std::size_t e) {
+                        return episodes[e].alarm.has_value();
+                    }));
+        expect_near(found->auroc.value, pairs > 0 ? std::optional(ordered / pairs) : std::nullopt);
+        std::sort(warnings.begin(), warnings.end());
+        const Figure* const quartiles[] = {&found->warning_lower_quartile, &found->warning_median,
+                                           &found->warning_upper_quartile};
+        for (std::size_t q = 0; q < 3; ++q)
+            expect_near(quartiles[q]->value,
+                        warnings.empty() ? std::nullopt
+                                         : std::optional(static_cast<double>(
+                                               warnings[((q + 1) * warnings.size() + 3) / 4 - 1])));
+        const std::vector<bool> by_duration = alarms_by_duration(episodes);
+        for (std::size_t e = 0; e < episodes.size(); ++e) {
+            const bool counts = episodes[e].failed() || episodes[e].succeeded();
+            EXPECT_EQ(by_duration[e], counts && alarm_by_duration(episodes, e))
+                << "round " << round << ", episode " << e;
+            judged_by_duration += by_duration[e] ? 1 : 0;
+        }
+    }
+    EXPECT_GT(judged_by_duration, 1000);
+}
+
+TEST(Outcomes, WilsonsInterval) {
+    // Agresti and Coull, "Approximate is better than exact for interval estimation", 1998.
+    EXPECT_NEAR(wilson(5, 10).low, 0.2366, 5e-5);
+    EXPECT_NEAR(wilson(5, 10).high, 0.7634, 5e-5);
+    EXPECT_EQ(wilson(0, 10).low, 0);
+    EXPECT_NEAR(wilson(0, 10).high, 0.2775, 5e-5);
+    EXPECT_NEAR(wilson(10, 10).low, 0.7225, 5e-5);
+    EXPECT_EQ(wilson(10, 10).high, 1);
 }
 
 }  // namespace

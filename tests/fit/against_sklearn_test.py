@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """against_sklearn_test.py ETLC: compares every method of `etlc fit` on one set of episodes with
 scikit-learn, or with its definition in numpy; the bytes are the same for any number of threads, and
-any names and order of the files."""
+any names and order of the files. Also compares the figures of monitors as detectors of failures."""
 import json
 import pathlib
 import re
@@ -14,6 +14,7 @@ import numpy as np
 from sklearn.cluster import KMeans
 from sklearn.decomposition import PCA
 from sklearn.discriminant_analysis import LinearDiscriminantAnalysis
+from sklearn.metrics import balanced_accuracy_score, roc_auc_score
 
 SPEC = """
 spec grasp;
@@ -111,6 +112,41 @@ def check_targets(fitted, entries, frames, holds, episodes):
         assert (around <= 0).all(), f"a medoid is 4 steps away from a change: {around}"
 
 
+def check_outcomes(etlc, folder, random):
+    """Compares 40 thresholds on a score as detectors of 30 failures among 70 episodes."""
+    limits = np.round(np.linspace(0.5, 4, 40), 2)
+    spec = "spec alarms; rate 10 Hz; input x : f32;\n" + "".join(
+        f"monitor m{k} = G x <= {limit};\n" for k, limit in enumerate(limits))
+    (folder / "alarms.etl").write_text(spec)
+    fails = np.arange(70) < 30
+    paths, scores = [], []
+    for number, failed in enumerate(fails):
+        x = np.float32(np.round(np.abs(random.normal(size=40)) + failed * np.arange(40) / 20, 2))
+        path = folder / ("failure" if failed else "success") / f"{number}.csv"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("x\n" + "\n".join(map(str, x)) + "\n")
+        paths.append(str(path))
+        scores.append(x)
+    scores = np.array(scores)
+    call = [etlc, "evaluate", "alarms.etl", "--label-by", "folder", "--json", "f.json", "--data"]
+    subprocess.run(call + paths, cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    found = json.loads((folder / "f.json").read_text())["monitors"]
+    for k, limit in enumerate(limits):
+        one = found[f"m{k}"]["outcomes"]
+        beyond = scores > np.float32(limit)
+        alarms = beyond.any(1)
+        assert one["successes"] == 40 and one["failures"] == 30, one
+        assert one["false_alarms"] == alarms[~fails].sum(), (k, one)
+        assert one["detected"] == alarms[fails].sum(), (k, one)
+        values = {name: one[name] for name in ("balanced_accuracy", "auroc")}
+        close(values["balanced_accuracy"], balanced_accuracy_score(fails, alarms), 1e-12, k)
+        close(values["auroc"], roc_auc_score(fails, scores.max(1) - np.float32(limit)), 1e-12, k)
+        warnings = 39 - beyond.argmax(1)[fails & alarms]
+        for q, name in ((0.25, "lower_quartile"), (0.5, "median"), (0.75, "upper_quartile")):
+            expected = np.quantile(warnings, q, method="inverted_cdf") if len(warnings) else None
+            assert one[f"warning_{name}_steps"] == expected, (k, name, one)
+
+
 def main(etlc):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -150,6 +186,7 @@ def main(etlc):
         assert "12 frames left out: the point is missing" in report
         check_projections(fitted, frames, holds, shrinkage)
         check_targets(fitted, entries, frames, holds, episodes)
+        check_outcomes(etlc, folder, np.random.default_rng(4))
 
 
 main(sys.argv[1])

@@ -307,6 +307,35 @@ def look_at_two(browser, folder):
     assert 'rect class="unknown"' in drawn and ">unknown</text>" in drawn and '="inf' not in drawn
 
 
+def make_outcomes(call, folder):
+    """Two failures and two successes; a monitor detects one and is wrong about a success."""
+    (folder / "outcomes.etl").write_text(
+        "spec outcomes; rate 10 Hz; input z : f32[2]; target origin = [[0, 0]];\n"
+        "monitor calm = G l2(z, origin) <= 1;\n")
+    for name, far in (("failure/a", 5), ("failure/b", 0), ("success/c", 0), ("success/d", 3)):
+        z = np.zeros((8, 2), "f4")
+        z[3] = far
+        (folder / name).parent.mkdir(exist_ok=True)
+        np.savez(folder / f"{name}.npz", z=z)
+    call("report", "outcomes.etl", "--label-by", "folder", "--data", "failure", "success", "-o",
+         "outcomes.html")
+
+
+def look_at_outcomes(browser, path):
+    page = browser.page(path)
+    page.wait("view.episode !== null")
+    text = page.value("document.getElementById('overview').textContent")
+    assert "2 failures among 4 episodes" in text and "0.4 s" in text, text
+    cells = page.value("Array.from(document.querySelectorAll('[data-outcomes=calm] td'), "
+                       "cell => cell.firstChild.textContent)")
+    assert cells == ["0.500", "0.500", "0.500", "0.625", "0.4 s"], cells
+    assert page.value("document.querySelectorAll('#monitor-figures td').length") == 1
+    wrong = page.value("Array.from(document.querySelectorAll('.row .error'), "
+                       "row => row.textContent)")
+    assert wrong == ["1 wrong: calm"] * 2, wrong
+    assert page.messages == [], page.messages
+
+
 def main(etlc):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -341,6 +370,7 @@ def main(etlc):
         assert "found 39 pictures, expected 40" in said and not (folder / "no.html").exists(), said
         pictures_of_a_trace(call, folder)
         make_two(call, folder)
+        make_outcomes(call, folder)
         make_many(folder)
         call("report", "page.etl", "--data", "many", "--size", "1", "-o", "many.html")
         with Browser() as browser:
@@ -354,6 +384,7 @@ def main(etlc):
             assert one.messages == [], one.messages
             look_at_a_long_one(browser, folder / "long.html")
             look_at_two(browser, folder)
+            look_at_outcomes(browser, folder / "outcomes.html")
             for width, height in ((1280, 720), (1920, 1080)):
                 look(browser, folder / "page.html", width, height, judged)
 

@@ -76,8 +76,8 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
         return std::nullopt;
     const episodes::Leaks leaks(model, predicates);
     const std::vector<Guaranteed> guarantees = guaranteed(model, false);
-    const Watched watched =
-        watched_by(model, guarantees, predicates, labelled_anywhere(model, request));
+    const Watched watched = watched_by(model, guarantees, with_labels(model, predicates),
+                                       labelled_anywhere(model, request));
     Tracks tracks;
     bool is_complete = true;
     bool is_divided = true;
@@ -98,7 +98,11 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
             is_complete &= demonstration.is_complete;
             is_divided &= demonstration.is_divided;
             for (std::size_t i = 0; i < predicates.size(); ++i)
-                evidence[i].add(demonstration.scores[i], group);
+                if (is_normal(model.predicates[predicates[i]].threshold) &&
+                    !demonstration.outcome.is_demonstration())
+                    ++evidence[i].failures;
+                else
+                    evidence[i].add(demonstration.scores[i], group);
         });
     if (!all_scored) return std::nullopt;
     episodes::warn_of_unmarked(demonstrations, sink);

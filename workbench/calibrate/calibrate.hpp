@@ -60,6 +60,9 @@ std::string report(const check::Model& model, const std::vector<Index>& predicat
                    const std::vector<Evidence>& evidence, const episodes::Groups& groups,
                    std::uint64_t frames, const std::vector<Sides>& fitted, const Others& others);
 
+/// Describes how many episodes were left out since they are no demonstrations; empty for none.
+std::string describe_failures(std::uint64_t failures);
+
 /// Describes the losses of thresholds by risk, and those that are infinite, in lines.
 std::string describe_sides(const Subject& of, const Sides& sides);
 

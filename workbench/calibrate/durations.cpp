@@ -154,8 +154,9 @@ diag::Result<bool> DurationScorer::is_violated(std::uint32_t steps) {
 // ---- the duration -------------------------------------------------------------------------------
 
 void Times::add(double score, std::uint32_t group) {
-    if (worst.size() <= group) worst.resize(group + 1, -kInfinity);
-    worst[group] = std::max(worst[group], score);
+    const auto [place, is_new] = places.try_emplace(group, worst.size());
+    if (is_new) worst.push_back(score);
+    worst[place->second] = std::max(worst[place->second], score);
 }
 
 std::optional<thresholds::Entry> fit_duration(const check::Monitor& monitor, const Times& times,

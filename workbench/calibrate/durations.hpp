@@ -62,8 +62,10 @@ private:
 
 /// The worst score of each group of episodes, and whether it is by group that they count.
 struct Times {
-    std::vector<double> worst;  ///< as DurationScorer gives them, by group
+    std::vector<double> worst;  ///< as DurationScorer gives them, of the groups that have one
     bool by_group = false;
+    std::uint64_t failures = 0;  ///< episodes left out since their outcome is no success
+    std::map<std::uint32_t, std::size_t> places{};  ///< in `worst`, per group
 
     void add(double score, std::uint32_t group);
 };

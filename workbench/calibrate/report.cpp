@@ -70,12 +70,13 @@ std::string how(const check::Predicate& predicate, const Fitted& fitted) {
             return fmt::format("f1: {:.4f} on the {} it was chosen on; no guarantee", fitted.f1,
                                counted(fitted.n, "labelled frame"));
         case ThresholdOrigin::conformal:
+        case ThresholdOrigin::normal:
             if (threshold.against != check::Against::misses) return promise(predicate);
             return fmt::format(
-                "conformal, alpha = {}: {}\n"
+                "{}, alpha = {}: {}\n"
                 "    {} is covered with probability >= 1 - {}; given these {}, with {:.3f} to "
                 "{:.3f} (5 % and 95 % quantiles of Beta({}, {}), without ties)",
-                threshold.alpha, place(each),
+                check::method_name(threshold.origin), threshold.alpha, place(each),
                 threshold.by_group ? "a demonstration of a new group" : "a new demonstration",
                 threshold.alpha,
                 threshold.by_group ? counted(fitted.n, "group") : std::to_string(fitted.n),
@@ -108,10 +109,17 @@ std::string predicate_report(const check::Model& model, Index index, const Evide
     const check::Predicate& predicate = model.predicates[index];
     const check::Threshold& threshold = predicate.threshold;
     std::string text = fmt::format(
-        "\n{}: {}{}\n    {}\n    labels: {} frames positive, {} negative", predicate.name,
-        predicate.text,
+        "\n{}: {}{}\n    {}\n", predicate.name, predicate.text,
         threshold.inner ? check::numbers(threshold) : fmt::format("{:.9g}", threshold.value),
-        how(predicate, sides.front()), evidence.positives.frames, evidence.negatives.frames);
+        how(predicate, sides.front()));
+    if (is_normal(threshold)) {
+        text += fmt::format("    {} taken as normal", counted(evidence.positives.frames, "frame"));
+        if (evidence.unmeasured > 0)
+            text += fmt::format(", {} of unknown distance skipped", evidence.unmeasured);
+        return text + "\n" + describe_failures(evidence.failures);
+    }
+    text += fmt::format("    labels: {} frames positive, {} negative", evidence.positives.frames,
+                        evidence.negatives.frames);
     if (evidence.unlabelled > 0)
         text += fmt::format(", {} unknown{} and left out", evidence.unlabelled,
                             threshold.within > 0 ? " or near a change" : "");
@@ -169,10 +177,19 @@ std::string monitor_report(const check::Model& model, const Others& others, bool
         text += fmt::format("    {}\n", reservation);
     text += fmt::format("    {}\n", check::exchangeability(by_group));
     if (of_successes) text += fmt::format("    {}\n", check::kMissingAside);
-    return text + note_on_other_errors(by_group, with_cost);
+    const bool with_labels = std::any_of(
+        model.predicates.begin(), model.predicates.end(), [](const check::Predicate& p) {
+            return p.threshold.origin != ThresholdOrigin::literal && !is_normal(p.threshold);
+        });
+    return with_labels ? text + note_on_other_errors(by_group, with_cost) : text;
 }
 
 }  // namespace
+
+std::string describe_failures(std::uint64_t failures) {
+    if (failures == 0) return "";
+    return fmt::format("    {} left out: no success\n", counted(failures, "episode"));
+}
 
 std::string describe_sides(const Subject& of, const Sides& sides) {
     const check::Threshold& threshold = of.predicate.threshold;
@@ -180,8 +197,7 @@ std::string describe_sides(const Subject& of, const Sides& sides) {
     std::string text;
     const std::vector<Aim> aims = aims_of(of.predicate);
     const bool is_halfway = aims.size() == 2 && !joined(of.predicate, sides).inner;
-    const bool by_episode =
-        by_risk || threshold.origin == ThresholdOrigin::conformal || threshold.adaptation;
+    const bool by_episode = by_risk || threshold.bounds_episodes() || threshold.adaptation;
     for (std::size_t i = 0; by_episode && i < aims.size(); ++i) {
         const Aim& aim = aims[i];
         const Evidence::Side& side = of.evidence.side(aim.of_positives);
@@ -383,6 +399,7 @@ double wrong_part(const check::Predicate& predicate, const Evidence& evidence, f
 }  // namespace
 
 std::string Subject::which(const Aim& aim) const {
+    if (is_normal(predicate.threshold)) return "";
     return fmt::format(" in which {}'{}' is {} at some {}",
                        is_monitor ? "the ground truth of " : "", predicate.name,
                        true_word(*this, aim), unit());
@@ -475,6 +492,19 @@ void refuse(const check::Model& model, const Subject& of, const Aim& aim, Refusa
                 p.name, wrong_word(of, aim), of.unit(), true_word(of, aim), of.noun(),
                 aim.rate_name, aim.rate));
         default:
+            if (of.is_monitor && is_normal(p.threshold)) {
+                const std::vector<Evidence::Reach>& all = of.evidence.positives.worst;
+                const auto never = std::count_if(all.begin(), all.end(), [](const auto& one) {
+                    return one.reach < -std::numeric_limits<double>::max();
+                });
+                const auto always = std::count_if(all.begin(), all.end(), [](const auto& one) {
+                    return one.reach > std::numeric_limits<double>::max();
+                });
+                return report(fmt::format(
+                    "'{}' is violated for good in {} of {}, whatever its shift, and in {} with no "
+                    "shift, so alpha = {} leaves nothing to choose",
+                    p.name, always, counted(all.size(), of.noun()), never, p.threshold.alpha));
+            }
             return report(fmt::format(
                 "the score of '{}' at the rank of {} = {} is infinite: no {} "
                 "lies beyond it",
@@ -511,6 +541,7 @@ void warn_of_doubts(const check::Predicate& predicate, const Evidence& evidence,
                     diag::Sink& sink) {
     constexpr double kNearlyEvery = 0.95;
     warn_of_large_alpha(predicate, sink);
+    if (is_normal(predicate.threshold)) return;  // nothing says which frames are not
     const auto warn = [&](std::string message) -> diag::Diagnostic& {
         return episodes::warn_of_data(diag::Code::doubtful_threshold, std::move(message),
                                       predicate.threshold.span, sink);

@@ -77,6 +77,15 @@ std::vector<Index> calibrated_predicates(const check::Model& model) {
     return found;
 }
 
+bool is_normal(const check::Threshold& threshold) {
+    return threshold.origin == ThresholdOrigin::normal;
+}
+
+std::vector<Index> with_labels(const check::Model& model, std::vector<Index> predicates) {
+    std::erase_if(predicates, [&](Index p) { return is_normal(model.predicates[p].threshold); });
+    return predicates;
+}
+
 Scorer::Scorer(const check::Model& model, const episodes::Leaks& leaks,
                std::vector<Index> predicates, Watched watched, episodes::ReadOptions reading)
     : model_(model),
@@ -87,7 +96,8 @@ Scorer::Scorer(const check::Model& model, const episodes::Leaks& leaks,
       pasts_(model, plan_),
       reading_(std::move(reading)) {
     const plan::Plan calibrated = plan::measuring(model, predicates_);
-    wanted_ = episodes::wanted(model, {&calibrated}, predicates_, leaks);
+    const std::vector<Index> labelled = with_labels(model, predicates_);
+    wanted_ = episodes::wanted(model, {&calibrated}, labelled, leaks);
     wanted_.optional = all_of(plan_.inputs, watched_.flags);
     std::erase_if(wanted_.optional, [&](Index input) {
         return std::find(wanted_.inputs.begin(), wanted_.inputs.end(), input) !=
@@ -96,7 +106,7 @@ Scorer::Scorer(const check::Model& model, const episodes::Leaks& leaks,
     wanted_.within.resize(model.predicates.size());
     for (const Index p : predicates_) wanted_.within[p] = model.predicates[p].threshold.within;
     divided_ = wanted_;
-    divided_.predicates = all_of(predicates_, watched_.dividing);
+    divided_.predicates = all_of(labelled, watched_.dividing);
 }
 
 diag::Result<Demonstration> Scorer::score(const std::string& path) {
@@ -114,14 +124,19 @@ diag::Result<Demonstration> Scorer::score(const std::string& path, const episode
     pasts_.reset();
     const auto done = episodes::replay(*recording, {&measured_}, [&] {
         pasts_.step(measured_.evaluator());
-        for (std::size_t i = 0; i < predicates_.size(); ++i)
-            add(predicates_[i], recording->label(predicates_[i]), scores[i]);
+        for (std::size_t i = 0; i < predicates_.size(); ++i) {
+            const Index p = predicates_[i];
+            add(p, is_normal(model_.predicates[p].threshold) ? Label::yes : recording->label(p),
+                scores[i]);
+        }
         add_step(watched_, measured_.evaluator(), *recording, is_divided, track);
         return true;
     });
     if (!done) return done.failure();
     for (std::size_t i = 0; i < predicates_.size(); ++i) {
-        scores[i].from_array = recording->from_array(predicates_[i]);
+        const Index p = predicates_[i];
+        scores[i].from_array =
+            !is_normal(model_.predicates[p].threshold) && recording->from_array(p);
         scores[i].labelled.shrink_to_fit();  // they are kept for all episodes
     }
     return Demonstration{recording->recorded(), std::move(scores), std::move(track),

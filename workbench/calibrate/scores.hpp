@@ -115,6 +115,7 @@ struct Evidence {
     std::uint64_t from_array = 0;  ///< demonstrations with an array of labels
     std::uint64_t unlabelled = 0;  ///< frames, as in Scores
     std::uint64_t unmeasured = 0;
+    std::uint64_t failures = 0;  ///< episodes left out since their outcome is no success
     Side positives;
     Side negatives;
     episodes::FramesByScore labelled;  ///< all measured frames; `episode` is the group
@@ -126,6 +127,11 @@ struct Evidence {
 
 /// Returns the predicates with a calibrated threshold, in the order of the model.
 std::vector<Index> calibrated_predicates(const check::Model& model);
+
+/// Whether every frame of a demonstration counts as positive, whatever its labels.
+bool is_normal(const check::Threshold& threshold);
+/// Returns those predicates whose calibration reads labels.
+std::vector<Index> with_labels(const check::Model& model, std::vector<Index> predicates);
 
 /// Scores one demonstration after the other, on one thread.
 class Scorer {

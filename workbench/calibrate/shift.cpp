@@ -179,6 +179,12 @@ void MonitorScorer::note(std::vector<Scores>& scores) const {
     for (std::size_t i = 0; i < monitors_.size(); ++i) {
         const Index monitor = monitors_[i];
         if (!truths_.reports(monitor)) continue;
+        const check::Threshold& shift = *model_.monitors[monitor].calibration;
+        if (is_normal(shift)) {
+            ++scores[i].positives.frames;
+            scores[i].positives.add(highest_.verdict(negations_[i]).lower, false);
+            continue;
+        }
         const etlmon::Verdict& truth = truths_.verdict(monitor);
         const bool satisfied = truth.satisfied();
         if (truth.unknown()) {
@@ -187,7 +193,6 @@ void MonitorScorer::note(std::vector<Scores>& scores) const {
         }
         SideScores& side = scores[i].side(satisfied);
         ++side.frames;
-        const check::Threshold& shift = *model_.monitors[monitor].calibration;
         if (!is_against(shift, satisfied)) continue;
         const double reach = highest_.verdict(satisfied ? negations_[i] : monitor).robustness;
         if (reach > -std::numeric_limits<double>::infinity()) side.add(reach, keeps_all(shift));
@@ -212,14 +217,18 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
     std::string text =
         fmt::format("\n{}: rho of {}", monitor.name, check::shown(model, monitor.formula));
     const std::vector<check::Guarantee> guarantees = check::guarantees(model, monitor);
-    if (sides.size() == 1 && shift.origin == check::ThresholdOrigin::conformal) {
+    if (sides.size() == 1 && shift.bounds_episodes()) {
+        const std::string which = is_normal(shift)
+                                      ? ""
+                                      : fmt::format(" whose ground truth is {} at some step",
+                                                    aim.of_positives ? "satisfied" : "violated");
         text += fmt::format(
             " less {:.9g}\n"
-            "    conformal, alpha = {}: {} whose ground truth is {} at some step\n"
+            "    {}, alpha = {}: {}{}\n"
             "    {}; given these {}, with probability >= 1 - {:.3f} to 1 - {:.3f} (5 % and 95 % "
             "quantiles, without ties)\n",
-            shift.value, shift.alpha, describe_place(sides[0], aim.above, of.noun()),
-            aim.of_positives ? "satisfied" : "violated", check::text(guarantees[0]),
+            shift.value, check::method_name(shift.origin), shift.alpha,
+            describe_place(sides[0], aim.above, of.noun()), which, check::text(guarantees[0]),
             groups.are_named() ? counted(shift.n, "group") : std::to_string(shift.n),
             1 - check::coverage_quantile(shift.n, shift.k, 0.05),
             1 - check::coverage_quantile(shift.n, shift.k, 0.95));
@@ -228,6 +237,7 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
         for (const check::Guarantee& guarantee : guarantees)
             text += fmt::format("    {}\n", check::text(guarantee));
     }
+    if (is_normal(shift)) return text + describe_failures(of.evidence.failures);
     text += describe_sides(of, sides);
     if (of.evidence.unlabelled > 0)
         text +=
@@ -245,6 +255,7 @@ std::vector<std::uint32_t> within_of(const check::Model& model, const std::vecto
     std::map<Index, const check::Monitor*> readers;
     for (const Index m : monitors) {
         const check::Monitor& monitor = model.monitors[m];
+        if (is_normal(*monitor.calibration)) continue;
         for (const Index p : check::predicates_of(model, monitor)) {
             if (!std::binary_search(labelled.begin(), labelled.end(), p)) continue;
             within[p] = monitor.calibration->within;
@@ -264,11 +275,13 @@ std::vector<std::uint32_t> within_of(const check::Model& model, const std::vecto
 std::vector<Index> find_labelled(const check::Model& model, const std::vector<Index>& monitors,
                                  const std::vector<Index>& in_first) {
     std::set<Index> found;
-    for (const Index monitor : monitors)
+    for (const Index monitor : monitors) {
+        if (is_normal(*model.monitors[monitor].calibration)) continue;
         for (const Index predicate : check::predicates_of(model, model.monitors[monitor]))
             if (!check::is_own_truth(model, predicate) ||
                 std::binary_search(in_first.begin(), in_first.end(), predicate))
                 found.insert(predicate);
+    }
     return {found.begin(), found.end()};
 }
 
@@ -348,9 +361,16 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
             for (const Index predicate : episode.from_arrays) ++labelling.from_arrays[predicate];
             const std::uint32_t group = groups.add(episode.group);
             for (std::size_t i = 0; i < monitors.size(); ++i)
-                evidence[i].add(episode.scores[i], group);
+                if (is_normal(*model.monitors[monitors[i]].calibration) &&
+                    !episode.outcome.is_demonstration())
+                    ++evidence[i].failures;
+                else
+                    evidence[i].add(episode.scores[i], group);
             for (std::size_t i = 0; i < timed.size(); ++i)
-                times[i].add(episode.durations[i], group);
+                if (episode.outcome.is_demonstration())
+                    times[i].add(episode.durations[i], group);
+                else
+                    ++times[i].failures;
             tracks.add(episode.track);
             is_divided &= episode.is_divided;
         });
@@ -383,7 +403,8 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         shift.by_group = groups.are_named();
         reports.push_back(monitor_report(shifted, shifted.monitors[monitors[i]], subjects.back(),
                                          *sides, groups));
-        out.push_back(left_out(predicates[i], evidence[i], recorded, groups));
+        if (!is_normal(shift))
+            out.push_back(left_out(predicates[i], evidence[i], recorded, groups));
     }
     std::string of_durations;
     for (std::size_t i = 0; i < timed.size(); ++i) {
@@ -393,6 +414,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         if (!entry) continue;
         set_calibrated(shifted, monitor, *entry, groups.are_named());
         of_durations += describe_duration(shifted, monitor, *entry);
+        of_durations += describe_failures(times[i].failures);
         result.file.monitors[monitor.name] =
             complete(std::move(*entry), model, model.monitors[timed[i]], recorded, labelling);
     }
@@ -401,11 +423,14 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
                                                {tracks, watched, groups, true, is_divided});
     result.report = fmt::format("{}{}, {}\n", counted(groups.episodes(), "episode"),
                                 in_groups(groups), counted(frames, "frame"));
-    for (std::size_t i = 0; i < monitors.size(); ++i) {
-        result.report += reports[i] + describe(others[i], guarantees[i], "    ");
-        warn_of_empty(model, guarantees[i], others[i], sink);
+    for (std::size_t i = 0, next = 0; i < monitors.size(); ++i) {
+        result.report += reports[i];
+        if (is_normal(*model.monitors[monitors[i]].calibration)) continue;
+        result.report += describe(others[next], guarantees[next], "    ");
+        warn_of_empty(model, guarantees[next], others[next], sink);
+        ++next;
     }
-    if (!monitors.empty())
+    if (!guarantees.empty())
         result.report += "\n" + note_on_other_errors(groups.are_named(), has_cost(guarantees));
     result.report += of_durations;
     if (!monitors.empty())

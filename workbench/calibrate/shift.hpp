@@ -2,9 +2,10 @@
 // episodes on which the thresholds of its predicates were not calibrated. The score of an episode
 // is the greatest low end of rho, in any build, over the steps at which the ground-truth monitor is
 // violated (against missed_success: the least high end over those at which it is satisfied). These
-// are the ends that a verdict is decided by. The shift is strictly beyond score k, so no such step
-// of a covered episode has the wrong sign. A step without such an end, because of a missing sample,
-// cannot have it.
+// are the ends that a verdict is decided by. With `normal` it is the least upper bound over all
+// steps, by which the monitor is violated for good. The shift is strictly beyond score k, so no
+// such step of a covered episode has the wrong sign. A step without such an end, because of a
+// missing sample, cannot have it.
 #pragma once
 
 #include <optional>

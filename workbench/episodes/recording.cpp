@@ -352,7 +352,10 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const std::string&
     auto recording = open(wanted, wrap ? wrap(file) : file);
     if (!recording) return recording;
     recording->path_ = path;
-    if (options.labels) recording->group_ = options.labels->group_of(path);
+    if (options.labels) {
+        recording->group_ = options.labels->group_of(path);
+        recording->outcome_ = options.labels->outcome_of(path);
+    }
     recording->is_unmarked_ = *is_unmarked;
     if (identities) recording->known_ = identities->find(recording->seen_.inputs());
     recording->identities_ = std::move(identities);

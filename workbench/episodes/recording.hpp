@@ -100,6 +100,7 @@ bool is_unmarked(const check::Model& model, const std::vector<Index>& inputs,
 struct Recorded {
     std::string path;
     std::string group;  ///< of labels beside the episode; empty: none
+    Outcome outcome;    ///< likewise
     std::string hash;   ///< 16 hex digits
     data::EpisodeContent content;
     std::uint64_t frames = 0;
@@ -110,8 +111,8 @@ struct Recorded {
 
 template <class Archive>
 void fields(Archive& archive, Recorded& recorded) {
-    archive(recorded.path, recorded.group, recorded.hash, recorded.content, recorded.frames,
-            recorded.leak, recorded.near, recorded.is_unmarked);
+    archive(recorded.path, recorded.group, recorded.outcome, recorded.hash, recorded.content,
+            recorded.frames, recorded.leak, recorded.near, recorded.is_unmarked);
 }
 
 /// Returns the hash as a number, as in files of thresholds and of fitted things.
@@ -169,12 +170,13 @@ public:
     std::uint64_t frames() const override { return frames_; }
     /// Returns the number of frames if the file gives it, else 0.
     std::uint64_t length() const { return trace_->length(); }
+    const Outcome& outcome() const { return outcome_; }
     /// Returns the identity of the frames so far, over the inputs of `identity`; of all frames
     /// where it was known before.
     Recorded recorded() const {
         const Identity identity = known_ ? *known_ : seen_.identity();
-        return {path_,   group_, identity.hash, identity.content,
-                frames_, leak_,  near_,         is_unmarked_};
+        return {path_,   group_, outcome_, identity.hash, identity.content,
+                frames_, leak_,  near_,    is_unmarked_};
     }
 
 private:
@@ -195,6 +197,7 @@ private:
     const Leaks* leaks_;
     std::string path_;
     std::string group_;
+    Outcome outcome_;
     bool is_unmarked_ = false;
     bool is_complete_ = true;
     Seen seen_;

@@ -465,6 +465,9 @@ GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& la
     for (check::Formula& formula : result.model.formulas) {
         if (formula.kind != check::Formula::Kind::predicate) continue;
         const Index label = result.inputs[formula.index];
+        const check::Threshold& threshold = model.predicates[formula.index].threshold;
+        if (label == check::kNone && threshold.origin == check::ThresholdOrigin::normal)
+            formula.kind = check::Formula::Kind::constant_true;
         if (label == check::kNone) continue;
         formula.kind = check::Formula::Kind::boolean_input;
         formula.index = label;

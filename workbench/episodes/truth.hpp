@@ -120,7 +120,8 @@ private:
 /// The ground-truth monitor: the same formulas, in which bool inputs with the labels replace the
 /// labelled predicates, and truths replace the lets that have one. A predicate without labels
 /// counts as its own truth, decided by its comparison in a plan of truth values
-/// (check::Values::boolean). Formulas, lets, monitors and the original inputs keep their indices.
+/// (check::Values::boolean); one of `calibrated(normal, ...)` always holds. Formulas, lets,
+/// monitors and the original inputs keep their indices.
 struct GroundTruth {
     check::Model model;
     /// Per predicate of the original model, the input of its label; kNone without labels.

@@ -191,7 +191,9 @@ diag::Result<EpisodeResult> EpisodeScorer::score(const std::string& path) {
     const std::size_t labelled = subject_.labelled.size();
     result.predicates.resize(labelled + subject_.lets.size());
     tracks_.assign(subject_.monitors.size(), {});
+    std::vector<MonitorEpisode> alarms(subject_.monitors.size());
     const auto rest = [&] {
+        note_alarms(recording->frames() - 1, alarms);
         note_verdicts();
         return true;
     };
@@ -205,8 +207,12 @@ diag::Result<EpisodeResult> EpisodeScorer::score(const std::string& path) {
     };
     const auto done = episodes::replay(*recording, {&monitors_, &truths_, &measured_}, frame, rest);
     if (!done) return done.failure();
-    for (std::size_t m = 0; m < subject_.monitors.size(); ++m)
-        result.monitors.push_back(conclude(subject_.monitors[m], tracks_[m]));
+    for (std::size_t m = 0; m < subject_.monitors.size(); ++m) {
+        MonitorEpisode& monitor =
+            result.monitors.emplace_back(conclude(subject_.monitors[m], tracks_[m]));
+        monitor.alarm = alarms[m].alarm;
+        monitor.least_upper = alarms[m].least_upper;
+    }
     for (std::size_t i = 0; i < labelled; ++i)
         result.predicates[i].from_array = recording->from_array(subject_.labelled[i]);
     static_cast<episodes::Recorded&>(result) = recording->recorded();
@@ -280,6 +286,16 @@ void EpisodeScorer::note_let(std::size_t i, std::uint64_t frame, PredicateEpisod
         ++result.unmeasured;
     else
         result.scored.push_back({says.robustness, 0, actual == Label::yes});
+}
+
+void EpisodeScorer::note_alarms(std::uint64_t step, std::vector<MonitorEpisode>& monitors) const {
+    for (std::size_t m = 0; m < monitors.size(); ++m) {
+        const Index monitor = subject_.monitors[m].monitor;
+        if (!monitors_.reports(monitor)) continue;
+        const Verdict& verdict = monitors_.verdict(monitor);
+        monitors[m].least_upper = std::min(monitors[m].least_upper, verdict.upper);
+        if (verdict.alarm() && !monitors[m].alarm) monitors[m].alarm = step;
+    }
 }
 
 /// Records the verdicts of a step. Both plans delay a sliding monitor by the horizon of its formula

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -65,6 +66,8 @@ struct MonitorEpisode {
     std::optional<std::uint64_t> first_error;
     /// Per requested kind, the verdicts on variants of the episode, as in `episode`.
     std::vector<Counts> variants;
+    std::optional<std::uint64_t> alarm;  ///< the step of the first alarm, whatever the truth
+    float least_upper = std::numeric_limits<float>::infinity();  ///< of all verdicts
 };
 
 struct PredicateEpisode {
@@ -78,7 +81,7 @@ struct PredicateEpisode {
 
 struct EpisodeResult : episodes::Recorded {
     std::vector<PredicateEpisode> predicates;  ///< per labelled predicate, then per judged let
-    /// Per monitor; all zero for monitors that cannot be evaluated.
+    /// Per monitor; only alarms and bounds for those that cannot be evaluated.
     std::vector<MonitorEpisode> monitors;
     std::vector<std::uint64_t> variants;  ///< per requested kind, their number
 };
@@ -91,7 +94,7 @@ void fields(Archive& archive, Turn& turn) {
 template <class Archive>
 void fields(Archive& archive, MonitorEpisode& monitor) {
     archive(monitor.steps, monitor.episode, monitor.turn, monitor.ordering, monitor.truth,
-            monitor.first_error, monitor.variants);
+            monitor.first_error, monitor.variants, monitor.alarm, monitor.least_upper);
 }
 
 template <class Archive>
@@ -135,6 +138,7 @@ private:
     diag::Result<bool> score_variants(const episodes::KeptFrames& kept, const Truths& truths,
                                       EpisodeResult& result);
     void note_verdicts();
+    void note_alarms(std::uint64_t step, std::vector<MonitorEpisode>& monitors) const;
     void follow(std::size_t m);
     float distance(Index predicate) const;
     MonitorEpisode conclude(const MonitorSubject& subject, const Tracks& tracks) const;

@@ -38,15 +38,16 @@ void warn_of_leaks(const check::Model& model, const Judgement& judgement, const 
     warning.note("targets have to come from other recordings");
 }
 
-bool refuse_without_truth(const check::Model& model, const Subject& subject, diag::Sink& sink) {
-    if (has_truths(subject)) return true;
+bool refuse_without_truth(const check::Model& model, const Subject& subject, bool has_outcomes,
+                          diag::Sink& sink) {
+    if (has_truths(subject) || has_outcomes) return true;
     const std::string name = model.predicates[subject.monitors.front().lacking.front()].name;
     const std::string shown = name.empty() ? "NAME" : name;
     sink.report(diag::Code::nothing_to_evaluate, model.monitors.front().span,
                 "no predicate of this spec has a truth to compare it with")
         .note(fmt::format("add 'truth {0} = ...;' to the spec, or record an array "
                           "'truth.{0}' of 0 and 1 in the episodes, which --map may name, or label "
-                          "them in a table labels.csv",
+                          "them in a table labels.csv, which may also say which episodes succeed",
                           shown));
     return false;
 }
@@ -182,7 +183,11 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
         judgement_of(first, subject(first, *labelled), request.episodes.size(), trials.size());
     for (const episodes::Variant variant : request.variants)
         result.variants.push_back({variant, 0, 0});
-    if (!refuse_without_truth(first, subject(first, *labelled), sink)) return std::nullopt;
+    const bool may_have_outcomes =
+        (request.reading.labels && request.reading.labels->has_outcomes()) ||
+        (request.sharing != nullptr && request.sharing->merges());
+    if (!refuse_without_truth(first, subject(first, *labelled), may_have_outcomes, sink))
+        return std::nullopt;
     for (std::size_t t = 0; t < trials.size(); ++t) {
         const Trial& trial = trials[t];
         const check::Model& model = *trial.spec.model;
@@ -203,9 +208,13 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
         }
     }
     if (sink.has_errors()) return std::nullopt;
+    bool has_outcomes = false;
     result.for_each(result.episodes, [&](std::size_t, const episodes::Recorded& episode) {
         result.groups.add(episode.group);
+        has_outcomes |= episode.outcome.kind != episodes::Outcome::Kind::none;
     });
+    if (!refuse_without_truth(first, subject(first, *labelled), has_outcomes, sink))
+        return std::nullopt;
     episodes::warn_of_unmarked(result.episodes, sink);
     warn_of_leaks(first, result, request, sink);
     return result;

@@ -22,6 +22,7 @@
 #include "episodes/ranking/auroc.hpp"
 #include "episodes/shared/sharing.hpp"
 #include "evaluate/episode_scores.hpp"
+#include "evaluate/outcomes.hpp"
 
 namespace etlc::evaluate {
 
@@ -138,7 +139,8 @@ struct Detection {
 
 struct MonitorScore {
     std::string name;
-    std::vector<std::string> lacking;  ///< predicates without truth; then nothing else is set
+    std::vector<std::string> lacking;  ///< predicates without truth; then only outcomes are set
+    std::optional<OutcomeScore> outcomes;
     Score steps;
     Coverage coverage;
     Score episodes;

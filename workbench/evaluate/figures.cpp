@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -78,14 +79,14 @@ Rates rates_of_constant(bool prediction, std::uint64_t positives, std::uint64_t 
 
 namespace {
 
-/// Predicts true for the numbers from the threshold on, or for those below it.
+/// Predicts true for the numbers from `from` up to but excluding `below`.
 struct Rule {
-    bool from = true;
-    double threshold = 0;
+    double from = 0;
+    double below = std::numeric_limits<double>::infinity();
 };
 
-constexpr Rule kAlwaysTrue{true, 0};
-constexpr Rule kAlwaysFalse{false, 0};
+constexpr Rule kAlwaysTrue{};
+constexpr Rule kAlwaysFalse{0, 0};
 
 /// The quality of a rule, compared lexicographically.
 struct Merit {
@@ -98,19 +99,24 @@ struct Merit {
     }
 };
 
-Merit merit(std::uint64_t hits, std::uint64_t false_alarms, std::uint64_t positives,
-            std::uint64_t negatives) {
-    const std::uint64_t twice_over = positives + hits + false_alarms;
-    const double f1 =
-        twice_over == 0 ? 0 : 2 * static_cast<double>(hits) / static_cast<double>(twice_over);
-    return {f1, hits + negatives - false_alarms};
-}
-
 /// Label counts over all episodes of the numbers between two neighbouring ends of runs.
 struct Cell {
     std::uint64_t positives = 0;
     std::uint64_t negatives = 0;
 };
+
+/// The labels that a rule predicts true.
+struct Hits {
+    std::uint64_t right = 0;
+    std::uint64_t wrong = 0;
+};
+
+Merit merit(const Cell& all, const Hits& hits) {
+    const std::uint64_t twice_over = all.positives + hits.right + hits.wrong;
+    const double f1 =
+        twice_over == 0 ? 0 : 2 * static_cast<double>(hits.right) / static_cast<double>(twice_over);
+    return {f1, hits.right + all.negatives - hits.wrong};
+}
 
 /// The numbers at which the label of some episode changes, and the label counts in between.
 class Cells {
@@ -142,50 +148,90 @@ public:
 
     /// Returns the best rule for the labels counted, or nothing where there are none.
     std::optional<Rule> best() const {
-        std::uint64_t positives = 0;
-        std::uint64_t negatives = 0;
+        Cell all;
         for (const Cell& cell : cells_) {
-            positives += cell.positives;
-            negatives += cell.negatives;
+            all.positives += cell.positives;
+            all.negatives += cell.negatives;
         }
-        if (positives + negatives == 0) return std::nullopt;
-        Merit best = merit(positives, negatives, positives, negatives);
+        if (all.positives + all.negatives == 0) return std::nullopt;
         Rule rule = kAlwaysTrue;
-        if (const Merit none = merit(0, 0, positives, negatives); best < none) {
+        Hits hits{all.positives, all.negatives};
+        Merit best = merit(all, hits);
+        if (const Merit none = merit(all, {}); best < none) {
             best = none;
             rule = kAlwaysFalse;
         }
-        for (const bool from : {true, false}) improve(rule, best, from, positives, negatives);
-        return rule;
+        // Dinkelbach, "On nonlinear fractional programming", 1967: among the intervals, the one
+        // with the greatest 2 hits - F1 x predictions has a greater F1, until none has.
+        bool is_constant = true;
+        for (;;) {
+            const Stretch found = stretch(all, hits);
+            const Merit here = merit(all, found.hits);
+            if (!(best < here) && (is_constant || here < best)) return rule;
+            rule = rule_of(found);
+            if (!(best < here)) return rule;  // the first of equals
+            best = here;
+            hits = found.hits;
+            is_constant = false;
+        }
     }
 
 private:
-    /// Replaces the rule where a better border exists. F1 and agreement are monotonic within a
-    /// cell, so the borders suffice. Neighbouring borders of equal merit enclose numbers without
-    /// labels.
-    void improve(Rule& rule, Merit& best, bool from, std::uint64_t positives,
-                 std::uint64_t negatives) const {
-        std::uint64_t positives_below = 0;
-        std::uint64_t negatives_below = 0;
+    __extension__ using Wide = __int128;  // products of numbers of frames
+
+    /// Neighbouring cells, and what predicting true in them gets.
+    struct Stretch {
         std::size_t first = 0;
-        std::size_t last = 0;  // border as good as the best; 0: none yet
-        for (std::size_t k = 1; k < cells_.size(); ++k) {
-            positives_below += cells_[k - 1].positives;
-            negatives_below += cells_[k - 1].negatives;
-            const Merit here = from ? merit(positives - positives_below,
-                                            negatives - negatives_below, positives, negatives)
-                                    : merit(positives_below, negatives_below, positives, negatives);
-            if (best < here) {
-                best = here;
-                first = last = k;
-            } else if (last != 0 && last + 1 == k && best == here) {
-                last = k;
+        std::size_t end = 0;
+        Hits hits;
+    };
+
+    /// Returns the cells with the greatest 2 hits - F1 x predictions, where F1 is that of `before`,
+    /// and of these the ones that agree most: the stretch of neighbours with the greatest sum.
+    Stretch stretch(const Cell& all, const Hits& before) const {
+        const Wide twice_hits = 2 * Wide{before.right};
+        const Wide twice_over = Wide{all.positives} + before.right + before.wrong;
+        using Gain = std::pair<Wide, std::int64_t>;
+        Stretch best;
+        Gain greatest{0, 0};
+        Stretch running;
+        Gain sum{0, 0};
+        for (std::size_t k = 0; k < cells_.size(); ++k) {
+            const Cell& cell = cells_[k];
+            if (sum <= Gain{0, 0}) {
+                running = {k, k, {}};
+                sum = {0, 0};
             }
+            running.end = k + 1;
+            running.hits.right += cell.positives;
+            running.hits.wrong += cell.negatives;
+            sum.first += 2 * Wide{cell.positives} * twice_over -
+                         twice_hits * (Wide{cell.positives} + cell.negatives);
+            sum.second += static_cast<std::int64_t>(cell.positives) -
+                          static_cast<std::int64_t>(cell.negatives);
+            if (sum <= greatest) continue;
+            greatest = sum;
+            best = running;
         }
-        if (last == 0) return;
-        rule.from = from;
-        rule.threshold =
-            (static_cast<double>(borders_[first]) + static_cast<double>(borders_[last])) / 2;
+        return best;
+    }
+
+    /// Returns the rule whose borders are halfway between the labels inside and those outside.
+    Rule rule_of(const Stretch& of) const {
+        const auto is_empty = [&](std::size_t k) {
+            return cells_[k].positives + cells_[k].negatives == 0;
+        };
+        std::size_t before = of.first;
+        while (before > 0 && is_empty(before - 1)) --before;
+        std::size_t after = of.end;
+        while (after < cells_.size() && is_empty(after)) ++after;
+        Rule rule;
+        if (before > 0) rule.from = halfway(before, of.first);
+        if (after < cells_.size()) rule.below = halfway(of.end, after);
+        return rule;
+    }
+    double halfway(std::size_t a, std::size_t b) const {
+        return (static_cast<double>(borders_[a]) + static_cast<double>(borders_[b])) / 2;
     }
 
     std::vector<std::uint64_t> borders_;
@@ -193,15 +239,18 @@ private:
 };
 
 void judge(const LabelRuns& episode, const Rule& rule, Counts& counts) {
-    const auto first_from = static_cast<std::uint64_t>(std::ceil(rule.threshold));
+    const auto first_at = [](double border) {
+        return static_cast<std::uint64_t>(std::ceil(std::min(border, 0x1p63)));
+    };
     for (const LabelRuns::Run& run : episode.runs()) {
-        const std::uint64_t border = std::clamp(first_from, run.begin, run.end);
-        Counts below;
-        Counts from;
-        below.add(rule.from ? Label::no : Label::yes, run.label);
-        from.add(rule.from ? Label::yes : Label::no, run.label);
-        counts.add(below, border - run.begin);
-        counts.add(from, run.end - border);
+        const std::uint64_t first = std::clamp(first_at(rule.from), run.begin, run.end);
+        const std::uint64_t end = std::clamp(first_at(rule.below), first, run.end);
+        Counts inside;
+        Counts outside;
+        inside.add(Label::yes, run.label);
+        outside.add(Label::no, run.label);
+        counts.add(inside, end - first);
+        counts.add(outside, run.end - run.begin - (end - first));
     }
 }
 

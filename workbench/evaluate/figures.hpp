@@ -129,9 +129,9 @@ std::vector<Rates> rates(const std::vector<Counts>& episodes, const Weights& wei
 Rates rates_of_constant(bool prediction, std::uint64_t positives, std::uint64_t total);
 
 // ---- the duration baseline ----------------------------------------------------------------------
-// The duration baseline: a threshold on the length of an episode, or on the number of a step, and
-// nothing else. Each episode is judged by the rule with the greatest F1 on all others. Memory grows
-// with the different numbers at which labels change.
+// The duration baseline: a clock with two ends, on the length of an episode, or on the number of a
+// step, and nothing else. Each episode is judged by the rule with the greatest F1 on all others.
+// Memory grows with the different numbers at which labels change.
 
 /// Labels of consecutive numbers, as runs of equal labels.
 class LabelRuns {
@@ -168,10 +168,11 @@ private:
 /// Calls its argument with the labels of each episode, in order; may be called repeatedly.
 using EachEpisode = std::function<void(const std::function<void(const LabelRuns&)>&)>;
 
-/// Counts what rules of the form "true from a number on" or "true below a number" get right. Ties
-/// in F1, then in agreement, go to: always true, always false, the first rule of the former kind,
-/// the first of the latter. A threshold lies halfway between the numbers that it separates. Returns
-/// nothing where fewer than two episodes have a known label.
+/// Counts what rules of the form "true from a number on and below another" get right. Either end
+/// may be open. Ties in F1, then in agreement, go to: always true, always false, the rule whose
+/// last number inside is the least, of these the one whose first is the greatest. An end lies
+/// halfway between the numbers that it separates. Returns nothing where fewer than two episodes
+/// have a known label.
 std::optional<Counts> judged_by_duration(const EachEpisode& episodes);
 
 }  // namespace etlc::evaluate

@@ -121,15 +121,23 @@ MonitorScore monitor_score(const Bootstrap& bootstrap, const Judgement& judgemen
     MonitorScore result;
     result.name = monitor.name;
     result.lacking = monitor.lacking;
+    std::vector<Judged> judged;
+    judged.reserve(judgement.place.size());
+    judgement.for_each(judgement.episodes, [&](std::size_t e, const episodes::Recorded& episode) {
+        const MonitorEpisode said = monitor.episodes[judgement.place[e]];
+        judged.push_back(
+            {episode.outcome, episode.frames, judgement.fold_of[e], said.alarm, said.least_upper});
+    });
+    result.outcomes = outcome_score(bootstrap, judged, judgement.groups.are_named());
     if (!result.lacking.empty()) return result;
     const auto of_each = [&](const auto& get) { return judgement.each(monitor.episodes, get); };
-    const auto judged = [&](const std::vector<Counts>& each) {
+    const auto by_verdict = [&](const std::vector<Counts>& each) {
         return score(bootstrap, each, by_length(judgement, each));
     };
     const std::vector<Counts> steps = of_each([](const MonitorEpisode& e) { return e.steps; });
     result.steps = score(bootstrap, steps, truths(judgement, monitor.episodes));
     result.coverage = coverage(bootstrap, steps);
-    result.episodes = judged(of_each([](const MonitorEpisode& e) { return e.episode; }));
+    result.episodes = by_verdict(of_each([](const MonitorEpisode& e) { return e.episode; }));
     result.detection =
         detection(bootstrap, of_each([](const MonitorEpisode& e) { return e.turn; }));
     for (std::size_t v = 0; v < judgement.variants.size(); ++v)
@@ -143,8 +151,8 @@ MonitorScore monitor_score(const Bootstrap& bootstrap, const Judgement& judgemen
                                                   return all;
                                               })));
     if (monitor.sequential)
-        result.ordering =
-            judged(of_each([](const MonitorEpisode& e) { return e.ordering.value_or(Counts{}); }));
+        result.ordering = by_verdict(
+            of_each([](const MonitorEpisode& e) { return e.ordering.value_or(Counts{}); }));
     return result;
 }
 
@@ -178,7 +186,12 @@ EpisodeRow row_of(const Judgement& judgement, std::size_t e) {
     for (std::size_t m = 0; m < judgement.monitors.size(); ++m) {
         const MonitorEpisode monitor = judgement.monitors[m].episodes[place];
         const std::string& name = judgement.monitors[m].name;
-        if (monitor.episode.wrong() > 0) row.wrong.push_back(name);
+        // Without a truth the outcome tells whether there should be an alarm.
+        using Kind = episodes::Outcome::Kind;
+        const Kind outcome = episode.outcome.kind;
+        const bool by_outcome = !judgement.monitors[m].lacking.empty() &&
+                                outcome == (monitor.alarm ? Kind::success : Kind::failure);
+        if (monitor.episode.wrong() > 0 || by_outcome) row.wrong.push_back(name);
         if (judgement.predicates.empty()) row.predictions.add(monitor.steps);
         if (!predicates_err) note(row.first_error, monitor.first_error, name, true);
     }

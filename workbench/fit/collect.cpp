@@ -210,6 +210,7 @@ private:
         auto opened = recordings_.open(episode);
         if (!opened) return opened.failure();
         episodes::Recording& frames = *opened;
+        is_demonstration_ = frames.outcome().is_demonstration();
         where_.reset();
         recent_.reset();
         std::vector<Collector> collectors;
@@ -271,7 +272,8 @@ private:
 
     Label label(const episodes::Frames& frames, const Need& need) const {
         if (need.label != kNone) return frames.label(need.label);
-        return need.where == kNone ? Label::yes : where_[need.where];
+        if (need.where != kNone) return where_[need.where];
+        return is_demonstration_ ? Label::yes : Label::no;
     }
 
     const check::Model& model_;
@@ -282,6 +284,7 @@ private:
     std::vector<Blocks> blocks_;  ///< per point
     episodes::GroundTruth truth_;
     episodes::TruthEvaluator where_;
+    bool is_demonstration_ = true;  ///< the episode at hand
     Shares shares_;
     episodes::RecentFrames recent_;
     episodes::Frame frame_;

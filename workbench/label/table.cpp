@@ -56,7 +56,7 @@ std::string marked(const episodes::LabelRow& row) {
 /// Returns whether two rows say the same.
 bool is_same(const episodes::LabelRow& a, const episodes::LabelRow& b) {
     return a.episode == b.episode && a.predicate == b.predicate && a.label == b.label &&
-           a.start == b.start && a.end == b.end && a.group == b.group;
+           a.start == b.start && a.end == b.end && a.group == b.group && a.outcome == b.outcome;
 }
 
 }  // namespace
@@ -172,14 +172,19 @@ std::string Table::bound(double value) const {
 std::string Table::text_of(const Rows& rows) const {
     const bool has_groups =
         std::any_of(rows.begin(), rows.end(), [](const Row& row) { return !row.group.empty(); });
+    const bool has_outcomes = std::any_of(rows.begin(), rows.end(), [](const Row& row) {
+        return row.outcome != episodes::Outcome::Kind::none;
+    });
     std::string text =
         in_seconds_ ? "episode,predicate,start_s,end_s" : "episode,predicate,start,end";
-    text += has_groups ? ",group\n" : "\n";
+    text += fmt::format("{}{}\n", has_groups ? ",group" : "", has_outcomes ? ",outcome" : "");
     for (const Row& row : rows) {
         const bool is_whole = row.start == 0 && std::isinf(row.end);
         text += fmt::format("{},{},{},{}", cell(row.episode), cell(marked(row)),
                             is_whole ? "" : bound(row.start), bound(row.end));
-        text += has_groups ? "," + cell(row.group) + "\n" : "\n";
+        if (has_groups) text += "," + cell(row.group);
+        if (has_outcomes) text += fmt::format(",{}", name_of(row.outcome));
+        text += "\n";
     }
     return text;
 }

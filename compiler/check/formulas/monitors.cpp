@@ -197,7 +197,8 @@ void check_monitors(Context& c) {
         }
         if (!monitor.calibration || moves_with_its_shift(c, monitor)) continue;
         refuse_moving_thresholds(c, monitor, monitor.calibration->span, "is calibrated as a whole");
-        refuse_comparisons_without_truth(c, monitor);
+        if (monitor.calibration->origin != ThresholdOrigin::normal)
+            refuse_comparisons_without_truth(c, monitor);
     }
 }
 

@@ -35,6 +35,7 @@ const std::vector<Method>& methods() {
         {"class_conditional", ThresholdOrigin::class_conditional, {"alpha"}},
         {"adaptive", ThresholdOrigin::adaptive, {"alpha", "gamma", "lo", "hi"}},
         {"risk", ThresholdOrigin::risk, {"alpha", "beta", "against", "within"}},
+        {"normal", ThresholdOrigin::normal, {"alpha"}},
     };
     return all;
 }
@@ -139,7 +140,7 @@ std::string text_of(const Threshold& threshold) {
     std::string text = fmt::format("calibrated({}", method_name(threshold.origin));
     if (!threshold.alpha.empty()) text += ", alpha = " + threshold.alpha;
     if (!threshold.beta.empty()) text += ", beta = " + threshold.beta;
-    if (threshold.against != Against::misses)
+    if (threshold.against != Against::misses && threshold.origin != ThresholdOrigin::normal)
         text += fmt::format(", against = {}", word(threshold.against));
     if (threshold.within > 0) text += ", within = " + diag::counted(threshold.within, "step");
     return text + ")";
@@ -320,10 +321,12 @@ std::string_view word(Against against) {
 std::optional<Threshold> check_monitor_calibrated(Context& c, const ast::Calibrated& written) {
     const Method* method = find_method(c, written.method);
     if (method == nullptr) return std::nullopt;
+    if (method->origin == ThresholdOrigin::normal)
+        return uncalibrated(c, written, *method, {Against::missed_success});
     if (method->origin != ThresholdOrigin::conformal && method->origin != ThresholdOrigin::risk) {
         c.report(Code::unknown_method, written.method.span,
-                 fmt::format("a monitor is calibrated with 'conformal' or 'risk'; '{}' is for "
-                             "predicates",
+                 fmt::format("a monitor is calibrated with 'conformal', 'risk' or 'normal'; '{}' "
+                             "is for predicates",
                              method->name))
             .note(fmt::format("expected {}", kMonitorForm));
         return std::nullopt;

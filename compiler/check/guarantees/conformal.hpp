@@ -17,7 +17,7 @@ namespace etlc::check {
 /// Whether the method takes one score of each group of episodes, and keeps them all. The others
 /// keep the chosen score, f1 also the next.
 constexpr bool takes_scores(std::string_view method) {
-    return method == "conformal" || method == "adaptive";
+    return method == "conformal" || method == "adaptive" || method == "normal";
 }
 
 /// Whether the method counts groups of episodes; the others pool frames.

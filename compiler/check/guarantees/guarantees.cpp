@@ -122,7 +122,8 @@ std::string_view uncovered(const Model& model, Index predicate) {
             return "has an adaptive threshold, which bounds the rate of missed frames, not of "
                    "episodes";
         case ThresholdOrigin::risk: return "is calibrated for a share of the frames, not for each";
-        case ThresholdOrigin::conformal: return "";
+        case ThresholdOrigin::conformal:
+        case ThresholdOrigin::normal: return "";
         case ThresholdOrigin::literal: break;
     }
     return is_own_truth(model, predicate) ? "" : "has a threshold that was not calibrated";
@@ -170,7 +171,8 @@ struct Bounds {
     Line satisfied;  ///< satisfied wrongly
     Line violated;   ///< violated wrongly
     std::vector<std::string> all;
-    bool of_both = false;  ///< some predicate is calibrated against both errors
+    bool of_both = false;       ///< some predicate is calibrated against both errors
+    bool with_missing = false;  ///< bounds on violations include the steps with missing samples
 
     /// Adds what a literal contributes. A negated one is true where the predicate is called false.
     void add(const Model& model, Index index, bool negated) {
@@ -183,7 +185,7 @@ struct Bounds {
             }
             line.rates.push_back(rate);
             // A bound on successes alone excludes the steps with missing samples.
-            if (predicate.missing == missing && (of_both || &line == &satisfied))
+            if (predicate.missing == missing && (with_missing || &line == &satisfied))
                 line.missing = index;
         };
         take(negated ? satisfied : violated, bounds_misses(threshold), threshold.alpha, false);
@@ -195,11 +197,14 @@ struct Bounds {
 Bounds bounds_of(const Model& model, const std::map<Index, Polarity>& predicates) {
     Bounds result;
     const auto is_calibrated = [&](Index predicate) {
-        return model.predicates[predicate].threshold.origin == ThresholdOrigin::conformal;
+        return model.predicates[predicate].threshold.bounds_episodes();
     };
-    for (const auto& [predicate, polarity] : predicates)
-        result.of_both |= is_calibrated(predicate) &&
-                          model.predicates[predicate].threshold.against == Against::both;
+    for (const auto& [predicate, polarity] : predicates) {
+        const Threshold& threshold = model.predicates[predicate].threshold;
+        result.of_both |= is_calibrated(predicate) && threshold.against == Against::both;
+        result.with_missing |= threshold.origin == ThresholdOrigin::normal;
+    }
+    result.with_missing |= result.of_both;
     for (const auto& [predicate, polarity] : predicates) {
         if (!is_calibrated(predicate)) continue;
         if (polarity.positive) result.add(model, predicate, false);
@@ -243,11 +248,14 @@ std::vector<Guarantee> guarantees_about(const Model& model, Literal part, Values
     }
     const std::map<Index, Polarity> predicates = predicates_in(model, part);
     bool no_at_zero = false;
+    bool of_labels = false;  // some threshold was calibrated with labels
     for (const auto& [predicate, polarity] : predicates) {
         const Predicate& of = model.predicates[predicate];
         const std::string_view why = uncovered(model, predicate);
         if (!why.empty() && base.why.empty()) base.why = fmt::format("'{}' {}", of.shown(), why);
-        if (of.threshold.origin == ThresholdOrigin::conformal)
+        of_labels |= of.threshold.origin == ThresholdOrigin::conformal;
+        base.normal |= of.threshold.origin == ThresholdOrigin::normal;
+        if (of.threshold.bounds_episodes())
             count_groups(of.threshold, base);
         else
             no_at_zero |= fails_at_zero(of, polarity);
@@ -258,8 +266,9 @@ std::vector<Guarantee> guarantees_about(const Model& model, Literal part, Values
         Guarantee guarantee = base;
         guarantee.kind = kind;
         guarantee.bound = sum(rates);
-        const bool of_violations =
-            kind != Guarantee::Kind::missed_success && kind != Guarantee::Kind::violated_wrongly;
+        const bool of_violations = kind != Guarantee::Kind::missed_success &&
+                                   kind != Guarantee::Kind::false_alarm &&
+                                   kind != Guarantee::Kind::violated_wrongly;
         guarantee.zero_aside = of_violations && no_at_zero && values != Values::boolean;
         if (Decimal::parse(guarantee.bound) >= Decimal::parse("1"))
             base.why = fmt::format("the alphas of its predicates add up to {}", guarantee.bound);
@@ -267,10 +276,12 @@ std::vector<Guarantee> guarantees_about(const Model& model, Literal part, Values
             result.push_back(std::move(guarantee));
     };
     const Bounds bounds = bounds_of(model, predicates);
-    const auto& [satisfied, violated, all, of_both] = bounds;
+    const auto& [satisfied, violated, all, of_both, with_missing] = bounds;
     if (all.empty()) {
         add(Guarantee::Kind::exact, {});
-    } else if (!of_both && satisfied.holds() != violated.holds()) {
+    } else if (base.normal && !of_labels && violated.holds() && !satisfied.holds()) {
+        add(Guarantee::Kind::false_alarm, all);
+    } else if (!base.normal && !of_both && satisfied.holds() != violated.holds()) {
         add(violated.holds() ? Guarantee::Kind::missed_success : Guarantee::Kind::missed_alarm,
             all);
     } else if (satisfied.holds() || violated.holds()) {
@@ -296,6 +307,11 @@ std::vector<Guarantee> guarantees_as_a_whole(const Monitor& monitor) {
         guarantee.bound = sum(rates);
         count_groups(threshold, guarantee);
     };
+    if (threshold.origin == ThresholdOrigin::normal) {
+        add(Guarantee::Kind::false_alarm, {threshold.alpha});
+        result.back().normal = true;
+        return result;
+    }
     const std::string& of_alarms = threshold.rate_of_false_positives();
     if (threshold.against == Against::both && !by_share) {
         add(Guarantee::Kind::satisfied_wrongly, {of_alarms});
@@ -430,9 +446,15 @@ std::string text(const Guarantee& guarantee) {
         case Guarantee::Kind::violated_share: return share("violated", "satisfied");
         default: break;
     }
-    return fmt::format("{}P(some verdict of {} {}) <= {}{}{}", part,
-                       guarantee.groups > 0 ? "an episode of a new group" : "a new episode",
-                       what(guarantee.kind), guarantee.bound, groups, aside);
+    const std::string episode =
+        fmt::format("a{} {}", guarantee.groups > 0 ? (guarantee.normal ? "" : "n") : " new",
+                    fmt::format("{}episode{}", guarantee.normal ? "normal " : "",
+                                guarantee.groups > 0 ? " of a new group" : ""));
+    const std::string event =
+        guarantee.normal && guarantee.kind == Guarantee::Kind::false_alarm
+            ? "a false alarm in " + episode
+            : fmt::format("some verdict of {} {}", episode, what(guarantee.kind));
+    return fmt::format("{}P({}) <= {}{}{}", part, event, guarantee.bound, groups, aside);
 }
 
 std::string exchangeability(bool by_group) {
@@ -496,7 +518,7 @@ std::string origin_of_episodes(const Threshold& threshold) {
     std::string text =
         fmt::format("{}, alpha = {}", method_name(threshold.origin), threshold.alpha);
     if (!threshold.beta.empty()) text += ", beta = " + threshold.beta;
-    if (threshold.against != Against::misses)
+    if (threshold.against != Against::misses && threshold.origin != ThresholdOrigin::normal)
         text += fmt::format(", against {}", word(threshold.against));
     if (threshold.within > 0)
         text += fmt::format(", within {} of a change", diag::counted(threshold.within, "step"));
@@ -523,6 +545,7 @@ std::string origin(const Threshold& threshold) {
         case ThresholdOrigin::literal: return "written in the spec; no guarantee";
         case ThresholdOrigin::f1: return "calibrated for F1; no guarantee";
         case ThresholdOrigin::conformal:
+        case ThresholdOrigin::normal:
         case ThresholdOrigin::risk: return origin_of_episodes(threshold);
         case ThresholdOrigin::class_conditional:
             return fmt::format(

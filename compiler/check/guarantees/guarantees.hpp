@@ -29,7 +29,9 @@ struct Guarantee {
         exact,           ///< nothing is calibrated, and every predicate is its own truth
         missed_success,  ///< P(some verdict of a new episode misses a success) <= bound
         missed_alarm,    ///< P(some verdict of a new episode misses an alarm) <= bound
-        false_alarm,     ///< P(some verdict of a new episode is violated for good) <= bound
+        /// P(some verdict of a new episode is violated for good) <= bound. Of `normal` thresholds:
+        /// while its truth, in which these predicates always hold, is not.
+        false_alarm,
         // where predicates or the monitor are calibrated against both errors; unknown is neither
         satisfied_wrongly,  ///< P(some verdict is satisfied while its truth is violated) <= bound
         violated_wrongly,   ///< P(some verdict is violated while its truth is satisfied) <= bound
@@ -46,17 +48,18 @@ struct Guarantee {
     /// The least number of groups of episodes that a threshold was calibrated on; 0: of none that
     /// has groups, whose demonstrations count one by one.
     std::uint64_t groups = 0;
-    std::string why;  ///< the reason for `nothing`
+    bool normal = false;  ///< of new normal episodes: some threshold is `calibrated(normal, ...)`
+    std::string why;      ///< the reason for `nothing`
     /// For exact, missed_alarm, satisfied_wrongly and wrong: a comparison that is its own truth is
     /// false at its threshold, where robustness is 0.
     bool zero_aside = false;
 };
 
 /// Returns the guarantees of a monitor calibrated as a whole; otherwise that of its calibrated
-/// duration, if it has one, and the guarantees about the whole
-/// formula (up to three where predicates are calibrated against both errors) and, if that is
-/// `nothing`, about its conjuncts. `values` are those that the monitor
-/// computes with; truths are decided by the comparisons themselves.
+/// duration, if it has one, and the guarantees about the whole formula (up to three where
+/// predicates are calibrated against both errors) and, if that is `nothing`, about its conjuncts.
+/// `values` are those that the monitor computes with; truths are decided by the comparisons
+/// themselves.
 std::vector<Guarantee> guarantees(const Model& model, const Monitor& monitor,
                                   Values values = Values::robustness);
 

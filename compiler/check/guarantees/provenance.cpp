@@ -72,7 +72,8 @@ public:
             fmt::format("{}{}", word(restarts),
                         sliding ? fmt::format("sliding, horizon {}", horizon) : "monitor"));
         add("formula " + name, text_of(formula, Atoms::compared));
-        if (duration) return;  // it reads no truth
+        if (duration || (calibration && calibration->origin == ThresholdOrigin::normal))
+            return;  // it reads no truth
         const std::string over_truths = text_of(monitor.true_formula(), Atoms::truths);
         if (truth != kNone) add("truth of the formula " + name, over_truths);
     }
@@ -203,6 +204,7 @@ private:
 
     /// Adds the source of a predicate's labels.
     void add_truth(Index of) {
+        if (model_.predicates[of].threshold.origin == ThresholdOrigin::normal) return;
         std::string text = is_own_truth(model_, of) ? "its comparison" : "";
         if (!text.empty()) add_predicate(of);
         for (const Truth& truth : model_.truths) {

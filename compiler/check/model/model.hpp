@@ -285,6 +285,7 @@ enum class ThresholdOrigin : std::uint8_t {
     class_conditional,
     adaptive,
     risk,
+    normal,  ///< conformal, with every frame of every demonstration as positive
 };
 
 /// The error that a calibration bounds: of a predicate a miss or a false positive, of a monitor a
@@ -327,6 +328,10 @@ struct Threshold {
     std::optional<Adaptation> adaptation;  ///< of adaptive thresholds, which start at `value`
     Span span;
 
+    /// Whether it bounds the probability of an error in an episode, whatever its length.
+    bool bounds_episodes() const {
+        return origin == ThresholdOrigin::conformal || origin == ThresholdOrigin::normal;
+    }
     /// Returns the threshold within which the predicate is called true.
     float low() const { return inner.value_or(value); }
     /// Returns the rate of false positives or missed alarms that a calibration against them allows.

@@ -74,7 +74,8 @@ bool report(const source::File& spec, const Compiled& compiled, const Request& r
     material.thresholds = thresholds_of(model, spec.path(), request);
     material.why_no_truth = truths.why_not;
     std::optional<evaluate::Judgement> judgement;
-    if (truths.subject) {
+    const bool has_outcomes = wanted.reading.labels && wanted.reading.labels->has_outcomes();
+    if (truths.subject || has_outcomes) {
         auto held_to = asked_of<evaluate::Request>(request);
         held_to.episodes = wanted.episodes;
         held_to.reading = wanted.reading;
@@ -82,7 +83,7 @@ bool report(const source::File& spec, const Compiled& compiled, const Request& r
         held_to.limits = request.limits;
         judgement = judge_as_it_is(compiled, spec.path(), request, held_to, sink);
         if (!judgement) return false;
-        material.truth = &*truths.subject;
+        if (truths.subject) material.truth = &*truths.subject;
         material.judgement = &*judgement;
     }
     if (!judgement)

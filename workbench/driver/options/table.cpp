@@ -189,7 +189,7 @@ std::vector<Option> make_options() {
          "tables of labels, .csv files (default: labels.csv beside the episodes, if it exists)"},
         {kReadEpisodes, "--label-by", label_by(),
          "folder: a folder with the name of a predicate labels the episodes in it and below it: it "
-         "holds in these, and in no other"},
+         "holds in these, and in no other; folders success and failure give their outcome"},
         {kReadRecordings, "--map", several(form("NAME=OTHER", read_names)),
          "name of an input in the files: --map z=obs/z"},
     };

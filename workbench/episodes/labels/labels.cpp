@@ -291,6 +291,11 @@ std::string LabelSet::group_of(const std::string& episode) const {
     return found == groups_.end() ? "" : found->second;
 }
 
+Outcome LabelSet::outcome_of(const std::string& episode) const {
+    const auto found = outcomes_.find(episode);
+    return found == outcomes_.end() ? Outcome{} : found->second;
+}
+
 namespace {
 
 diag::Result<std::unique_ptr<data::Trace>> open_unlabelled(
@@ -451,31 +456,41 @@ public:
         std::set<std::string> labelled;
         std::set_intersection(around.begin(), around.end(), known.begin(), known.end(),
                               std::inserter(labelled, labelled.end()));
-        if (labelled.empty()) {
+        const std::string succeeds(name_of(Outcome::Kind::success));
+        const std::string fails(name_of(Outcome::Kind::failure));
+        if (labelled.empty() && !around.contains(succeeds) && !around.contains(fails)) {
+            std::vector<std::string> words(known.begin(), known.end());
+            words.insert(words.end(), {succeeds, fails});
             sink_.report(data::in_file(
                 {Code::nothing_to_label,
-                 fmt::format("the episodes lie in {}, and none of these is a predicate; there are "
-                             "{}",
-                             data::listed({around.begin(), around.end()}),
-                             data::listed({known.begin(), known.end()}))},
+                 fmt::format("the episodes lie in {}, and none of these is a predicate or an "
+                             "outcome; there are {}",
+                             data::listed({around.begin(), around.end()}), data::listed(words))},
                 "--label-by folder"));
             return;
         }
-        for (std::size_t e = 0; e < episodes_.size(); ++e)
+        for (std::size_t e = 0; e < episodes_.size(); ++e) {
+            const auto is_in = [&](const std::string& folder) {
+                return std::find(folders[e].begin(), folders[e].end(), folder) != folders[e].end();
+            };
+            if (is_in(succeeds) != is_in(fails))
+                add_outcome(episodes_[e],
+                            {is_in(fails) ? Outcome::Kind::failure : Outcome::Kind::success},
+                            "--label-by folder", 0);
             for (const std::string& predicate : labelled) {
-                const bool is_inside =
-                    std::find(folders[e].begin(), folders[e].end(), predicate) != folders[e].end();
-                result_->of_[episodes_[e]][predicate].push_back({0, LabelledSteps::kToTheEnd,
-                                                                 is_inside ? Label::yes : Label::no,
-                                                                 "--label-by folder"});
+                result_->of_[episodes_[e]][predicate].push_back(
+                    {0, LabelledSteps::kToTheEnd, is_in(predicate) ? Label::yes : Label::no,
+                     "--label-by folder"});
             }
+        }
     }
 
     /// Returns the labels if none is in error.
     std::shared_ptr<const LabelSet> finish() {
         for (auto& [episode, labels] : result_->of_)
             for (auto& [predicate, intervals] : labels) sort(episode, predicate, intervals);
-        const bool is_empty = result_->tables_.empty() && result_->of_.empty();
+        const bool is_empty =
+            result_->tables_.empty() && result_->of_.empty() && !result_->has_outcomes();
         return sink_.has_errors() || is_empty ? nullptr : std::move(result_);
     }
 
@@ -575,11 +590,37 @@ private:
             }
             result_->groups_[episode] = row.group;
         }
+        if (row.outcome != Outcome::Kind::none) {
+            Outcome outcome{row.outcome};
+            if (row.start > 0) {
+                const auto steps = steps_of(row, table, path, episode);
+                if (!steps) return;
+                outcome.failed_at = steps->first;
+            }
+            return add_outcome(episode, outcome, path, row.line);
+        }
         if (row.predicate.empty()) return;
         const auto steps = steps_of(row, table, path, episode);
         if (steps)
             result_->of_[episode][row.predicate].push_back(
                 {steps->first, steps->second, row.label, place});
+    }
+
+    /// Reports two outcomes of an episode that differ. `line`: 0 for none.
+    void add_outcome(const std::string& episode, const Outcome& outcome, const std::string& path,
+                     std::uint32_t line) {
+        const auto [before, is_new] = outcomes_.emplace(
+            episode, std::pair{outcome, line == 0 ? path : fmt::format("{}:{}", path, line)});
+        result_->outcomes_[episode] = outcome;
+        if (is_new || before->second.first == outcome) return;
+        const auto said = [](const Outcome& one) {
+            return fmt::format("{}{}", name_of(one.kind),
+                               one.failed_at > 0 ? fmt::format(" at step {}", one.failed_at) : "");
+        };
+        report(Code::contradictory_labels, path, line,
+               fmt::format("calls {} a {}", data::in_quotes(episode), said(outcome)))
+            .note(
+                fmt::format("{} calls it a {}", before->second.second, said(before->second.first)));
     }
 
     std::optional<std::pair<std::uint64_t, std::uint64_t>> steps_of(const LabelRow& row,
@@ -655,6 +696,7 @@ private:
     std::shared_ptr<LabelSet> result_ = std::make_shared<LabelSet>();
     /// Per episode, its group and the place of the row.
     std::map<std::string, std::pair<std::string, std::string>> groups_;
+    std::map<std::string, std::pair<Outcome, std::string>> outcomes_;  ///< likewise
     bool has_told_of_time_ = false;
 };
 

@@ -1,8 +1,8 @@
 // Labels beside recordings: from tables and from names of folders. A reader of episodes gets them
 // as arrays `truth.NAME` of the episode.
-// Takes: the tables, the episodes and the specs of a call. Gives: the labels of each episode, and
-// its group. Keeps true: no label is used if any is in error; a label and an array of the episode,
-// or two labels of one step, are an error that names both places.
+// Takes: the tables, the episodes and the specs of a call. Gives: the labels of each episode, its
+// group and its outcome. Keeps true: no label is used if any is in error; a label and an array of
+// the episode, or two labels of one step, are an error that names both places.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "check/model/model.hpp"
@@ -28,14 +29,40 @@ namespace etlc::episodes {
 /// Ordered: && is the minimum, || the maximum, unknown in between (Kleene's strong logic).
 enum class Label : std::uint8_t { no, unknown, yes };
 
+/// Says what became of a whole episode.
+struct Outcome {
+    enum class Kind : std::uint8_t {
+        none,  ///< nobody says
+        unknown,
+        success,
+        failure,
+    };
+    Kind kind = Kind::none;
+    std::uint64_t failed_at = 0;  ///< the step of a failure; 0: not known, the last one counts
+
+    bool operator==(const Outcome&) const = default;
+    /// Whether what is learned from successes alone takes the episode: nobody calls it a failure,
+    /// or says that its outcome is unknown.
+    bool is_demonstration() const { return kind == Kind::none || kind == Kind::success; }
+};
+
+template <class Archive>
+void fields(Archive& archive, Outcome& outcome) {
+    archive(outcome.kind, outcome.failed_at);
+}
+
+/// Returns "success", and "" for none.
+std::string_view name_of(Outcome::Kind kind);
+
 /// The predicate has this label from `start` up to but excluding `end`.
 struct LabelRow {
     std::string episode;
-    std::string predicate;  ///< without its mark; empty where the row only gives the group
+    std::string predicate;  ///< without its mark; empty where the row gives the group or outcome
     Label label = Label::yes;
-    double start = 0;  ///< in steps or seconds
+    double start = 0;  ///< in steps or seconds; where the row gives an outcome, of the failure
     double end = std::numeric_limits<double>::infinity();
     std::string group;  ///< empty: none
+    Outcome::Kind outcome = Outcome::Kind::none;
     std::uint32_t line = 0;
 };
 
@@ -82,7 +109,7 @@ bool is_episode_in(const std::string& folder, const std::string& name);
 /// Where the labels of a call are.
 struct LabelSources {
     std::vector<std::string> tables;  ///< empty: labels.csv beside the episodes, if there is one
-    bool by_folder = false;           ///< folders are named after predicates
+    bool by_folder = false;           ///< folders are named after predicates or outcomes
     bool has_episodes = true;         ///< false where parts are merged: no episode is looked for
 };
 
@@ -119,6 +146,8 @@ public:
     const EpisodeLabels* of(const std::string& episode) const;
     /// Returns the group of an episode; empty: it has none.
     std::string group_of(const std::string& episode) const;
+    Outcome outcome_of(const std::string& episode) const;
+    bool has_outcomes() const { return !outcomes_.empty(); }
     /// Returns the tables that were read.
     const std::vector<std::string>& tables() const { return tables_; }
 
@@ -128,6 +157,7 @@ private:
     std::vector<std::string> tables_;
     std::map<std::string, EpisodeLabels> of_;  ///< by path of the episode
     std::map<std::string, std::string> groups_;
+    std::map<std::string, Outcome> outcomes_;
 };
 
 /// How a call reads its episodes.

@@ -31,13 +31,14 @@ struct LabelColumns {
     std::size_t start = kNone;
     std::size_t end = kNone;
     std::size_t group = kNone;
+    std::size_t outcome = kNone;
     bool in_seconds = false;
     std::size_t count = 0;
 };
 
 diag::Result<LabelColumns> label_columns(const data::CsvReader& header) {
     const std::vector<std::string> known{"episode", "predicate", "start", "end",
-                                         "start_s", "end_s",     "group"};
+                                         "start_s", "end_s",     "group", "outcome"};
     std::vector<std::size_t> at(known.size(), LabelColumns::kNone);
     for (std::size_t i = 0; i < header.cells(); ++i) {
         const std::string name(header.cell(i));
@@ -61,16 +62,17 @@ diag::Result<LabelColumns> label_columns(const data::CsvReader& header) {
     };
     const auto has = [&](std::size_t column) { return at[column] != LabelColumns::kNone; };
     for (const std::size_t needed : {std::size_t{0}, std::size_t{1}})
-        if (!has(needed))
+        if (!has(needed) && (needed == 0 || !has(7)))
             return fail(
                 fmt::format("no column '{}'; a table of labels has the columns episode and "
-                            "predicate, and for intervals start and end, or start_s and "
-                            "end_s",
+                            "predicate, and for intervals start and end, or start_s and end_s; "
+                            "one of outcomes has episode and outcome",
                             known[needed]));
     if (has(2) != has(3) || has(4) != has(5))
         return fail("start and end, or start_s and end_s, come together");
     if (has(2) && has(4)) return fail("has both steps (start, end) and seconds (start_s, end_s)");
-    LabelColumns columns{at[0], at[1], has(4) ? at[4] : at[2], has(4) ? at[5] : at[3], at[6]};
+    LabelColumns columns{at[0], at[1], has(4) ? at[4] : at[2], has(4) ? at[5] : at[3],
+                         at[6], at[7]};
     columns.in_seconds = has(4);
     columns.count = header.cells();
     return columns;
@@ -91,10 +93,15 @@ public:
         row.episode = cells_.cell(columns_.episode);
         if (row.episode.empty()) return fail(columns_.episode, "names no episode");
         if (columns_.group != LabelColumns::kNone) row.group = cells_.cell(columns_.group);
+        if (auto failure = read_outcome(row)) return *failure;
         if (auto failure = read_predicate(row)) return *failure;
         if (columns_.start == LabelColumns::kNone) return row;
         if (auto failure = read_bound(columns_.start, row.start)) return *failure;
         if (auto failure = read_bound(columns_.end, row.end)) return *failure;
+        if (row.outcome != Outcome::Kind::none &&
+            (std::isfinite(row.end) || (row.start > 0 && row.outcome != Outcome::Kind::failure)))
+            return fail(std::isfinite(row.end) ? columns_.end : columns_.start,
+                        "an outcome has no end, and only a failure has a start");
         if (row.start < row.end) return row;
         return fail(columns_.end,
                     fmt::format("ends at {} and begins at {}: an interval excludes its end",
@@ -106,7 +113,27 @@ private:
         return {Code::malformed_labels, std::move(why), cells_.line(column), cells_.column(column)};
     }
 
+    std::optional<Failure> read_outcome(LabelRow& row) const {
+        if (columns_.outcome == LabelColumns::kNone || cells_.empty(columns_.outcome))
+            return std::nullopt;
+        const std::string_view cell = cells_.cell(columns_.outcome);
+        for (const Outcome::Kind kind :
+             {Outcome::Kind::unknown, Outcome::Kind::success, Outcome::Kind::failure})
+            if (cell == name_of(kind)) row.outcome = kind;
+        if (row.outcome == Outcome::Kind::none)
+            return fail(columns_.outcome,
+                        fmt::format("found {}, expected success, failure or unknown",
+                                    data::in_quotes(cell)));
+        if (columns_.predicate == LabelColumns::kNone || cells_.empty(columns_.predicate))
+            return std::nullopt;
+        return fail(columns_.outcome,
+                    "an outcome stands in a row of its own, which names no predicate");
+    }
+
     std::optional<Failure> read_predicate(LabelRow& row) const {
+        if (row.outcome != Outcome::Kind::none) return std::nullopt;
+        if (columns_.predicate == LabelColumns::kNone)
+            return fail(columns_.outcome, "names no outcome; expected success, failure or unknown");
         std::string_view name = cells_.cell(columns_.predicate);
         if (name.starts_with('?')) row.label = Label::unknown;
         if (name.starts_with('!')) row.label = Label::no;
@@ -147,6 +174,11 @@ private:
 };
 
 }  // namespace
+
+std::string_view name_of(Outcome::Kind kind) {
+    constexpr std::string_view kNames[] = {"", "unknown", "success", "failure"};
+    return kNames[static_cast<std::size_t>(kind)];
+}
 
 diag::Result<LabelTable> parse_labels(std::unique_ptr<data::ByteSource> source) {
     data::CsvReader reader(std::move(source));

@@ -167,7 +167,7 @@ std::vector<std::string> words_of(Role role) {
         return {"alpha", "beta", "against", "within", "gamma", "lo", "hi"};
     if (role == Role::fitting_argument) return {"k", "r", "away"};
     if (role == Role::calibration)
-        return {"conformal", "risk", "class_conditional", "f1", "adaptive"};
+        return {"conformal", "normal", "risk", "class_conditional", "f1", "adaptive"};
     if (role == Role::fitting)
         return {"mean", "medoids", "kmeans", "pca", "whitened_pca", "discriminant", "logpzo"};
     return {};

@@ -64,6 +64,8 @@ function delayText(detection) {
 function monitorTable() {
   const isUnknown = anyUnknown(Object.values(figures?.monitors ?? {})
     .filter((of) => of.evaluable).map((of) => of.steps));
+  // By outcome alone nothing is known of single verdicts.
+  const isJudged = Object.values(figures?.monitors ?? {}).some((of) => of.evaluable || !of.outcomes);
   const body = element("tbody", {});
   for (const monitor of data.monitors) {
     const of = figures?.monitors[monitor.name];
@@ -71,10 +73,10 @@ function monitorTable() {
       element("th", {}, monitor.name),
       element("td", { class: "formula" }, ...unbroken(monitor.formula)));
     body.append(row);
-    if (!figures) continue;
+    if (!isJudged) continue;
     if (!of.evaluable) {
-      row.append(element("td", { colspan: isUnknown ? 9 : 7 },
-        `no labels for ${of.without_truth.join(", ")}: not evaluated`));
+      row.append(element("td", { colspan: isUnknown ? 9 : 7 }, of.outcomes ? "by outcome, below"
+        : `no labels for ${of.without_truth.join(", ")}: not evaluated`));
       continue;
     }
     row.append(figureCell(of, "episode_agreement"), figureCell(of, "step_agreement"),
@@ -83,13 +85,40 @@ function monitorTable() {
       element("td", { class: "number" }, delayText(of.detection)));
   }
   const heads = [["", ""], ["formula", ""]];
-  if (figures)
+  if (isJudged)
     heads.push(["episodes right", "share of the episodes whose last verdict is correct"],
       ["steps right", "share of the steps whose verdict is correct"],
       ["F1", "by episodes, with its 95 % interval"],
       ...blindHeads, ...(isUnknown ? unknownHeads : []),
       ["delay", "mean time from the true change to the monitor's"]);
   return element("table", {}, headRow(...heads), body);
+}
+
+const warningText = ({ warning_median_steps: steps }) => steps === null ? "–"
+  : data.spec.step_seconds > 0 ? `${Number((steps * data.spec.step_seconds).toPrecision(3))} s`
+  : counted(steps, "step");
+
+// The monitors as detectors of failures, above three rules that read no sample.
+function outcomeTable() {
+  const all = Object.entries(figures.monitors).filter(([, of]) => of.outcomes);
+  if (all.length === 0) return [];
+  const rates = ["false_alarm_rate", "detection_rate", "balanced_accuracy"];
+  const body = element("tbody", {});
+  for (const [name, { outcomes }] of all)
+    body.append(element("tr", { "data-outcomes": name }, element("th", {}, name),
+      ...rates.map((key) => figureCell(outcomes, key)), figureCell(outcomes, "auroc"),
+      element("td", { class: "number" }, warningText(outcomes))));
+  const { successes, failures, ...first } = all[0][1].outcomes;
+  for (const rule of ["always", "never", "duration"])
+    body.append(element("tr", { class: "blind" }, element("th", {}, rule),
+      ...rates.map((key) => element("td", { class: "number" }, rate(first[`${rule}_${key}`])))));
+  return [element("h2", {}, `${counted(failures, "failure")} among ` +
+    counted(successes + failures, "episode")), element("table", {}, headRow(["", ""],
+    ["false alarms", "share of the successes with an alarm, with its 95 % interval"],
+    ["detected", "share of the failures with an alarm"],
+    ["balanced accuracy", "mean of the share detected and of the share without a false alarm"],
+    ["AUROC", "how well the least upper bound separates failures from successes"],
+    ["warning", "median time from the alarm to the failure or the end"]), body)];
 }
 
 function provenanceTable() {
@@ -137,7 +166,9 @@ function showFigures() {
   document.getElementById("remarks").textContent = remarks();
   fill("monitor-figures", monitorTable());
   if (figures) {
-    fill("predicate-figures", element("h2", {}, "Predicates"), predicateTable());
+    const isLabelled = Object.keys(figures.predicates).length > 0;
+    fill("predicate-figures", ...outcomeTable(),
+      ...(isLabelled ? [element("h2", {}, "Predicates"), predicateTable()] : []));
   }
   fill("provenance", element("h2", {}, "Thresholds and guarantees"), provenanceTable());
 }
