@@ -180,6 +180,7 @@ OPTIONS: dict[str, tuple[Option, ...]] = {
         Option("--label-by", "", "one"),
         Option("--map", "NAME=OTHER", "several"),
         Option("--folds", "N", "one"),
+        Option("--by", "", "one"),
         Option("--by-episode", "", "flag"),
         Option("--variants", "KIND,...", "one"),
         Option("--json", "FILE", "one"),

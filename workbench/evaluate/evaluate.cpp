@@ -181,6 +181,7 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
     if (!labelled) return std::nullopt;
     Judgement result =
         judgement_of(first, subject(first, *labelled), request.episodes.size(), trials.size());
+    result.only_trained = request.only_trained;
     for (const episodes::Variant variant : request.variants)
         result.variants.push_back({variant, 0, 0});
     const bool may_have_outcomes =
@@ -199,7 +200,7 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
         if (has_seen)
             allowance = episodes::admit_unseen(own, trial.seen.value_or(thresholds::File{}),
                                                trial.fitted, request.allow_overlap, sink);
-        if (trials.size() > 1) {
+        if (trials.size() > 1 || request.only_trained > 0) {
             result.folds.push_back({trial.episodes.size(), calibrated_in(model)});
         } else {
             if (has_seen) result.reservations = model.reservations;

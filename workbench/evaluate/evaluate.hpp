@@ -42,6 +42,7 @@ struct Request {
     unsigned jobs = 0;          ///< threads; 0: as many as the machine has
     plan::Limits limits;        ///< limits on the ground truth's plan
     std::vector<episodes::Variant> variants;  ///< failures to make of the episodes
+    std::uint64_t only_trained = 0;           ///< episodes before these, of folds in order
     /// Called occasionally, by any thread, never by two at once.
     std::function<void(std::size_t done, std::size_t total)> progress;
     /// One shard of the episodes, or all shards; null: this process reads all episodes.
@@ -80,6 +81,7 @@ struct Judgement {
     std::vector<std::uint32_t> place;       ///< index in that order, per episode of the request
     std::vector<std::uint32_t> fold_of;     ///< per episode of the request
     std::vector<Fold> folds;                ///< empty without folds
+    std::uint64_t only_trained = 0;         ///< as in the request
     double step_seconds = 0;                ///< 0: the spec has no rate
     std::vector<std::string> reservations;  ///< allowances that were used, in words
     std::vector<VariantsMade> variants;     ///< per requested kind
@@ -175,6 +177,7 @@ struct Evaluation {
     std::vector<std::string> reservations;  ///< allowances that were used, in words
     double step_seconds = 0;                ///< 0: the spec has no rate
     std::vector<Judgement::Fold> folds;
+    std::uint64_t only_trained = 0;
     std::vector<VariantsMade> variants;
     std::vector<PredicateScore> predicates;
     std::vector<MonitorScore> monitors;

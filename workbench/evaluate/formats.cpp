@@ -260,6 +260,7 @@ void fill(Object& to, const Evaluation& evaluation) {
     to("reservations", evaluation.reservations);
     to("resamples", kResamples);
     const auto filled = [](Object& object, const auto& item) { fill(object, item); };
+    if (evaluation.only_trained > 0) to("only_trained_episodes", evaluation.only_trained);
     if (!evaluation.folds.empty()) to.nested("folds", evaluation.folds, filled);
     if (!evaluation.variants.empty())
         to.nested("variants", [&](Object& all) {

@@ -216,6 +216,7 @@ Evaluation summarise(const Judgement& judgement, unsigned jobs) {
     result.step_seconds = judgement.step_seconds;
     result.reservations = judgement.reservations;
     result.folds = judgement.folds;
+    result.only_trained = judgement.only_trained;
     result.variants = judgement.variants;
     episodes::Identities in_order;  // in the order of the request, unlike the folds
     if (!judgement.folds.empty())

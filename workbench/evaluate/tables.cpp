@@ -311,10 +311,15 @@ std::string folds_part(const Evaluation& evaluation) {
         for (const auto& [name, threshold] : fold.thresholds)
             rows.back().push_back(fmt::format("{:.7g}", threshold));
     }
-    return fmt::format(
-        "{} folds: every episode is judged by monitors that have not seen its fold; no guarantee "
-        "follows\n\n{}",
-        evaluation.folds.size(), aligned(rows));
+    const std::string how =
+        evaluation.only_trained > 0
+            ? fmt::format(
+                  "{} before these only train; every fold is judged by monitors that have "
+                  "seen what comes before it",
+                  diag::counted(evaluation.only_trained, "episode"))
+            : "every episode is judged by monitors that have not seen its fold";
+    return fmt::format("{}: {}; no guarantee follows\n\n{}",
+                       diag::counted(evaluation.folds.size(), "fold"), how, aligned(rows));
 }
 
 std::string by_episode_part(const Evaluation& evaluation) {

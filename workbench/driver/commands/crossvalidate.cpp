@@ -174,10 +174,32 @@ std::vector<std::size_t> episodes_of(const Folds& folds, std::uint32_t fold) {
     return episodes;
 }
 
+/// Deals the episodes into as many parts of their order, or fewer where a group takes several; a
+/// group is in the part of its first episode.
+std::vector<std::uint32_t> blocks_of(const episodes::Identities& recorded, std::uint32_t parts) {
+    const episodes::Groups groups(recorded);
+    constexpr std::uint32_t kNone = UINT32_MAX;
+    std::vector<std::uint32_t> of_group(groups.count(), kNone);
+    std::vector<std::uint32_t> result;
+    std::uint64_t last = 0;
+    std::uint32_t block = 0;
+    for (std::size_t e = 0; e < recorded.size(); ++e) {
+        std::uint32_t& of = of_group[groups.of(e)];
+        const std::uint64_t part = e * std::uint64_t{parts} / recorded.size();
+        if (of == kNone && part != last) {
+            ++block;
+            last = part;
+        }
+        if (of == kNone) of = block;
+        result.push_back(of);
+    }
+    return result;
+}
+
 }  // namespace
 
 std::optional<Folds> deal(const check::Model& model, const calibrate::Request& request,
-                          std::uint32_t folds, diag::Sink& sink) {
+                          std::uint32_t folds, bool in_order, diag::Sink& sink) {
     if (!episodes::can_be_dealt(request.episodes, request.reading, folds, model, sink))
         return std::nullopt;
     const auto labelled = episodes::labelled_in(model, request.episodes.front(), request.reading);
@@ -188,7 +210,14 @@ std::optional<Folds> deal(const check::Model& model, const calibrate::Request& r
         });
     if (!read) return std::nullopt;
     const auto recorded = episodes::recorded(*read);
-    Folds result{folds, episodes::folds_of(recorded, folds), episodes::by_content(recorded), {}};
+    Folds result{folds, {}, in_order, episodes::by_content(recorded), {}};
+    result.of = in_order ? blocks_of(recorded, folds) : episodes::folds_of(recorded, folds);
+    result.count = *std::max_element(result.of.begin(), result.of.end()) + 1;
+    if (result.count <= result.first()) {
+        sink.report(diag::Code::too_few_for_folds, model.monitors.front().span,
+                    "nearly all episodes are in the group of the first, which only trains");
+        return std::nullopt;
+    }
     // Entries in the file of fitted entries do not matter here.
     result.allowance = episodes::admit(model, recorded, {}, {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
@@ -212,7 +241,7 @@ std::optional<std::vector<Trained>> train(const source::File& file, const Reques
     const auto train_without = [&](std::uint32_t fold, bool shows_progress) {
         OfFold& of = of_folds[fold];
         for (const std::size_t e : folds.order)
-            if (folds.of[e] != fold) of.others.push_back(calibration.episodes[e]);
+            if (folds.trains(e, fold)) of.others.push_back(calibration.episodes[e]);
         calibrate::Request asked = calibration;
         const bool is_last = fold >= folds.count - last;
         asked.jobs = static_cast<unsigned>(threads / (is_last ? last : beside));
@@ -220,7 +249,7 @@ std::optional<std::vector<Trained>> train(const source::File& file, const Reques
         of.trained = Chain(file, request, asked, of.found).train(of.others);
     };
     const auto caller = std::this_thread::get_id();  // it alone shows its progress
-    std::atomic<std::uint32_t> next = 0;
+    std::atomic<std::uint32_t> next = folds.first();
     const auto failure = episodes::in_threads(calibration.jobs, folds.count, [&] {
         for (std::uint32_t fold = next++; fold < folds.count; fold = next++)
             train_without(fold, std::this_thread::get_id() == caller);
@@ -228,7 +257,7 @@ std::optional<std::vector<Trained>> train(const source::File& file, const Reques
     if (failure) std::rethrow_exception(failure);
     std::vector<Trained> all;
     Telling telling(sink);
-    for (std::uint32_t fold = 0; fold < folds.count; ++fold) {
+    for (std::uint32_t fold = folds.first(); fold < folds.count; ++fold) {
         OfFold& of = of_folds[fold];
         telling.tell(of.found, fmt::format("fold {} of {}: trained on {}", fold + 1, folds.count,
                                            diag::counted(of.others.size(), "other episode")));
@@ -249,17 +278,26 @@ std::optional<evaluate::Judgement> judge_in_folds(const source::File& file,
     calibration.jobs = asked.jobs;
     calibration.version = library::kVersion;
     calibration.progress = asked.progress;
-    if (!folds) folds = deal(model, calibration, request.folds, sink);
+    if (!folds) folds = deal(model, calibration, request.folds, request.in_order, sink);
     if (!folds) return std::nullopt;
     const auto trained = train(file, request, calibration, *folds, sink);
     if (!trained) return std::nullopt;
+    evaluate::Request judged = asked;
+    judged.episodes.clear();
     std::vector<evaluate::Trial> trials;
-    for (std::uint32_t fold = 0; fold < folds->count; ++fold) {
-        const Trained& others = (*trained)[fold];
-        trials.push_back(
-            {others.spec, others.thresholds, episodes_of(*folds, fold), others.fitted});
+    std::vector<std::size_t> place(folds->of.size());  // among those that are judged
+    for (std::size_t e = 0; e < folds->of.size(); ++e) {
+        place[e] = judged.episodes.size();
+        if (folds->of[e] >= folds->first()) judged.episodes.push_back(asked.episodes[e]);
     }
-    auto result = evaluate::judge(trials, asked, sink);
+    judged.only_trained = asked.episodes.size() - judged.episodes.size();
+    for (std::uint32_t fold = folds->first(); fold < folds->count; ++fold) {
+        const Trained& others = (*trained)[fold - folds->first()];
+        std::vector<std::size_t> own = episodes_of(*folds, fold);
+        for (std::size_t& e : own) e = place[e];
+        trials.push_back({others.spec, others.thresholds, std::move(own), others.fitted});
+    }
+    auto result = evaluate::judge(trials, judged, sink);
     if (result && folds->allowance.overlapping > 0)
         result->reservations.push_back(thresholds::text(folds->allowance));
     return result;

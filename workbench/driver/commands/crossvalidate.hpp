@@ -21,11 +21,19 @@ namespace etlc::driver {
 struct Folds {
     std::uint32_t count = 0;
     std::vector<std::uint32_t> of;    ///< the fold of each episode, from 0
+    bool in_order = false;            ///< a fold is judged by what the folds before it trained
     std::vector<std::size_t> order;   ///< the episodes in the order of their content
     thresholds::Allowance allowance;  ///< accepted overlaps between episodes
+
+    /// Returns the first fold that is judged.
+    std::uint32_t first() const { return in_order ? 1 : 0; }
+    /// Returns whether an episode trains the monitors that judge a fold.
+    bool trains(std::size_t episode, std::uint32_t fold) const {
+        return in_order ? of[episode] < fold : of[episode] != fold;
+    }
 };
 
-/// The result of training on all folds but one.
+/// The result of training on all folds but one, or on those before it.
 struct Trained {
     Compiled spec;
     fitted::File fitted;
@@ -35,9 +43,9 @@ struct Trained {
 /// Deals the episodes of the request into folds. Reports an error and returns nothing where
 /// episodes are copies of each other.
 std::optional<Folds> deal(const check::Model& model, const calibrate::Request& request,
-                          std::uint32_t folds, diag::Sink& sink);
+                          std::uint32_t folds, bool in_order, diag::Sink& sink);
 
-/// Trains the spec for each fold, in their order. Reports errors with their fold.
+/// Trains the spec for each fold that is judged, in their order. Reports errors with their fold.
 std::optional<std::vector<Trained>> train(const source::File& file, const Request& request,
                                           const calibrate::Request& calibration, const Folds& folds,
                                           diag::Sink& sink);

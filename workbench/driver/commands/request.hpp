@@ -46,6 +46,7 @@ struct Request : CompileOptions {
     std::string allow_overlap;      ///< why overlaps are accepted; empty: they are refused
     unsigned jobs = 0;              ///< threads; 0: as many as the machine has
     std::uint32_t folds = 0;        ///< 0: none
+    bool in_order = false;          ///< folds are judged by those before them
     ShardRequest shard;
     std::vector<std::string> words;       ///< the call itself, from the command on
     episodes::Sharing* merged = nullptr;  ///< the parts of all shards; null: episodes are read

@@ -373,6 +373,11 @@ std::vector<Option> make_own_options() {
          "etlc crossvalidate does"},
         {crossvalidate, "--folds", folds(),
          fmt::format("number of folds (default: {})", kUsualFolds)},
+        {crossvalidate, "--by",
+         choice<bool>({{"hash", false}, {"order", true}}, in(&Call::in_order)),
+         "how the episodes are dealt into folds; order: the first episodes only train, and all "
+         "later "
+         "folds are judged by what the earlier ones trained"},
         {kEvaluate, "--by-episode", flag(in(&Call::evaluate, &Call::Evaluate::by_episode)),
          "also print a row for each episode, the worst first; the CSV then has these rows"},
         {kEvaluate, "--variants", form("KIND,...", read_variants),
