@@ -266,6 +266,10 @@ def outcomes_agree(made):
         some, only = (json.loads(pathlib.Path(name).read_text())["predicates"]["near"]
                       for name in ("some.json", "kept.json"))
         assert some["scores"] == only["scores"] and len(some["scores"]) == 8, (some, only)
+    # What was left out may be judged.
+    rest = call("evaluate", "normal.etl", "--thresholds", "some.json", "--data", "outcomes/failure",
+                "--label-by", "folder", "--by-episode", "--json", "-")
+    assert {row["outcome"] for row in json.loads(rest)["by_episode"]} == {"failure"}, rest
     assert said[0]["failures"] == 4 and said[0]["successes"] == 8, said[0]
     # The table says when an episode failed; folders do not.
     times = [name for name in said[0] if name.startswith("warning")]

@@ -85,12 +85,17 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     episodes::Groups groups;
     std::vector<Evidence> evidence(predicates.size());
     std::uint64_t frames = 0;
+    const bool all_normal = with_labels(model, predicates).empty();
     const bool all_scored = episodes::over_shared_episodes<Demonstration>(
         request.episodes, request, sink,
         [&] {
             return std::make_unique<Scorer>(model, leaks, predicates, watched, request.reading);
         },
         [&](std::size_t, const Demonstration& demonstration) {
+            if (all_normal && !demonstration.outcome.is_demonstration()) {
+                for (Evidence& of : evidence) ++of.failures;
+                return;
+            }
             demonstrations.add(demonstration);
             const std::uint32_t group = groups.add(demonstration.group);
             frames += demonstration.frames;

@@ -348,6 +348,9 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     bool is_divided = true;
     std::uint64_t frames = 0;
     check::Labelling labelling;
+    const bool all_normal = std::all_of(monitors.begin(), monitors.end(), [&](Index m) {
+        return is_normal(*model.monitors[m].calibration);
+    });
     const bool all_scored = episodes::over_shared_episodes<MonitorEpisode>(
         request.episodes, request, sink,
         [&] {
@@ -355,6 +358,11 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
                                                    request.reading);
         },
         [&](std::size_t, MonitorEpisode episode) {
+            if (all_normal && !episode.outcome.is_demonstration()) {
+                for (Evidence& of : evidence) ++of.failures;
+                for (Times& of : times) ++of.failures;
+                return;
+            }
             recorded.add(episode);
             frames += episode.frames;
             ++labelling.episodes;

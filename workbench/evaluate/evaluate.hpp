@@ -161,7 +161,9 @@ struct EpisodeRow {
     std::string path;
     std::optional<std::uint32_t> fold;  ///< from 1, if there are folds
     std::uint64_t frames = 0;
+    episodes::Outcome::Kind outcome = episodes::Outcome::Kind::none;
     std::vector<std::string> wrong;  ///< monitors with a wrong verdict on the episode
+    std::vector<std::pair<std::string, std::uint64_t>> alarms;  ///< step of the first, by monitor
     Counts predictions;  ///< frames of all labelled predicates; without any, steps of all monitors
     std::optional<Error> first_error;
     std::vector<std::pair<std::string, Counts>> predicates;  ///< by frames

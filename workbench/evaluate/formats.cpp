@@ -236,6 +236,12 @@ void fill(Object& to, const EpisodeRow& e) {
     if (e.fold) to("fold", *e.fold);
     to("frames", e.frames);
     to("wrong_verdicts", e.wrong);
+    if (e.outcome != episodes::Outcome::Kind::none) {
+        to("outcome", std::string(name_of(e.outcome)));
+        to.nested("alarms", [&](Object& alarms) {
+            for (const auto& [monitor, step] : e.alarms) alarms(monitor, step);
+        });
+    }
     to("f1", of_predictions.f1);
     to("agreement", of_predictions.agreement);
     if (e.first_error)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "episodes/ranking/auroc.hpp"
 
@@ -38,12 +39,21 @@ Fraction sum(const std::vector<Fraction>& all) {
     return result;
 }
 
-Figure rate(const Bootstrap& bootstrap, const std::vector<Fraction>& each, bool by_group) {
-    if (by_group) return share(bootstrap, each);
+/// Returns the share with its interval. Resampled groups say nothing where all or none count.
+Figure rate(const Bootstrap& bootstrap, const std::vector<Judged>& episodes,
+            const std::vector<Fraction>& each, bool by_group) {
     const Fraction all = sum(each);
     if (all.whole == 0) return {};
     const auto part = static_cast<std::uint64_t>(all.part);
-    return {static_cast<double>(part) / static_cast<double>(all.whole), wilson(part, all.whole)};
+    if (by_group && part > 0 && part < all.whole) return share(bootstrap, each);
+    std::set<std::uint32_t> groups;
+    for (std::size_t e = 0; e < each.size(); ++e)
+        if (each[e].whole > 0) groups.insert(episodes[e].group);
+    return {static_cast<double>(part) / static_cast<double>(all.whole),
+            wilson(part == 0  ? 0
+                   : by_group ? groups.size()
+                              : part,
+                   by_group ? groups.size() : all.whole)};
 }
 
 template <class Alarm>
@@ -172,8 +182,8 @@ std::optional<OutcomeScore> outcome_score(const Bootstrap& bootstrap,
     if (result.successes + result.failures == 0) return std::nullopt;
     result.false_alarm_count = static_cast<std::uint64_t>(sum(of_successes).part);
     result.detected_count = static_cast<std::uint64_t>(sum(of_failures).part);
-    result.false_alarms = rate(bootstrap, of_successes, by_group);
-    result.detected = rate(bootstrap, of_failures, by_group);
+    result.false_alarms = rate(bootstrap, episodes, of_successes, by_group);
+    result.detected = rate(bootstrap, episodes, of_failures, by_group);
     result.balanced_accuracy = bootstrap.figure([&](const Weights& weights) {
         std::vector<Optional> values = episodes::shares(of_successes, weights);
         const std::vector<Optional> detected = episodes::shares(of_failures, weights);

@@ -18,6 +18,7 @@ struct Judged {
     episodes::Outcome outcome;
     std::uint64_t frames = 0;
     std::uint32_t fold = 0;
+    std::uint32_t group = 0;
     std::optional<std::uint64_t> alarm;  ///< the step of the first alarm
     float least_upper = 0;               ///< the least upper bound over all steps
 
@@ -60,8 +61,8 @@ struct OutcomeScore : DetectionRates<Figure> {
 
 /// Returns the figures over the episodes with an outcome; nothing if none succeeded or failed.
 /// Intervals of rates are Wilson's ("Probable inference, the law of succession, and statistical
-/// inference", 1927), those of the others from resamples; from resamples for all where episodes
-/// have groups.
+/// inference", 1927), those of the others from resamples. Where episodes have groups, those of
+/// rates are from resamples too, or Wilson's of as many groups where all or none have an alarm.
 std::optional<OutcomeScore> outcome_score(const Bootstrap& bootstrap,
                                           const std::vector<Judged>& episodes, bool by_group);
 

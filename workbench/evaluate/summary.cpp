@@ -125,8 +125,8 @@ MonitorScore monitor_score(const Bootstrap& bootstrap, const Judgement& judgemen
     judged.reserve(judgement.place.size());
     judgement.for_each(judgement.episodes, [&](std::size_t e, const episodes::Recorded& episode) {
         const MonitorEpisode said = monitor.episodes[judgement.place[e]];
-        judged.push_back(
-            {episode.outcome, episode.frames, judgement.fold_of[e], said.alarm, said.least_upper});
+        judged.push_back({episode.outcome, episode.frames, judgement.fold_of[e],
+                          judgement.groups.of(e), said.alarm, said.least_upper});
     });
     result.outcomes = outcome_score(bootstrap, judged, judgement.groups.are_named());
     if (!result.lacking.empty()) return result;
@@ -175,6 +175,7 @@ EpisodeRow row_of(const Judgement& judgement, std::size_t e) {
     row.path = episode.path;
     if (!judgement.folds.empty()) row.fold = judgement.fold_of[e] + 1;
     row.frames = episode.frames;
+    row.outcome = episode.outcome.kind;
     for (std::size_t i = 0; i < judgement.predicates.size(); ++i) {
         const PredicateEpisode predicate = judgement.predicates[i].episodes[place];
         const std::string& name = judgement.predicates[i].name;
@@ -192,6 +193,7 @@ EpisodeRow row_of(const Judgement& judgement, std::size_t e) {
         const bool by_outcome = !judgement.monitors[m].lacking.empty() &&
                                 outcome == (monitor.alarm ? Kind::success : Kind::failure);
         if (monitor.episode.wrong() > 0 || by_outcome) row.wrong.push_back(name);
+        if (monitor.alarm) row.alarms.emplace_back(name, *monitor.alarm);
         if (judgement.predicates.empty()) row.predictions.add(monitor.steps);
         if (!predicates_err) note(row.first_error, monitor.first_error, name, true);
     }

@@ -270,8 +270,10 @@ std::string outcomes_part(const Evaluation& evaluation) {
         rows.push_back({m.name, count(o.false_alarm_count, o.successes, o.false_alarms),
                         count(o.detected_count, o.failures, o.detected),
                         figure(o.balanced_accuracy), figure(o.auroc), warning,
-                        fmt::format("{} to {}", time(o.warning_lower_quartile.value),
-                                    time(o.warning_upper_quartile.value))});
+                        !median.value
+                            ? "-"
+                            : fmt::format("{} to {}", time(o.warning_lower_quartile.value),
+                                          time(o.warning_upper_quartile.value))});
     }
     if (rows.size() == 1) return "";
     for (const MonitorScore& m : evaluation.monitors) {

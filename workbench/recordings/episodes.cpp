@@ -40,9 +40,11 @@ bool is_labels_file(const std::string& path) {
 /// Lists the traces in a folder, without its subfolders.
 diag::Result<std::vector<std::string>> in_folder(const std::string& folder) {
     std::vector<std::string> files;
+    bool has_folders = false;
     std::error_code error;
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
         const std::string path = it->path().string();
+        has_folders |= is_directory(path);
         if (is_trace(path) && !is_directory(path) && !is_labels_file(path)) files.push_back(path);
     }
     if (error)
@@ -51,7 +53,12 @@ diag::Result<std::vector<std::string>> in_folder(const std::string& folder) {
     if (files.empty())
         return diag::Failure{
             Code::unreadable_trace,
-            with_dataset_meant(fmt::format("holds no episodes, {}", expected()), folder)};
+            with_dataset_meant(
+                fmt::format("holds no episodes, {}{}", expected(),
+                            has_folders ? fmt::format("; name its folders, such as '{}'",
+                                                      (fs::path(folder) / "*").string())
+                                        : ""),
+                folder)};
     return files;
 }
 
