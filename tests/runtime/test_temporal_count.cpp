@@ -81,6 +81,11 @@ TEST(TemporalCount, IsThatOfTheSortedWindow) {
     expect_counts<3, 61>();
     expect_counts<5, 100>();
     expect_counts<20, 40>();
+    // Longer ones than 64 n keep the n greatest.
+    expect_counts<1, 65>();
+    expect_counts<2, 129>();
+    expect_counts<120, 150>();
+    expect_counts<150, 150>();
 }
 
 TEST(TemporalCount, IsFalseWithFewerStepsThanItAsksFor) {

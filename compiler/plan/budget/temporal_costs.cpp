@@ -1,4 +1,6 @@
 // The costs of streams and readings, the temporal half of a step.
+#include <bit>
+
 #include "etlmon/hosted/footprint.hpp"
 #include "plan/budget/budget.hpp"
 #include "plan/program/value_type.hpp"
@@ -15,11 +17,16 @@ Cost values(std::uint64_t kept, std::uint64_t combined) {
             .operations = combined * kKeysPerValue};
 }
 
-/// Costs of a window that keeps the n greatest values: each combination merges two lists, on the
-/// stack.
+/// Costs of a window in order: both ends of a value are searched for and exchanged, which moves up
+/// to all others. One that keeps the n greatest values merges two lists, on the stack, for each
+/// combination.
 Cost count_cost(std::uint32_t n, std::uint32_t length, const ValueType& of) {
-    const std::uint64_t combined = std::uint64_t{n} * etlmon::window_operations(length);
     if (of.on_demand) return {.code_bytes = kCodePerRing, .operations = 4};
+    const std::uint64_t compared = 2 * std::bit_width(length) + 2;
+    if (etlmon::keeps_order(n, length))
+        return {.code_bytes = 2 * kCodePerWindow,
+                .operations = kKeysPerValue * (compared + length) + kPartingComparisons};
+    const std::uint64_t combined = std::uint64_t{n} * etlmon::window_operations(length);
     return {.stack_bytes = kListsOnStack * n * of.value,
             .code_bytes = 2 * kCodePerWindow,
             .operations = combined * kKeysPerValue + kPartingComparisons};

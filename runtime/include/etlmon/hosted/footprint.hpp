@@ -75,8 +75,9 @@ struct WindowBytes<Release<Truth>> : WindowBytes<Until<Truth>> {};
 /// Returns sizeof(AtLeast<V, n, length>), and of its dual.
 template <class V>
 constexpr uint32_t count_bytes(uint32_t n, uint32_t length) noexcept {
-  const uint32_t ends = 2 * window_elements(length) * n;
-  return storage_bytes(ends * static_cast<uint32_t>(sizeof(typename Lattice<V>::End))) +
+  constexpr auto kBytes = static_cast<uint32_t>(2 * sizeof(typename Lattice<V>::End));
+  if (keeps_order(n, length)) return delay_bytes<V>(length) + kBytes * length + 4;
+  return storage_bytes(window_elements(length) * n * kBytes) +
          static_cast<uint32_t>(sizeof(Parting));
 }
 

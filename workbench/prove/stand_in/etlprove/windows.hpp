@@ -163,12 +163,14 @@ void add_window(std::vector<WindowOfClass>& windows,
 }
 template <class Value, uint32_t n, uint32_t Length>
 void add_window(std::vector<WindowOfClass>& windows, const etlmon::AtLeast<Value, n, Length>&) {
-    if constexpr (!etlmon::detail::Same<Value, etlmon::Truth>::value)
+    if constexpr (!etlmon::detail::Same<Value, etlmon::Truth>::value &&
+                  !etlmon::keeps_order(n, Length))
         add<Nth<n>::template Of, Value, Length>(windows);
 }
 template <class Value, uint32_t n, uint32_t Length>
 void add_window(std::vector<WindowOfClass>& windows, const etlmon::AllBut<Value, n, Length>&) {
-    if constexpr (!etlmon::detail::Same<Value, etlmon::Truth>::value)
+    if constexpr (!etlmon::detail::Same<Value, etlmon::Truth>::value &&
+                  !etlmon::keeps_order(n, Length))
         add<Nth<n>::template Of, Value, Length>(windows);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Stands in for a part of the runtime's count.hpp when `etlc prove` compiles a class: the merge of
 // two sorted lists, which compares values, is replaced by mins and maxes with the same result, and
-// counters of truths by such lists. Windows of other values are the runtime's.
+// so are values in order and counters of truths. Windows of such lists are the runtime's.
 #pragma once
 
 #define AtLeast AtLeastOfRuntime
@@ -36,7 +36,7 @@ struct Nth {
 };
 
 template <class Few, uint32_t n, uint32_t Length>
-class AtLeast {
+class AtLeastOfFew {
 public:
     constexpr void reset() noexcept { window_.reset(); }
     template <class Value>
@@ -48,22 +48,33 @@ private:
     etlmon::Window<Few, Length> window_;
 };
 
-/// The nth greatest of the last truths.
-template <uint32_t n, uint32_t Length>
-class TrueAtLeast {
+/// The nth greatest of the last values.
+template <class Value, uint32_t n, uint32_t Length>
+class AtLeastOfAll {
+    using Lattice = etlmon::Lattice<Value>;
+
 public:
-    constexpr void reset() noexcept { last_.reset(etlmon::kNo); }
-    etlmon::Truth push(etlmon::Truth value) noexcept {
+    constexpr void reset() noexcept { last_.reset(Lattice::bottom()); }
+    Value push(Value value) noexcept {
         last_.push(value);
-        etlmon::Truth nth[n + 1];
-        for (uint32_t k = 0; k <= n; ++k) nth[k] = k == 0 ? etlmon::kYes : etlmon::kNo;
+        Value nth[n + 1];
+        for (uint32_t k = 0; k <= n; ++k) nth[k] = k == 0 ? Lattice::top() : Lattice::bottom();
         for (uint32_t i = 0; i < Length; ++i)
             for (uint32_t k = n; k > 0; --k) nth[k] = max_of(nth[k], min_of(nth[k - 1], last_[i]));
         return nth[n];
     }
 
 private:
-    Last<etlmon::Truth, Length> last_;
+    Last<Value, Length> last_;
+};
+
+template <class Value, uint32_t n, uint32_t Length, bool of_all>
+struct AtLeast {
+    using Type = AtLeastOfAll<Value, n, Length>;
+};
+template <class Value, uint32_t n, uint32_t Length>
+struct AtLeast<Value, n, Length, false> {
+    using Type = AtLeastOfFew<typename Nth<n>::template Of<Value>, n, Length>;
 };
 
 }  // namespace etlprove
@@ -72,10 +83,10 @@ namespace etlmon {
 inline namespace ETLMON_BUILD {
 
 template <class Value, uint32_t n, uint32_t Length>
-class AtLeast : public etlprove::AtLeast<typename etlprove::Nth<n>::template Of<Value>, n, Length> {
+class AtLeast
+    : public etlprove::AtLeast<Value, n, Length,
+                               detail::Same<Value, Truth>::value || keeps_order(n, Length)>::Type {
 };
-template <uint32_t n, uint32_t Length>
-class AtLeast<Truth, n, Length> : public etlprove::TrueAtLeast<n, Length> {};
 
 template <class Value, uint32_t n, uint32_t Length>
 class AllBut {
