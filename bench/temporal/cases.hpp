@@ -13,12 +13,15 @@
 #include "always_1000.hpp"
 #include "always_eventually_50.hpp"
 #include "always_until_100.hpp"
+#include "change_10.hpp"
+#include "count_50.hpp"
 #include "eventually_100000.hpp"
 #include "eventually_50.hpp"
 #include "eventually_always_1000.hpp"
 #include "invariant.hpp"
 #include "machine.hpp"
 #include "machine_small.hpp"
+#include "mean_50.hpp"
 #include "nested.hpp"
 #include "nested_bounds.hpp"
 #include "one.hpp"
@@ -97,6 +100,68 @@ struct Invariant {
         void reset() { worst = kInfinity; }
         void step(const Signals& s, std::size_t i, float* rho) {
             *rho = worst = smaller(worst, s.p[i]);
+        }
+    };
+    using Rescanning = NoRescanning;
+};
+
+/// Three over the past, whose state by hand is a ring; a bool is often true, as p is.
+struct Count50 {
+    static constexpr const char* kTitle = "count(b, 50 steps) < 5, sliding";
+    static constexpr uint32_t kWindow = 50;
+    BENCH_GENERATED(count_50, signals.p[i] > 0)
+    struct Plain {
+        bool begins[50];
+        bool before;
+        uint32_t at, count;
+        void reset() { *this = {}, before = true; }
+        void step(const Signals& s, std::size_t i, float* rho) {
+            const bool now = s.p[i] > 0;
+            count += (now && !before) - begins[at];
+            begins[at] = now && !before;
+            before = now;
+            at = at == 49 ? 0 : at + 1;
+            *rho = count < 5 ? kInfinity : -kInfinity;
+        }
+    };
+    using Rescanning = NoRescanning;
+};
+
+struct Mean50 {
+    static constexpr const char* kTitle = "mean(p, 50 steps) <= 1, sliding";
+    static constexpr uint32_t kWindow = 50;
+    BENCH_GENERATED(mean_50, BENCH_P)
+    struct Plain {
+        float last[50];
+        double sum;
+        uint32_t at, steps;
+        void reset() { *this = {}; }
+        void step(const Signals& s, std::size_t i, float* rho) {
+            sum += static_cast<double>(s.p[i]) - static_cast<double>(last[at]);
+            last[at] = s.p[i];
+            at = at == 49 ? 0 : at + 1;
+            if (steps < 50) ++steps;
+            *rho = steps < 50 ? -kInfinity : 1 - static_cast<float>(sum / 50);
+        }
+    };
+    using Rescanning = NoRescanning;
+};
+
+struct Change10 {
+    static constexpr const char* kTitle = "p - p@10 <= 1, sliding";
+    static constexpr uint32_t kWindow = 11;
+    BENCH_GENERATED(change_10, BENCH_P)
+    struct Plain {
+        PlainDelay<10> last;
+        uint32_t steps;
+        void reset() {
+            last.reset(0);
+            steps = 0;
+        }
+        void step(const Signals& s, std::size_t i, float* rho) {
+            const float before = last.push(s.p[i]);
+            *rho = steps < 10 ? -kInfinity : 1 - (s.p[i] - before);
+            if (steps < 10) ++steps;
         }
     };
     using Rescanning = NoRescanning;

@@ -7,11 +7,14 @@
 #include "cases.hpp"
 #include "chain_24_why.hpp"
 #include "chains.hpp"
+#include "change_10_why.hpp"
+#include "count_50_why.hpp"
 #include "eventually_50_why.hpp"
 #include "eventually_always_1000_why.hpp"
 #include "invariant_why.hpp"
 #include "machine_small_why.hpp"
 #include "machine_why.hpp"
+#include "mean_50_why.hpp"
 #include "nested_bounds_why.hpp"
 #include "nested_why.hpp"
 #include "one_why.hpp"
@@ -48,6 +51,9 @@ BENCH_EXPLAINED(always_1000)
 BENCH_EXPLAINED(until_100)
 BENCH_EXPLAINED(response_50)
 BENCH_EXPLAINED(sequence)
+BENCH_EXPLAINED(count_50)
+BENCH_EXPLAINED(mean_50)
+BENCH_EXPLAINED(change_10)
 BENCH_EXPLAINED(chain_24)
 BENCH_EXPLAINED(until_24)
 BENCH_EXPLAINED(responses)
