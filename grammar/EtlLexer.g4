@@ -119,6 +119,7 @@ MEAN        : 'mean' ;
 KTH         : 'kth' ;
 ABS         : 'abs' ;
 COUNT       : 'count' ;
+FRACTION    : 'fraction' ;
 SQRT        : 'sqrt' ;
 
 IDENTIFIER : [A-Za-z_] [A-Za-z_0-9]* ;

@@ -93,7 +93,7 @@ primary
     | op=(ABS | SQRT) LPAREN formula RPAREN                     # UnaryFunctionPrimary
     | op=(MIN | MAX | MEAN) LPAREN formula (COMMA formula unit?)+ RPAREN
                                                                 # VariadicFunctionPrimary
-    | COUNT LPAREN formula COMMA bound RPAREN                   # CountPrimary
+    | op=(COUNT | FRACTION) LPAREN formula COMMA bound RPAREN   # CountPrimary
     | name                                                      # NamePrimary
     | LPAREN formula RPAREN                                     # BracketPrimary
     ;
@@ -292,5 +292,5 @@ name
     | DURATIONS | UP | DOWN | NEAREST
     | HERTZ | MICROSECONDS | MILLISECONDS | SECONDS | STEPS
     | DISTANCE | MAHALANOBIS
-    | MIN | MAX | MEAN | KTH | COUNT | ABS | SQRT
+    | MIN | MAX | MEAN | KTH | COUNT | FRACTION | ABS | SQRT
     ;

@@ -158,7 +158,7 @@ struct Distance {
 struct Past {
     using Kind = PastKind;
     Kind kind = Kind::ago;
-    FormulaPtr formula;  ///< of a count
+    FormulaPtr formula;  ///< of a count or a fraction
     Bound time;
 };
 

@@ -73,11 +73,13 @@ constexpr std::string_view word(AggregationKind kind) {
 }
 
 /// Numbers that earlier steps have a part in: the value of an expression a while ago, its mean,
-/// least and greatest value within a time, and how often a formula began to hold within a time.
-enum class PastKind : std::uint8_t { ago, mean, min, max, count };
+/// least and greatest value within a time, how often a formula began to hold within a time, and at
+/// which share of its steps it held.
+enum class PastKind : std::uint8_t { ago, mean, min, max, count, fraction };
 
 constexpr std::string_view word(PastKind kind) {
-    constexpr std::array<std::string_view, 5> kWords{"@", "mean", "min", "max", "count"};
+    constexpr std::array<std::string_view, 6> kWords{"@",   "mean",  "min",
+                                                     "max", "count", "fraction"};
     return kWords[static_cast<std::size_t>(kind)];
 }
 

@@ -178,8 +178,8 @@ void append(std::string& text, const Formula& f, FormulaLevel needed) {
 /// "x@3s", "(x + y)@10", "mean(x, 2s)", "count(f, 60s)"
 std::string text_of_past(const Expr& e) {
     const std::string time = text_of(e.past->time);
-    if (e.past->kind == PastKind::count)
-        return fmt::format("count({}, {})", print(*e.past->formula), time);
+    if (e.past->formula != nullptr)
+        return fmt::format("{}({}, {})", word(e.past->kind), print(*e.past->formula), time);
     const std::string of = print(*e.arguments[0]);
     if (e.past->kind != PastKind::ago)
         return fmt::format("{}({}, {})", word(e.past->kind), of, time);

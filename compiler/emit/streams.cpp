@@ -266,7 +266,8 @@ std::string past_type(const check::Past& past) {
         case Past::mean: return fmt::format("etlmon::MovingMean<{}>", past.steps);
         case Past::min: return fmt::format("etlmon::MovingMin<{}>", past.steps);
         case Past::max: return fmt::format("etlmon::MovingMax<{}>", past.steps);
-        case Past::count: break;
+        case Past::count:
+        case Past::fraction: break;
     }
     return "";
 }

@@ -169,7 +169,8 @@ float PastState::push(float x) {
         case Kind::max:
             return etlmon::float_of_bits(
                 etlmon::extreme_push<Greatest>(keys_.data(), cursor_, count_, steps_, bits));
-        case Kind::count: break;
+        case Kind::count:
+        case Kind::fraction: break;
     }
     return etlmon::kMissing;
 }

@@ -146,7 +146,7 @@ NodeId Graph::unary(Op op, Interval interval, NodeId operand, Span span) {
     return intern({.op = op, .interval = interval, .operands = {operand}, .span = span});
 }
 
-NodeId Graph::count(Op op, std::uint32_t n, std::uint32_t high, NodeId operand, NodeId counted,
+NodeId Graph::count(Op op, std::uint32_t n, std::uint32_t high, NodeId operand, Counted counted,
                     Span span) {
     const bool max = takes_max(op);
     if (n == 1) return unary(max ? Op::once : Op::historically, {0, high}, operand, span);
@@ -254,11 +254,15 @@ check::Phrase phrase(const Graph& graph, NodeId id) {
         result.separator = " S" + interval_text(node.interval) + " !";
         result.closing = ")";
     }
-    if (counts(node.op))
-        return {.opening = "count(",
-                .operands = {{node.counted, false}},
-                .closing = fmt::format(", {} steps) {} {}", node.interval.high + 1,
-                                       takes_max(node.op) ? ">=" : "<", node.index)};
+    if (counts(node.op)) {
+        const std::uint32_t steps = node.interval.high + 1;
+        const bool each_step = node.counted.each_step;
+        return {.opening = each_step ? "fraction(" : "count(",
+                .operands = {{node.counted.formula, false}},
+                .closing = fmt::format(
+                    ", {} steps) {} {}", steps, takes_max(node.op) ? ">=" : "<",
+                    each_step ? check::share_text(node.index, steps) : std::to_string(node.index))};
+    }
     return result;
 }
 

@@ -55,6 +55,12 @@ struct Interval {
     Interval earlier() const { return {low == 0 ? 0 : low - 1, bounded() ? high - 1 : high}; }
 };
 
+/// The f of count(f, D), or of fraction(f, D), which counts each step at which it holds.
+struct Counted {
+    NodeId formula = check::kNone;
+    bool each_step = false;
+};
+
 struct Node {
     Op op = Op::constant_true;
     bool negated = false;  ///< predicate and flag only
@@ -62,11 +68,11 @@ struct Node {
     Index index = 0;
     Interval interval{};  ///< of temporal operators
     std::vector<NodeId> operands;
-    bool has_future = false;        ///< contains a future operator, or is one
-    bool unbounded_past = false;    ///< contains an unbounded past operator, or is one
-    std::uint32_t horizon = 0;      ///< steps of future that it needs; kUnbounded without bound
-    Span span{};                    ///< first mention in the spec; not part of its identity
-    NodeId counted = check::kNone;  ///< of a count, f in count(f, D); not part of its identity
+    bool has_future = false;      ///< contains a future operator, or is one
+    bool unbounded_past = false;  ///< contains an unbounded past operator, or is one
+    std::uint32_t horizon = 0;    ///< steps of future that it needs; kUnbounded without bound
+    Span span{};                  ///< first mention in the spec; not part of its identity
+    Counted counted{};            ///< of a count; not part of its identity
 
     bool same_as(const Node& other) const;
 };
@@ -86,8 +92,8 @@ public:
     NodeId combine(Op op, std::vector<NodeId> operands, Span span);
     NodeId unary(Op op, Interval interval, NodeId operand, Span span);
     /// Builds at_least or all_but: n of the positions of [0, high]. The operand says where
-    /// `counted` begins to hold or, for all_but, where it does not.
-    NodeId count(Op op, std::uint32_t n, std::uint32_t high, NodeId operand, NodeId counted,
+    /// what is counted begins to hold or, for all_but, where it does not.
+    NodeId count(Op op, std::uint32_t n, std::uint32_t high, NodeId operand, Counted counted,
                  Span span);
     NodeId binary(Op op, Interval interval, NodeId left, NodeId right, Span span);
     /// Builds a temporal operator without applying laws: F[0,0] f is f, but an obligation for the

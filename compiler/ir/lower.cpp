@@ -112,11 +112,12 @@ private:
         return graph_.combine(turn(Op::conjunction, negated), {all, old}, f.span);
     }
 
-    /// Lowers count(f, n) >= k as rise f at k or more of the last n positions.
+    /// Lowers count(f, n) >= k as rise f at k or more of the last n positions, and a fraction as f.
     NodeId count(const check::Formula& f, bool negated) {
-        const NodeId begins = edge(f, false, negated);
-        const NodeId counted = lower(f.operands[0], false);
-        return graph_.count(turn(Op::at_least, negated), f.index, f.high, begins, counted, f.span);
+        const NodeId operand =
+            f.each_step ? lower(f.operands[0], negated) : edge(f, false, negated);
+        const Counted counted{lower(f.operands[0], false), f.each_step};
+        return graph_.count(turn(Op::at_least, negated), f.index, f.high, operand, counted, f.span);
     }
 
     const check::Model& model_;

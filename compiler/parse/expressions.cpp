@@ -180,7 +180,9 @@ Builder::Expression Builder::variadic(Grammar::VariadicFunctionPrimaryContext& c
 
 Builder::Expression Builder::count(Grammar::CountPrimaryContext& context) const {
     Formula counted = formula(*context.formula());
-    Expression result = past({PastKind::count, std::move(counted.root), bound(*context.bound())},
+    const PastKind kind =
+        context.op->getType() == Grammar::COUNT ? PastKind::count : PastKind::fraction;
+    Expression result = past({kind, std::move(counted.root), bound(*context.bound())},
                              span_of(context), span_of(*context.start), {});
     result.height = counted.height + 1;
     if (result.height > kMaxHeight) too_high(span_of(*context.start));

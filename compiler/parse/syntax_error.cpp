@@ -134,12 +134,14 @@ private:
                 : fmt::format("{} is neither a distance nor a function", quoted(word, file_)),
             span_of(word)};
         std::vector<std::string> callables = distance_words();
-        callables.insert(callables.end(), {"abs", "sqrt", "min", "max", "mean", "count", "kth"});
+        callables.insert(callables.end(),
+                         {"abs", "sqrt", "min", "max", "mean", "count", "fraction", "kth"});
         if (word.getType() == EtlParser::IDENTIFIER && !add_native(result, Foreign::callable, word))
             add_nearest(result, word, callables);
         if (result.notes.empty())
-            result.note(fmt::format("distances: {}; functions: abs, sqrt, min, max, mean, count",
-                                    fmt::join(distance_forms(), ", ")));
+            result.note(
+                fmt::format("distances: {}; functions: abs, sqrt, min, max, mean, count, fraction",
+                            fmt::join(distance_forms(), ", ")));
         return result;
     }
 
@@ -358,7 +360,8 @@ std::string operand_words(const Stuck& stuck) {
             {EtlParser::ABS, EtlParser::SQRT, EtlParser::MIN, EtlParser::MAX, EtlParser::MEAN}));
     if (in_call || !stuck.expects(EtlParser::NOT)) return "an expression";
     const bool bracket = is(stuck.previous, {EtlParser::LPAREN});
-    if (bracket && is(stuck.before_previous, {EtlParser::COUNT})) return "a formula";
+    if (bracket && is(stuck.before_previous, {EtlParser::COUNT, EtlParser::FRACTION}))
+        return "a formula";
     if (bracket && stuck.declaration == EtlParser::PREDICATE) return "an expression";
     return bracket ? "a formula or an expression" : "a formula";
 }

@@ -79,10 +79,11 @@ public:
             (fits(at, written, middle) ? fitting : failing) = middle;
         }
         if (fitting == 0) return std::nullopt;
+        const std::uint32_t now = written.kind == Formula::Kind::count ? 1 : 0;  // this step
         return diag::Note{
             written.span,
             fmt::format("with {} in place of these {} it fits, and takes {}",
-                        diag::counted(fitting, "step"), written.high, in_words(cost_))};
+                        diag::counted(fitting + now, "step"), written.high + now, in_words(cost_))};
     }
 
 private:

@@ -167,7 +167,8 @@ ValueOf<Number> PrefixOf<Number>::past(const Node& node, std::uint64_t k) {
 }
 
 /// "`count(f, D) >= n`: the n-th greatest of rho(rise f, j, i) over the last positions; fewer than
-/// n positions: -inf"
+/// n positions: -inf" "`fraction(f, D) >= s`: of rho(f, j, i), with n the least number of steps
+/// that is s or more of those of D"
 template <class Number>
 ValueOf<Number> PrefixOf<Number>::often(const Node& node, std::uint64_t k) {
     const clauses::Past window(node, k);

@@ -101,13 +101,14 @@ private:
     }
 
     /// Adds `count(f, n) >= k`: `rise f` at k or more of the last n positions; `k = 1` is
-    /// `O[0, n - 1] rise f`.
+    /// `O[0, n - 1] rise f`. `fraction(f, n) >= k / n`: `f` at as many.
     Index count(const Formula& f, bool negated) {
-        const Index begins = edge(f.operands[0], false, negated);
+        const Index counted =
+            f.each_step ? build(f.operands[0], negated) : edge(f.operands[0], false, negated);
         return add({.kind = f.index == 1 ? NodeKind::once : NodeKind::at_least,
                     .negated = negated,
                     .index = f.index,
-                    .operands = {begins},
+                    .operands = {counted},
                     .high = f.high});
     }
 

@@ -224,13 +224,16 @@ void visit(check::Model&, check::Threshold& of, Changing& changing) {
 
 void visit(check::Model& model, check::Formula& of, Changing& changing) {
     changing.of("Formula");
-    auto& [kind, index, operands, low, high, time, span] = of;
+    auto& [kind, index, each_step, operands, low, high, time, span] = of;
     field(changing, "kind", kind);
     if (kind == check::Formula::Kind::predicate)
         field(changing, "index", Place{index, model.predicates.size()});
     if (kind == check::Formula::Kind::boolean_input)
         field(changing, "index", Place{index, model.inputs.size()});
-    if (kind == check::Formula::Kind::count) field(changing, "number", index);
+    if (kind == check::Formula::Kind::count) {
+        field(changing, "number", index);
+        field(changing, "each_step", each_step);
+    }
     field(changing, "operands", operands);
     field(changing, "low", low);
     field(changing, "high", high);

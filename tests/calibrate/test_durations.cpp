@@ -54,6 +54,7 @@ constexpr Timed kTimed[] = {
     {"F[0, 3] G[0, D] b || G !flag", 0, false},
     {"G (flag -> count(c, D) >= 1)", 1, true},
     {"a R[0, D] (b || c)", 0, false},
+    {"G[3, inf] fraction(O[0, D] b, 4) > 0.5", 0, true},
     {"G (O[0, D] flag -> !c)", 0, false},
 };
 

@@ -30,7 +30,7 @@ std::string past_formula(Random& random, int depth) {
         return random.word({"", fmt::format("[{}, {}]", low, low + random.between(0, 3)),
                             fmt::format("[{}, inf]", low)});
     };
-    switch (random.between(0, 11)) {
+    switch (random.between(0, 12)) {
         case 0: return operand() + " && " + operand();
         case 1: return operand() + " || " + operand();
         case 2: return operand() + " -> " + operand();
@@ -43,6 +43,9 @@ std::string past_formula(Random& random, int depth) {
         case 10:
             return fmt::format("count({}, {} steps) >= {}", operand(), random.between(5, 7),
                                random.between(1, 3));
+        case 11:
+            return fmt::format("fraction({}, {} steps) >= 0.{}", operand(), random.between(1, 5),
+                               random.between(1, 9));
         case 9: return fmt::format("held[{}] ", random.between(0, 3)) + operand();
         default: return operand() + " S" + interval() + " " + operand();
     }

@@ -118,6 +118,7 @@ predicate alike = min l2([z, v@31], pairs) <= 2;
 predicate steady = max(x, 9 steps) - min(x - x@5, 2 steps) + mean(max(x, 3 steps), 20 steps) <= 1;
 monitor seen = F (still && apart && along);
 monitor often = G (count(still, 30 steps) < 4 || count(apart || along, 7 steps) >= 2);
+monitor steadily = F fraction(still, 30 steps) > 0.9;
 sliding monitor soon = F[0, 3] (alike || steady);
 END
 cp "$source/tests/spec/ok/adaptive.etl" "$source/tests/spec/ok/adaptive.thresholds.json" .

@@ -49,6 +49,7 @@ PHRASES = {
     "mean": "predicate p = mean l2(z, t) < 1;", "kth": "predicate p = kth(2) l2(z, t) < 1;",
     "abs": "predicate p = abs(x) < 1;", "sqrt": "predicate p = sqrt(x) < 1;",
     "count": "let p = count(a && b, 2 s) < 1;",
+    "fraction": "let p = fraction(a && b, 2 s) < 1;",
 }
 
 

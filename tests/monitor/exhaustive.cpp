@@ -133,10 +133,13 @@ const Formulas kSlidingNestings = {
 
 /// Some with a window that is longer than the trace, and all with more than one answer.
 const Formulas kCounts = {
-    "count(p, 2) >= 1",     "count(p, 3) >= 2",         "count(p, 5) >= 2",
-    "count(p, 9) >= 3",     "count(p, 4) < 2",          "count(p, 3) == 1",
-    "count(p, 5) != 1",     "!(count(q, 3) > 1)",       "count(p && !q, 5 steps) >= 2",
-    "count(p S q, 3) >= 2", "2 <= count(O[0, 1] p, 4)",
+    "count(p, 2) >= 1",       "count(p, 3) >= 2",         "count(p, 5) >= 2",
+    "count(p, 9) >= 3",       "count(p, 4) < 2",          "count(p, 3) == 1",
+    "count(p, 5) != 1",       "!(count(q, 3) > 1)",       "count(p && !q, 5 steps) >= 2",
+    "count(p S q, 3) >= 2",   "2 <= count(O[0, 1] p, 4)", "fraction(p, 1) >= 0.5",
+    "fraction(p, 3) >= 0.5",  "fraction(p, 4) > 0.5",     "fraction(p, 3) >= 1",
+    "fraction(p, 9) < 0.3",   "0.2 < fraction(p, 5)",     "fraction(p && !q, 5 steps) <= 0.4",
+    "fraction(p S q, 3) > 0",
 };
 const Formulas kCountsAhead = {
     "F count(p, 3) >= 2",
@@ -146,6 +149,11 @@ const Formulas kCountsAhead = {
     "G (count(p, 4) < 2 || F[0, 2] q)",
     "F (p && F count(q, 3) >= 2)",
     "G[1, 3] count(p <-> q, 3) < 2",
+    "F fraction(p, 3) >= 0.6",
+    "G fraction(p, 4) < 0.7",
+    "G[2, inf] fraction(p, 3) > 0.5",
+    "q U fraction(p, 2) >= 1",
+    "G (fraction(p <-> q, 4) <= 0.5 || F[0, 2] q)",
 };
 
 /// How a chain continues after `{0}`, its operand, with `{1}`, its rest; the last one is its end.
@@ -278,7 +286,8 @@ std::string exhaustive_sliding_spec(const std::string& name) {
     append(formulas, kOverConstants);
     append(formulas, kSlidingNestings);
     append(formulas, kCounts);
-    append(formulas, {"count(X p, 3) >= 2", "count(F[0, 2] p, 4) < 2"});
+    append(formulas,
+           {"count(X p, 3) >= 2", "count(F[0, 2] p, 4) < 2", "fraction(G[0, 1] p, 3) > 0.5"});
     return spec(name, "sliding monitor", formulas);
 }
 

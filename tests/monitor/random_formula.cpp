@@ -205,9 +205,20 @@ RandomFormula::Piece RandomFormula::past(int depth, Allowed allowed) {
     }
 }
 
-/// A comparison of a count that is neither always true nor always false.
+/// A comparison of a count or a fraction that is neither always true nor always false.
 RandomFormula::Piece RandomFormula::count(const Piece& operand) {
     const int steps = random_.between(1, 8);
+    if (random_.chance(0.5)) {
+        const std::string fraction = fmt::format("fraction({}, {} steps)", operand.text, steps);
+        const std::string share = fmt::format("{}.{}", 0, random_.between(1, 99));
+        switch (random_.between(0, 4)) {
+            case 0: return {fmt::format("{} > {}", fraction, share), atom};
+            case 1: return {fmt::format("{} < {}", fraction, share), atom};
+            case 2: return {fmt::format("{} >= {}", share, fraction), atom};
+            case 3: return {fmt::format("{} >= 1", fraction), atom};
+            default: return {fmt::format("{} >= {}", fraction, share), atom};
+        }
+    }
     const int most = (steps + 1) / 2;
     const std::string counted = fmt::format("count({}, {} steps)", operand.text, steps);
     const int n = random_.between(1, most);

@@ -161,6 +161,8 @@ TEST(Lengths, RightClassesAreProvedForAll) {
          {"monitor m = G (p -> F[0, 3] (q && F[0, 2] on));\nmonitor n = p U[2, 5] q;\n",
           "sliding monitor m = F[2, 6] p;\nsliding monitor n = p S[1, 4] q || O[2, 3] G[0, 2] "
           "on;\n",
+          "monitor m = F (fraction(p, 4 steps) > 0.5 && on);\n"
+          "monitor n = G fraction(q, 3 steps) < 0.6;\n",
           "monitor m = F[1, 3] (p S q) && G count(p, 6 steps) < 3;\nmonitor n = on U[3, inf] "
           "p;\n"}) {
         const auto all = compiled(spec + monitors, check::Values::robustness);

@@ -66,6 +66,38 @@ TEST(Canonical, Counts) {
     EXPECT_EQ(canonical("2 != count(p, 9)"), "!(count(p, 9 steps) >= 2 && count(p, 9 steps) < 3)");
 }
 
+/// The least number of steps is that of the exact share: 0.8 of 50 is 40. The text is a share that
+/// asks for as many.
+TEST(Canonical, Fractions) {
+    EXPECT_EQ(canonical("F fraction((p && q), 50 steps) >= 0.8"),
+              "F fraction(p && q, 50 steps) >= 0.8");
+    EXPECT_EQ(canonical("fraction(p, 50) > 0.8"), "fraction(p, 50 steps) >= 0.82");
+    EXPECT_EQ(canonical("fraction(p, 50) >= 0.81"), "fraction(p, 50 steps) >= 0.82");
+    EXPECT_EQ(canonical("fraction(p, 50) > 0.79"), "fraction(p, 50 steps) >= 0.8");
+    EXPECT_EQ(canonical("!fraction(p, 9) <= 0.5"), "!fraction(p, 9 steps) < 0.5");
+    EXPECT_EQ(canonical("0.5 > fraction(p, 8)"), "fraction(p, 8 steps) < 0.5");
+    EXPECT_EQ(canonical("fraction(p, 8) <= 0.5"), "fraction(p, 8 steps) < 0.6");
+    EXPECT_EQ(canonical("fraction(p, 7) >= 1"), "fraction(p, 7 steps) >= 1");
+    EXPECT_EQ(canonical("1.00 <= fraction(p, 7)"), "fraction(p, 7 steps) >= 1");
+    EXPECT_EQ(canonical("fraction(p, 7) > 0"), "fraction(p, 7 steps) >= 0.1");
+    EXPECT_EQ(canonical("fraction(p, 7) >= 1e-30"), "fraction(p, 7 steps) >= 0.1");
+    EXPECT_EQ(canonical("fraction(p, 16777216) >= 0.99999999999999999999"),
+              "fraction(p, 16777216 steps) >= 1");
+    EXPECT_EQ(canonical("fraction(p, 16777216) > 0.9999999"),
+              "fraction(p, 16777216 steps) >= 0.9999999");
+    // Their texts mean the same, whatever the number of steps.
+    for (std::uint32_t n = 1; n < 60; ++n)
+        for (std::uint32_t k = 1; k <= n; ++k) {
+            const std::string text =
+                fmt::format("fraction(p, {} steps) >= {}", n, check::share_text(k, n));
+            const Checked checked = monitor(text);
+            ASSERT_TRUE(checked.model) << text;
+            const check::Formula& top = checked.model->formulas[checked.model->monitors[0].formula];
+            EXPECT_EQ(top.index, k) << text;
+            EXPECT_EQ(canonical(text), text);
+        }
+}
+
 TEST(Canonical, Expressions) {
     const Checked checked(
         "spec t; input x, y : f32; input z : f32[2]; target t1 = [[1, 2]]; target t2 = [[1, 2], "
@@ -276,11 +308,13 @@ TEST(Constancy, FindsConstantsThatNoInputEnters) {
     for (const char* formula :
          {"true", "p || F true", "G true", "false U p && false", "Y p", "H[1, 3] p", "p R true",
           "p W true", "true W p", "!(O[1, 1] p)", "p S[1, 2] q", "(false S[1, 2] p) && q",
-          "true <-> G true", "p -> true", "rise p", "F fall true", "held[1] p", "count(p, 3) >= 1"})
+          "true <-> G true", "p -> true", "rise p", "F fall true", "held[1] p", "count(p, 3) >= 1",
+          "fraction(p, 3) > 0.5"})
         EXPECT_NE(monitor(formula).codes().find("W0503"), std::string::npos) << formula;
     for (const char* formula :
          {"F[1, inf] true", "X true", "p", "G (O[1, 1] true)", "F p", "p <-> q", "F held[1] true",
-          "held[0] p", "F rise p", "F count(p, 3) >= 1"})
+          "held[0] p", "F rise p", "F count(p, 3) >= 1", "fraction(p, 3) > 0",
+          "F fraction(p, 3) > 0.5"})
         EXPECT_EQ(monitor(formula).codes().find("W0503"), std::string::npos) << formula;
 }
 

@@ -127,12 +127,14 @@ TEST(Reference, PastOperators) {
     const List p{1, -2, 3, 0};
     const List q{2, -1, -4, 1};
     const auto at_each = [&](Kind kind, bool binary, std::uint32_t low = 0,
-                             std::uint32_t high = check::kUnbounded, bool negated = false) {
+                             std::uint32_t high = check::kUnbounded, bool negated = false,
+                             bool each_step = false) {
         Spec spec;
         const Index a = spec.sample();
         const Index b = spec.sample();
         Index formula = spec.f(kind, binary ? std::vector{a, b} : std::vector{a}, low, high);
         if (kind == Kind::count) spec.model.formulas[formula].index = 2;
+        spec.model.formulas[formula].each_step = each_step;
         if (negated) formula = spec.f(Kind::negation, {formula});
         spec.monitor(formula, true);
         return robustness(evaluate(spec.model, scalars(p, q)));
@@ -148,6 +150,9 @@ TEST(Reference, PastOperators) {
     // The second best of the rises -inf, -2, 2, -3 at the last three steps.
     EXPECT_EQ(at_each(Kind::count, false, 0, 2), (List{-kInf, -kInf, -2, -2}));
     EXPECT_EQ(at_each(Kind::count, false, 0, 2, true), (List{kInf, kInf, 2, 2}));
+    // The second best of 1, -2, 3, 0 at the last three steps.
+    EXPECT_EQ(at_each(Kind::count, false, 0, 2, false, true), (List{-kInf, -2, 1, 0}));
+    EXPECT_EQ(at_each(Kind::count, false, 0, 2, true, true), (List{kInf, 2, -1, 0}));
     EXPECT_EQ(at_each(Kind::held, false, 0, 2), (List{-kInf, -kInf, -2, -2}));
     EXPECT_EQ(at_each(Kind::held, false, 0, 0), (List{1, -2, 3, 0}));
     EXPECT_EQ(at_each(Kind::held, false, 0, 1, true), (List{kInf, 2, 2, 0}));

@@ -22,8 +22,8 @@ Polarities polarities(const Formula& formula, std::size_t n) {
     switch (formula.kind) {
         case Kind::negation: return {false, true};
         case Kind::implication: return {n == 1, n == 0};
+        case Kind::count: return {true, !formula.each_step};
         case Kind::equivalence:
-        case Kind::count:
         case Kind::rise:
         case Kind::fall: return {true, true};
         default: return {};

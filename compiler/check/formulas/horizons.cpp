@@ -158,6 +158,12 @@ Decidable held(Decidable f, std::uint32_t n) {
     return {std::max<std::uint64_t>(all, n), n == 0 ? f.violated : 0};
 }
 
+/// f at n of the positions of [0, high], which fails where there are fewer.
+Decidable at_least(Decidable f, std::uint32_t n, std::uint32_t high) {
+    if (n == 1) return Windows{Lasts::so_far, 0, high}.once(f);
+    return {later(f.satisfied, n - 1), 0};
+}
+
 Decidable of_predicate(const Model& model, const Predicate& predicate) {
     const std::uint64_t from = past_needed(model, predicate);
     return {predicate.missing == true ? 0 : from, predicate.missing == false ? 0 : from};
@@ -198,7 +204,9 @@ Decidable decidable(const Formula& formula, const std::vector<Decidable>& f, Las
         case Kind::rise: return rise(f[0]);
         case Kind::fall: return rise(negation(f[0]));
         case Kind::held: return held(f[0], formula.high);
-        case Kind::count: return rise(f[0]);  // once or more
+        case Kind::count:
+            return formula.each_step ? at_least(f[0], formula.index, formula.high)
+                                     : rise(f[0]);  // once or more
     }
     return {};
 }
@@ -327,6 +335,8 @@ Constancy of(const Formula& formula, const Operands& operands) {
         case Kind::eventually:
         case Kind::once: return some(operands[0], present);
         case Kind::count:
+            if (formula.each_step) return some(operands[0], formula.index == 1);
+            return operands[0] == varies ? varies : never;
         case Kind::rise:
         case Kind::fall: return operands[0] == varies ? varies : never;
         case Kind::held: return operands[0] == never || formula.high == 0 ? operands[0] : varies;
@@ -342,7 +352,8 @@ Constancy of(const Formula& formula, const Operands& operands) {
 
 /// At position 0 past operators see only that position, or nothing.
 Constancy past_at_start(const Formula& formula, const Operands& operands) {
-    if (formula.kind == Kind::count) return never;
+    if (formula.kind == Kind::count)
+        return formula.each_step && formula.index == 1 ? operands[0] : never;
     if (formula.kind == Kind::held) return formula.high == 0 ? operands[0] : never;
     if (formula.low == 0) return operands.back();
     return formula.kind == Kind::historically ? always : never;

@@ -287,15 +287,26 @@ void check_fitted_frames(Context& c) {
     }
 }
 
-// Checks comparisons of a count, count(f, D) >= n: how often a formula began to hold within a time.
+// Checks comparisons of a count, count(f, D) >= n: how often a formula began to hold within a time;
+// and of a fraction, fraction(f, D) >= s: at which share of the steps of a time it held.
 
 namespace {
 
 using Kind = Formula::Kind;
 
-/// A formula begins to hold at most at every second step.
-std::uint32_t most_in(std::uint32_t steps) {
-    return steps / 2 + steps % 2;
+/// Returns a share of n steps, rounded down, or up. The share is at most 1.
+std::uint32_t steps_of(const Decimal& share, std::uint32_t n, bool up) {
+    std::uint64_t digits = 0;  // those of the product before the digit in turn
+    bool is_whole = true;
+    const auto move = [&] {
+        is_whole = is_whole && digits % 10 == 0;
+        digits /= 10;
+    };
+    for (std::size_t i = share.digits.size(); i-- > 0; move())
+        digits += std::uint64_t{n} * static_cast<std::uint64_t>(share.digits[i] - '0');
+    for (std::int64_t i = share.exponent; i < 0 && digits > 0; ++i) move();
+    if (share.exponent > 0) return n;
+    return static_cast<std::uint32_t>(digits) + (up && !is_whole ? 1 : 0);
 }
 
 class CountCheck {
@@ -305,15 +316,18 @@ public:
           written_(written),
           is_on_left_(is_count(*written.left)),
           count_(is_on_left_ ? *written.left : *written.right),
+          is_share_(count_.past->kind == ast::PastKind::fraction),
           other_(is_on_left_ ? *written.right : *written.left) {}
 
     Index run() {
         const auto steps = window();
         counted_ = check_formula(c_, *count_.past->formula);
-        const auto number = steps ? whole_number(most_in(*steps)) : std::nullopt;
-        if (!steps || !number || counted_ == kNone) return kNone;
+        if (!steps) return kNone;
+        // A formula begins to hold at most at every second step.
+        most_ = is_share_ ? *steps : *steps / 2 + *steps % 2;
+        const auto number = is_share_ ? share_of(*steps) : whole_number(most_);
+        if (!number || counted_ == kNone) return kNone;
         steps_ = *steps;
-        most_ = most_in(*steps);
         if (count_.past->time.calibrated && !add_time(*number)) return kNone;
         return compared(*number);
     }
@@ -321,16 +335,21 @@ public:
 private:
     std::optional<std::uint32_t> window() {
         const ast::Bound& time = count_.past->time;
+        if (time.calibrated && is_share_)
+            return c_.no_value(Code::calibration_not_available, time.span,
+                               "a longer time of a fraction also asks for more steps, so it makes "
+                               "the monitor neither truer nor falser throughout; expected a time");
         if (time.calibrated) return kMaxPast;
-        if (!is_finite_duration(c_, time, "a count is over a finite time")) return std::nullopt;
+        const std::string why = fmt::format("a {} is over a finite time", word());
+        if (!is_finite_duration(c_, time, why)) return std::nullopt;
         const auto steps = bound_steps(c_, time);
         if (!steps) return std::nullopt;
         if (*steps == 0)
             return c_.no_value(Code::past_form, time.span,
-                               "a count over no step; expected at least one");
+                               fmt::format("a {} over no step; expected at least one", word()));
         if (*steps <= kMaxPast) return steps;
         return c_.no_value(Code::bound_too_large, time.span,
-                           fmt::format("{} steps; a count looks back {} steps at most", *steps,
+                           fmt::format("{} steps; a {} looks back {} steps at most", *steps, word(),
                                        std::uint32_t{kMaxPast}));
     }
 
@@ -358,6 +377,24 @@ private:
                                        c_.file.text(count_.past->time.span), other_.text));
     }
 
+    /// Returns the number of steps that the share on the other side is of n.
+    std::optional<std::uint32_t> share_of(std::uint32_t n) {
+        const bool is_number = other_.kind == ast::ExprKind::number;
+        const Decimal share = Decimal::parse(is_number ? other_.text : "2");
+        if (share > Decimal::parse("1"))
+            return c_.no_value(Code::past_form, other_.span,
+                               "a fraction compares with a number from 0 to 1, as in "
+                               "'fraction(f, 5 s) >= 0.8'");
+        const Comparison by = comparison();
+        if (by == Comparison::equal || by == Comparison::not_equal)
+            return c_.no_value(Code::past_form, written_.span,
+                               "a fraction compares by >=, >, <= or <: whether it is equal depends "
+                               "on how many steps there are");
+        return steps_of(share, n, by == Comparison::greater_equal || by == Comparison::less);
+    }
+
+    std::string_view word() const { return ast::word(count_.past->kind); }
+
     Comparison comparison() const {
         return is_on_left_ ? written_.comparison : mirrored(written_.comparison);
     }
@@ -376,13 +413,14 @@ private:
 
     Index at_least(std::uint32_t number) {
         if (number == 0 || number > most_) {
-            c_.report(Code::past_form, written_.span,
-                      fmt::format("a count within {} is a number from 0 to {}, so this comparison "
-                                  "has the same answer at every step",
-                                  c_.file.text(count_.past->time.span), most_));
+            c_.report(
+                Code::past_form, written_.span,
+                fmt::format("a {} within {} is a number from 0 to {}, so this comparison "
+                            "has the same answer at every step",
+                            word(), c_.file.text(count_.past->time.span), is_share_ ? 1 : most_));
             return kNone;
         }
-        if (number > kMaxCount) {
+        if (!is_share_ && number > kMaxCount) {
             c_.report(
                 Code::bound_too_large, other_.span,
                 fmt::format("a count compares with at most {}; found {}", kMaxCount, other_.text));
@@ -390,6 +428,7 @@ private:
         }
         return add({.kind = Kind::count,
                     .index = number,
+                    .each_step = is_share_,
                     .operands = {counted_},
                     .high = steps_ - 1,
                     .time = time_});
@@ -419,6 +458,7 @@ private:
     const ast::Formula& written_;
     bool is_on_left_;
     const ast::Expr& count_;
+    bool is_share_;
     const ast::Expr& other_;
     Index counted_ = kNone;
     std::uint32_t steps_ = 0;
@@ -429,7 +469,7 @@ private:
 }  // namespace
 
 bool is_count(const ast::Expr& expression) {
-    return expression.kind == ast::ExprKind::past && expression.past->kind == ast::PastKind::count;
+    return expression.kind == ast::ExprKind::past && expression.past->formula != nullptr;
 }
 
 Index check_count(Context& context, const ast::Formula& comparison) {

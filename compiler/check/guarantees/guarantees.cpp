@@ -26,9 +26,10 @@ struct Polarity {
 };
 
 /// p <-> q, edges of p and their number contain both p and !p.
-bool has_both_polarities(Kind kind) {
+bool has_both_polarities(const Formula& formula) {
+    const Kind kind = formula.kind;
     return kind == Kind::equivalence || kind == Kind::rise || kind == Kind::fall ||
-           kind == Kind::count;
+           (kind == Kind::count && !formula.each_step);
 }
 
 /// Returns the operands with their polarity in the negation normal form; an operand with both
@@ -40,7 +41,7 @@ std::vector<Literal> operands_of(const Model& model, Literal literal) {
         const bool flips =
             formula.kind == Kind::negation || (formula.kind == Kind::implication && i == 0);
         result.push_back({formula.operands[i], literal.negated != flips});
-        if (has_both_polarities(formula.kind))
+        if (has_both_polarities(formula))
             result.push_back({formula.operands[i], literal.negated == flips});
     }
     return result;

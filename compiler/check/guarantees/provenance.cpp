@@ -224,7 +224,8 @@ private:
     std::string text_of(Index root, Atoms atoms) {
         const bool names_lets = !lets_are_written_out(model_, root);
         for (const Index i : parts_of(model_, root)) {
-            const auto& [kind, index, operands, low, high, time, span] = model_.formulas[i];
+            const auto& [kind, index, each_step, operands, low, high, time, span] =
+                model_.formulas[i];
             if (kind == Formula::Kind::boolean_input) add_input(index);
             if (kind == Formula::Kind::predicate)
                 atoms == Atoms::compared ? add_predicate(index) : add_truth(index);

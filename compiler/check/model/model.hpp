@@ -404,10 +404,12 @@ struct Formula {
 #define OPERATOR(name, ...) name,
 #include "ast/operators.def"
 #undef OPERATOR
-        count,  ///< count(f, D) >= n: rise f at n or more of the positions of [0, high]
+        count,  ///< count(f, D) >= n: rise f at n or more of the positions of [0, high]; also a
+                ///< fraction(f, D), then f at `each_step`
     };
     Kind kind = Kind::constant_true;
     Index index = 0;              ///< of the predicate or boolean input; n of a count
+    bool each_step = false;       ///< it counts where its operand holds, not where it begins to
     std::vector<Index> operands;  ///< two or more for conjunction and disjunction
     std::uint32_t low = 0;        ///< interval in steps; [1, 1] for next, previous, rise, fall
     std::uint32_t high = kUnbounded;
@@ -432,7 +434,8 @@ constexpr bool looks_back(Formula::Kind kind) {
 /// Returns how many steps back the operator reads its operands; kUnbounded for no limit.
 constexpr std::uint32_t steps_back(const Formula& formula) {
     if (!looks_back(formula.kind)) return 0;
-    return formula.kind == Formula::Kind::count ? formula.high + 1 : formula.high;
+    const bool reads_before = formula.kind == Formula::Kind::count && !formula.each_step;
+    return formula.high + (reads_before ? 1 : 0);
 }
 
 /// Whether the interval is an implicit [1, 1]: X, Y, rise and fall.
@@ -594,6 +597,8 @@ void set_duration(Model& model, const Monitor& monitor, std::uint32_t steps,
 /// are written out unless the formula has more than kMaxPrinted operators and atoms; then names of
 /// lets are used below the top.
 std::string print(const Model& model, Index formula);
+/// Returns the shortest decimal that k of n steps are the least number for: "0.8" for 40 of 50.
+std::string share_text(std::uint32_t k, std::uint32_t n);
 inline constexpr std::uint64_t kMaxPrinted = 1000;
 bool lets_are_written_out(const Model& model, Index formula);
 

@@ -65,9 +65,11 @@ private:
     Phrase count(const Formula& formula, std::string_view comparison) const {
         const std::string time =
             is_shown(formula) ? fmt::format("{} steps", formula.high + 1) : "calibrated";
-        return {.opening = "count(",
+        const std::string number = formula.each_step ? share_text(formula.index, formula.high + 1)
+                                                     : std::to_string(formula.index);
+        return {.opening = formula.each_step ? "fraction(" : "count(",
                 .operands = {{formula.operands[0], false}},
-                .closing = fmt::format(", {}) {} {}", time, comparison, formula.index)};
+                .closing = fmt::format(", {}) {} {}", time, comparison, number)};
     }
 
     bool is_shown(const Formula& formula) const {
@@ -149,6 +151,13 @@ bool lets_are_written_out(const Model& model, Index formula) {
         ++size;
     }
     return pending.empty() && size <= kMaxPrinted;
+}
+
+std::string share_text(std::uint32_t k, std::uint32_t n) {
+    std::uint64_t scale = 1;  // a share above (k - 1) / n, up to k / n
+    while (k * scale / n * n <= (k - 1) * scale) scale *= 10;
+    const std::size_t digits = std::to_string(scale).size() - 1;
+    return k == n ? "1" : fmt::format("0.{:0{}}", k * scale / n, digits);
 }
 
 std::string print(const Model& model, Index formula) {

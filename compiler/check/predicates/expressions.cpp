@@ -192,10 +192,13 @@ std::vector<std::string> instead(const std::string& name, PastKind kind, const s
         case PastKind::min: return {since};
         case PastKind::max: return {ever};
         case PastKind::mean:
-        case PastKind::count: break;
+        case PastKind::count:
+        case PastKind::fraction: break;
     }
-    return {since, ever,
-            fmt::format("'count({}, {}) >= 3': it began to hold three times or more", name, time)};
+    return {
+        since, ever,
+        fmt::format("'fraction({}, {}) >= 0.8': it held at that share of the steps", name, time),
+        fmt::format("'count({}, {}) >= 3': it began to hold three times or more", name, time)};
 }
 
 /// Refuses a predicate, let or bool where a number is expected, and names formulas that may be
@@ -250,10 +253,13 @@ std::optional<Expr> check_past(Context& c, const ast::Expr& written) {
     Past past;
     past.kind = written.past->kind;
     past.span = written.span;
-    if (past.kind == PastKind::count)
-        return c.no_value(Code::past_form, written.span,
-                          "a count stands alone on one side of a comparison in a formula, as in "
-                          "'let often = count(f, 60 s) >= 3;'");
+    if (written.past->formula != nullptr)
+        return c.no_value(
+            Code::past_form, written.span,
+            fmt::format("a {} stands alone on one side of a comparison in a formula, as in '{}'",
+                        word(past.kind),
+                        past.kind == PastKind::count ? "let often = count(f, 60 s) >= 3;"
+                                                     : "let mostly = fraction(f, 5 s) >= 0.8;"));
     std::uint64_t steps = 0;
     const ast::Expr* of = written.arguments[0].get();
     if (past.kind == PastKind::ago) {

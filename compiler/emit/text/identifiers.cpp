@@ -118,13 +118,15 @@ std::string name_of_one(const ir::Graph& graph, const std::vector<ir::NodeId>& o
     return shortest.empty() ? name_of(graph, operands[0], room) : shortest;
 }
 
-/// Returns "count_grasp_from_3", or "count_grasp_below_3".
+/// Returns "count_grasp_from_3", "count_grasp_below_3", or "fraction_near_from_40_of_50".
 std::string name_of_count(const ir::Graph& graph, const ir::Node& node, std::size_t room) {
-    const std::string head = "count";
+    const std::string head = node.counted.each_step ? "fraction" : "count";
     const std::string tail =
-        fmt::format("_{}_{}", ir::takes_max(node.op) ? "from" : "below", node.index);
+        fmt::format("_{}_{}{}", ir::takes_max(node.op) ? "from" : "below", node.index,
+                    node.counted.each_step ? fmt::format("_of_{}", node.interval.high + 1) : "");
     if (head.size() + tail.size() + 1 >= room) return head;
-    const std::string of = name_of(graph, node.counted, room - head.size() - tail.size() - 1);
+    const std::string of =
+        name_of(graph, node.counted.formula, room - head.size() - tail.size() - 1);
     return head + (of.empty() ? "" : '_' + of) + tail;
 }
 

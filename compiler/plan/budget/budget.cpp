@@ -240,7 +240,8 @@ Cost cost_of(const check::Past& past) {
             return {.state_bytes = sizeof(etlmon::MeanState) + numbers, .code_bytes = kCodePerMean};
         case Kind::min:
         case Kind::max: break;
-        case Kind::count: return {};
+        case Kind::count:
+        case Kind::fraction: return {};
     }
     return {.state_bytes = (2 + etlmon::window_elements(past.steps)) * kWord,
             .code_bytes = kCodePerWindow + kCodePerRing,

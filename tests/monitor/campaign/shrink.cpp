@@ -22,6 +22,7 @@ using Kind = Formula::Kind;
 struct Tree {
     Kind kind = Kind::constant_true;
     Index number = 0;  ///< of a count
+    bool each_step = false;
     std::string atom;
     std::uint32_t low = 0;
     std::uint32_t high = kUnbounded;
@@ -30,8 +31,11 @@ struct Tree {
 
 Tree tree_of(const check::Model& model, Index index) {
     const Formula& formula = model.formulas[index];
-    Tree tree{
-        .kind = formula.kind, .number = formula.index, .low = formula.low, .high = formula.high};
+    Tree tree{.kind = formula.kind,
+              .number = formula.index,
+              .each_step = formula.each_step,
+              .low = formula.low,
+              .high = formula.high};
     if (formula.operands.empty()) tree.atom = "(" + check::print(model, index) + ")";
     if (formula.operands.empty() && formula.kind == Kind::predicate &&
         !model.predicates[formula.index].name.empty())
@@ -88,6 +92,9 @@ std::string interval_text(const Tree& tree) {
 
 std::string text(const Tree& tree) {
     if (tree.operands.empty()) return tree.atom;
+    if (tree.kind == Kind::count && tree.each_step)
+        return fmt::format("fraction({}, {} steps) >= {}", text(tree.operands[0]), tree.high + 1,
+                           check::share_text(std::min(tree.number, tree.high + 1), tree.high + 1));
     if (tree.kind == Kind::count)
         return fmt::format("count({}, {} steps) >= {}", text(tree.operands[0]), tree.high + 1,
                            tree.number);
