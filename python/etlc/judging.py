@@ -79,6 +79,7 @@ def crossvalidate(
     label_by: str | None = None,
     allow_overlap: str | None = None,
     folds: int | None = None,
+    by: str | None = None,
     by_episode: bool = False,
     variants: str | Iterable[str] | None = None,
     json: FilePath | None = None,
@@ -96,6 +97,7 @@ def crossvalidate(
     Args:
         specs, data: as in `evaluate`.
         folds: their number; by default 5.
+        by: "order" judges later episodes by what earlier ones trained; by default "hash".
         thresholds, fitted, embedded, settings, names, groups, labels, label_by, allow_overlap,
             by_episode, variants, json, csv, values, targets_as, max_state, max_code, max_work,
             jobs, warnings_are_errors: as in `evaluate`.

@@ -333,6 +333,31 @@ TEST(Durations, OfTheCommandIsTheScoreAtTheRank) {
     }
 }
 
+/// Recordings of bools are often alike, and nobody compares them.
+TEST(Durations, OfBoolsAlone) {
+    const std::string text =
+        "spec t; input b : bool; monitor m = F[0, calibrated(conformal, alpha = 0.2)] b;";
+    const source::File file("t.etl", text);
+    check::Options options;
+    options.allow_uncalibrated_monitors = true;
+    diag::Sink sink;
+    const auto model = check::check(parse::parse(file, sink), file, options, sink);
+    ASSERT_TRUE(model);
+    const TemporaryPath first("bools1.csv", "b\n0\n0\n1\n0\n");
+    const TemporaryPath second("bools2.csv", "b\n0\n0\n1\n0\n");
+    const TemporaryPath third("bools3.csv", "b\n0\n0\n0\n1\n");
+    const TemporaryPath fourth("bools4.csv", "b\n1\n0\n0\n1\n");
+    calibrate::Request request;
+    request.episodes = {first.path(), second.path(), third.path(), fourth.path()};
+    const auto result = calibrate::calibrate_monitors(*model, {}, request, sink);
+    ASSERT_TRUE(result) << sink.sorted().front().message;
+    check::Options known;
+    known.thresholds = &result->file;
+    const auto again = check::check(parse::parse(file, sink), file, known, sink);
+    ASSERT_TRUE(again) << sink.sorted().front().message;
+    EXPECT_EQ(again->monitors[0].duration->steps, 3U);
+}
+
 // ---- normal -------------------------------------------------------------------------------------
 
 /// A spec that is calibrated with `normal`: thresholds of predicates, or of the monitor as a whole.

@@ -305,7 +305,7 @@ std::vector<Broken> content() {
                "'predicates.held' is '1', expected an object"),
         broken("\"method\": \"conformal\"", "\"method\": \"conform\"",
                at_a + "method' is the text 'conform', expected 'f1', 'conformal', "
-                      "'class_conditional', 'adaptive' or 'risk'"),
+                      "'class_conditional', 'adaptive', 'risk' or 'normal'"),
         broken("\"method\": \"conformal\",", "",
                "key " + at_a + "method' is missing, expected a text"),
         broken("\"alpha\": 0.10,", "",

@@ -198,7 +198,8 @@ std::optional<std::size_t> first_again(const std::vector<std::uint64_t>& hashes)
 }
 
 Found episodes_of(const Entry& entry, const std::string& place,
-                  const std::vector<std::uint64_t>& episodes, const thresholds::GroupNames& names) {
+                  const std::vector<std::uint64_t>& episodes, const thresholds::GroupNames& names,
+                  bool may_repeat) {
     const std::string list = place.starts_with("monitors") ? place + ".episodes" : "episodes";
     const std::uint64_t n = std::max(entry.n, entry.inner ? entry.inner->n : 0);
     const std::uint64_t least = takes_groups(entry.method) ? n : 1;
@@ -214,7 +215,7 @@ Found episodes_of(const Entry& entry, const std::string& place,
             "one score",
             place, n, count.groups, list)};
     const std::optional<std::size_t> again = first_again(episodes);
-    if (!again) return std::nullopt;
+    if (!again || may_repeat) return std::nullopt;
     return Contradiction{
         fmt::format("'{}[{}]' is '{}', which occurs earlier; expected each episode once", list,
                     *again, data::hash_text(episodes[*again]))};
@@ -274,7 +275,7 @@ Against against_of(const Entry& entry) {
 
 Found contradiction(const Entry& entry, const std::string& place, bool upper_bound,
                     const std::vector<std::uint64_t>& episodes,
-                    const thresholds::GroupNames& groups) {
+                    const thresholds::GroupNames& groups, bool may_repeat) {
     const bool of_two = entry.inner.has_value();
     const bool above = is_above(against_of(entry), upper_bound);
     std::vector<Checked> sides{{entry, entry.method, entry.alpha, "alpha", place, above, of_two}};
@@ -283,7 +284,7 @@ Found contradiction(const Entry& entry, const std::string& place, bool upper_bou
                          entry.beta.empty() ? "alpha" : "beta", place + ".inner", !above, true});
     for (const Checked& side : sides)
         if (Found found = counts(side)) return found;
-    if (Found found = episodes_of(entry, place, episodes, groups)) return found;
+    if (Found found = episodes_of(entry, place, episodes, groups, may_repeat)) return found;
     if (entry.duration) return duration_of(entry, place, upper_bound);
     for (const Checked& side : sides)
         if (Found found = threshold(side)) return found;

@@ -89,10 +89,11 @@ struct Contradiction {
 
 /// `place` is the key of the entry, "predicates.at_a". `upper_bound`: of a predicate with <= or <,
 /// and of a duration that makes its monitor truer, not of a monitor's shift. `episodes` were used
-/// for calibration.
+/// for calibration; `may_repeat`: those of bools alone, which differ in nothing that is compared.
 std::optional<Contradiction> contradiction(const thresholds::Entry& entry, const std::string& place,
                                            bool upper_bound,
                                            const std::vector<std::uint64_t>& episodes,
-                                           const thresholds::GroupNames& groups);
+                                           const thresholds::GroupNames& groups,
+                                           bool may_repeat = false);
 
 }  // namespace etlc::check

@@ -122,7 +122,11 @@ const thresholds::Entry* find_entry(Context& c, const std::string& name, const T
 void take(Context& c, const thresholds::Entry& entry, const std::string& place,
           Threshold& threshold, bool upper_bound, const thresholds::File& file,
           const std::vector<std::uint64_t>& episodes) {
-    if (const auto found = contradiction(entry, place, upper_bound, episodes, file.groups)) {
+    const auto& predicates = c.model.predicates;
+    const bool of_bools = std::all_of(predicates.begin(), predicates.end(),
+                                      [](const Predicate& p) { return p.inputs.empty(); });
+    if (const auto found =
+            contradiction(entry, place, upper_bound, episodes, file.groups, of_bools)) {
         auto& error = c.sink.report(
             data::in_file({Code::contradictory_thresholds, found->message}, file.path));
         error.note(threshold.span, "it is needed here");
