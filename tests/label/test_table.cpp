@@ -70,6 +70,18 @@ TEST(Table, KeepsTheGroupOfAnEpisodeWithoutLabels) {
     EXPECT_EQ(file_bytes(file.path()), "episode,predicate,start,end,group\na,,,,monday\n");
 }
 
+TEST(Table, KeepsOutcomes) {
+    const TemporaryPath file("labels.csv",
+                             "episode,outcome,predicate,start,end\na,failure,,7,\nb,success,,,\n");
+    Table table = read(file.path());
+    EXPECT_FALSE(table.write({near_in_a({{{2, 5}}})}));
+    EXPECT_EQ(file_bytes(file.path()),
+              "episode,predicate,start,end,outcome\na,,7,,failure\nb,,,,success\na,near,2,5,\n");
+    EXPECT_FALSE(table.write({near_in_a(std::nullopt)}));
+    EXPECT_EQ(file_bytes(file.path()),
+              "episode,predicate,start,end,outcome\na,,7,,failure\nb,,,,success\n");
+}
+
 TEST(Table, StaysInSeconds) {
     const std::string bytes = "episode,predicate,start_s,end_s\nb,near,0.15,\n";
     const TemporaryPath file("labels.csv", bytes);
