@@ -468,5 +468,22 @@ TEST(Normal, FalseAlarmsAreWithinAlpha) {
     }
 }
 
+TEST(Normal, IsRefusedWhereNoShiftChangesAnything) {
+    const Normal normal{"0", "monitor m = F a calibrated(normal, alpha = 0.2)"};
+    const check::Model model = normal_model(normal, nullptr);
+    std::vector<std::unique_ptr<TemporaryPath>> files;
+    calibrate::Request request;
+    for (int i = 0; i < 5; ++i) {
+        files.push_back(std::make_unique<TemporaryPath>(
+            fmt::format("never{}.csv", i), fmt::format("x,y,flag\n{},0,0\n1,{},0\n", i, i)));
+        request.episodes.push_back(files.back()->path());
+    }
+    diag::Sink sink;
+    EXPECT_FALSE(calibrate::calibrate_monitors(model, {}, request, sink));
+    EXPECT_EQ(sink.sorted().front().message,
+              "of 5 episodes, 0 violate 'm' for good with every shift and 5 with none, so no shift "
+              "gives alpha = 0.2");
+}
+
 }  // namespace
 }  // namespace etlc::tests

@@ -103,8 +103,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
             is_complete &= demonstration.is_complete;
             is_divided &= demonstration.is_divided;
             for (std::size_t i = 0; i < predicates.size(); ++i)
-                if (is_normal(model.predicates[predicates[i]].threshold) &&
-                    !demonstration.outcome.is_demonstration())
+                if (leaves_out(model.predicates[predicates[i]].threshold, demonstration))
                     ++evidence[i].failures;
                 else
                     evidence[i].add(demonstration.scores[i], group);

@@ -177,18 +177,19 @@ std::string monitor_report(const check::Model& model, const Others& others, bool
         text += fmt::format("    {}\n", reservation);
     text += fmt::format("    {}\n", check::exchangeability(by_group));
     if (of_successes) text += fmt::format("    {}\n", check::kMissingAside);
-    const bool with_labels = std::any_of(
+    const bool reads_labels = std::any_of(
         model.predicates.begin(), model.predicates.end(), [](const check::Predicate& p) {
             return p.threshold.origin != ThresholdOrigin::literal && !is_normal(p.threshold);
         });
-    return with_labels ? text + note_on_other_errors(by_group, with_cost) : text;
+    return reads_labels ? text + note_on_other_errors(by_group, with_cost) : text;
 }
 
 }  // namespace
 
 std::string describe_failures(std::uint64_t failures) {
     if (failures == 0) return "";
-    return fmt::format("    {} left out: no success\n", counted(failures, "episode"));
+    return fmt::format("    {} left out, which failed or whose outcome is unknown\n",
+                       counted(failures, "episode"));
 }
 
 std::string describe_sides(const Subject& of, const Sides& sides) {
@@ -501,9 +502,10 @@ void refuse(const check::Model& model, const Subject& of, const Aim& aim, Refusa
                     return one.reach > std::numeric_limits<double>::max();
                 });
                 return report(fmt::format(
-                    "'{}' is violated for good in {} of {}, whatever its shift, and in {} with no "
-                    "shift, so alpha = {} leaves nothing to choose",
-                    p.name, always, counted(all.size(), of.noun()), never, p.threshold.alpha));
+                    "of {}, {} violate '{}' for good with every shift and {} with none, so no "
+                    "shift "
+                    "gives alpha = {}",
+                    counted(all.size(), of.noun()), always, p.name, never, p.threshold.alpha));
             }
             return report(fmt::format(
                 "the score of '{}' at the rank of {} = {} is infinite: no {} "

@@ -81,6 +81,10 @@ bool is_normal(const check::Threshold& threshold) {
     return threshold.origin == ThresholdOrigin::normal;
 }
 
+bool leaves_out(const check::Threshold& threshold, const episodes::Recorded& episode) {
+    return is_normal(threshold) && !episode.outcome.is_demonstration();
+}
+
 std::vector<Index> with_labels(const check::Model& model, std::vector<Index> predicates) {
     std::erase_if(predicates, [&](Index p) { return is_normal(model.predicates[p].threshold); });
     return predicates;

@@ -130,6 +130,8 @@ std::vector<Index> calibrated_predicates(const check::Model& model);
 
 /// Whether every frame of a demonstration counts as positive, whatever its labels.
 bool is_normal(const check::Threshold& threshold);
+/// Whether the calibration does without the episode, since it is no demonstration.
+bool leaves_out(const check::Threshold& threshold, const episodes::Recorded& episode);
 /// Returns those predicates whose calibration reads labels.
 std::vector<Index> with_labels(const check::Model& model, std::vector<Index> predicates);
 

@@ -369,8 +369,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
             for (const Index predicate : episode.from_arrays) ++labelling.from_arrays[predicate];
             const std::uint32_t group = groups.add(episode.group);
             for (std::size_t i = 0; i < monitors.size(); ++i)
-                if (is_normal(*model.monitors[monitors[i]].calibration) &&
-                    !episode.outcome.is_demonstration())
+                if (leaves_out(*model.monitors[monitors[i]].calibration, episode))
                     ++evidence[i].failures;
                 else
                     evidence[i].add(episode.scores[i], group);

@@ -166,12 +166,13 @@ public:
         bool is_constant = true;
         for (;;) {
             const Stretch found = stretch(all, hits);
-            const Merit here = merit(all, found.hits);
+            const Hits inside = hits_in(found);
+            const Merit here = merit(all, inside);
             if (!(best < here) && (is_constant || here < best)) return rule;
             rule = rule_of(found);
             if (!(best < here)) return rule;  // the first of equals
             best = here;
-            hits = found.hits;
+            hits = inside;
             is_constant = false;
         }
     }
@@ -179,41 +180,41 @@ public:
 private:
     __extension__ using Wide = __int128;  // products of numbers of frames
 
-    /// Neighbouring cells, and what predicting true in them gets.
-    struct Stretch {
-        std::size_t first = 0;
-        std::size_t end = 0;
-        Hits hits;
+    /// The gain of predicting true in a cell: in 2 hits - F1 x predictions, and in agreement.
+    struct Gain {
+        Wide of_f1 = 0;
+        std::int64_t agreeing = 0;
+
+        auto operator<=>(const Gain&) const = default;
+        Gain& operator+=(const Gain& other) {
+            of_f1 += other.of_f1;
+            agreeing += other.agreeing;
+            return *this;
+        }
     };
 
     /// Returns the cells with the greatest 2 hits - F1 x predictions, where F1 is that of `before`,
-    /// and of these the ones that agree most: the stretch of neighbours with the greatest sum.
+    /// and of these the ones that agree most.
     Stretch stretch(const Cell& all, const Hits& before) const {
         const Wide twice_hits = 2 * Wide{before.right};
         const Wide twice_over = Wide{all.positives} + before.right + before.wrong;
-        using Gain = std::pair<Wide, std::int64_t>;
-        Stretch best;
-        Gain greatest{0, 0};
-        Stretch running;
-        Gain sum{0, 0};
-        for (std::size_t k = 0; k < cells_.size(); ++k) {
-            const Cell& cell = cells_[k];
-            if (sum <= Gain{0, 0}) {
-                running = {k, k, {}};
-                sum = {0, 0};
-            }
-            running.end = k + 1;
-            running.hits.right += cell.positives;
-            running.hits.wrong += cell.negatives;
-            sum.first += 2 * Wide{cell.positives} * twice_over -
-                         twice_hits * (Wide{cell.positives} + cell.negatives);
-            sum.second += static_cast<std::int64_t>(cell.positives) -
-                          static_cast<std::int64_t>(cell.negatives);
-            if (sum <= greatest) continue;
-            greatest = sum;
-            best = running;
+        const auto gain = [&](std::size_t k) {
+            const auto& [positives, negatives] = cells_[k];
+            return Gain{
+                2 * Wide{positives} * twice_over - twice_hits * (Wide{positives} + negatives),
+                static_cast<std::int64_t>(positives) - static_cast<std::int64_t>(negatives)};
+        };
+        return greatest_stretch<Gain>(cells_.size(), gain).value_or(Stretch{});
+    }
+
+    /// Returns what predicting true in these cells gets.
+    Hits hits_in(const Stretch& of) const {
+        Hits hits;
+        for (std::size_t k = of.first; k < of.end; ++k) {
+            hits.right += cells_[k].positives;
+            hits.wrong += cells_[k].negatives;
         }
-        return best;
+        return hits;
     }
 
     /// Returns the rule whose borders are halfway between the labels inside and those outside.

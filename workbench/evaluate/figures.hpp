@@ -133,6 +133,34 @@ Rates rates_of_constant(bool prediction, std::uint64_t positives, std::uint64_t 
 // step, and nothing else. Each episode is judged by the rule with the greatest F1 on all others.
 // Memory grows with the different numbers at which labels change.
 
+/// Neighbours from `first` up to but excluding `end`.
+struct Stretch {
+    std::size_t first = 0;
+    std::size_t end = 0;
+};
+
+/// Returns the neighbours with the greatest sum of weights; of equals those that end first, and of
+/// these those that begin last. Nothing where no sum is above `Sum{}`. Source: Kadane's scan
+/// (Bentley, "Programming Pearls", 1984).
+template <class Sum, class Weight>
+std::optional<Stretch> greatest_stretch(std::size_t count, const Weight& weight) {
+    std::optional<Stretch> best;
+    Sum greatest{};
+    Sum running{};
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        if (running <= Sum{}) {
+            running = Sum{};
+            first = k;
+        }
+        running += weight(k);
+        if (running <= greatest) continue;
+        greatest = running;
+        best = Stretch{first, k + 1};
+    }
+    return best;
+}
+
 /// Labels of consecutive numbers, as runs of equal labels.
 class LabelRuns {
 public:

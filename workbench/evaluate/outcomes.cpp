@@ -106,27 +106,6 @@ struct AtLength {
     std::int64_t successes = 0;
 };
 
-/// Returns the lengths from which and up to which an alarm has the greatest balanced accuracy;
-/// nothing if no alarm has it. `all`: how many there are in all.
-std::optional<std::pair<std::uint64_t, std::uint64_t>> best_lengths(
-    const std::map<std::uint64_t, AtLength>& lengths, const AtLength& all) {
-    std::optional<std::pair<std::uint64_t, std::uint64_t>> best;
-    std::int64_t greatest = 0;
-    std::int64_t running = 0;
-    std::uint64_t begin = 0;
-    for (const auto& [length, at] : lengths) {
-        if (running <= 0) {
-            running = 0;
-            begin = length;
-        }
-        running += at.failures * all.successes - at.successes * all.failures;
-        if (running <= greatest) continue;
-        greatest = running;
-        best = {begin, length};
-    }
-    return best;
-}
-
 }  // namespace
 
 Interval wilson(std::uint64_t part, std::uint64_t whole) {
@@ -139,32 +118,35 @@ Interval wilson(std::uint64_t part, std::uint64_t whole) {
 }
 
 std::vector<bool> alarms_by_duration(const std::vector<Judged>& episodes) {
-    std::map<std::uint64_t, AtLength> lengths;
+    std::map<std::uint64_t, std::size_t> places;
+    for (const Judged& one : episodes) places.emplace(one.frames, 0);
+    std::size_t next = 0;
+    for (auto& [length, place] : places) place = next++;
+    std::vector<AtLength> lengths(places.size());
     AtLength all;
-    for (const Judged& one : episodes) {
-        AtLength& at = lengths[one.frames];
-        for (AtLength* const count : {&at, &all}) {
-            count->failures += one.failed() ? 1 : 0;
-            count->successes += one.succeeded() ? 1 : 0;
+    const auto add = [&](const Judged& one, std::int64_t times) {
+        for (AtLength* const count : {&lengths[places.at(one.frames)], &all}) {
+            count->failures += one.failed() ? times : 0;
+            count->successes += one.succeeded() ? times : 0;
         }
-    }
-    std::map<std::pair<std::uint64_t, bool>, bool> known;
+    };
+    for (const Judged& one : episodes) add(one, 1);
+    std::map<std::pair<std::size_t, bool>, bool> known;
     std::vector<bool> alarms;
     for (const Judged& one : episodes) {
         if (!one.failed() && !one.succeeded()) {
             alarms.push_back(false);
             continue;
         }
-        const auto [found, is_new] = known.try_emplace({one.frames, one.failed()});
+        const std::size_t place = places.at(one.frames);
+        const auto [found, is_new] = known.try_emplace({place, one.failed()});
         if (is_new) {
-            AtLength& at = lengths[one.frames];
-            const auto count = one.failed() ? &AtLength::failures : &AtLength::successes;
-            --(at.*count);
-            --(all.*count);
-            const auto best = best_lengths(lengths, all);
-            ++(at.*count);
-            ++(all.*count);
-            found->second = best && best->first <= one.frames && one.frames <= best->second;
+            add(one, -1);
+            const auto best = greatest_stretch<std::int64_t>(lengths.size(), [&](std::size_t k) {
+                return lengths[k].failures * all.successes - lengths[k].successes * all.failures;
+            });
+            add(one, 1);
+            found->second = best && best->first <= place && place < best->end;
         }
         alarms.push_back(found->second);
     }

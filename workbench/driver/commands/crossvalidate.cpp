@@ -215,7 +215,8 @@ std::optional<Folds> deal(const check::Model& model, const calibrate::Request& r
     result.count = *std::max_element(result.of.begin(), result.of.end()) + 1;
     if (result.count <= result.first()) {
         sink.report(diag::Code::too_few_for_folds, model.monitors.front().span,
-                    "nearly all episodes are in the group of the first, which only trains");
+                    "no episode is left to judge: the group of the first, which only trains, takes "
+                    "nearly all of them");
         return std::nullopt;
     }
     // Entries in the file of fitted entries do not matter here.
