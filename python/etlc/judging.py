@@ -49,8 +49,8 @@ def evaluate(
         thresholds, fitted, embedded: files for the spec; by default those beside it.
         folds: calibrate on all folds but one and evaluate on that one, in turn.
         by_episode: also report each episode, the worst first.
-        variants: also judge the monitors on failures made of the episodes: "cut", "swapped",
-            "reversed", "frozen".
+        variants: also judge the monitors on failures made of the episodes: "cut",
+            "phases_reversed", "reversed", "frozen".
         json, csv: also write the figures into these files.
         shard, part: read one shard of the episodes, and write a part for `merge`.
         settings, names, groups, labels, label_by, allow_overlap, jobs, warnings_are_errors: as in

@@ -46,7 +46,8 @@ def calibrate(
         names: names of inputs in the files: {"z": "obs/z"}.
         groups: a pattern for the groups of .h5 files that are episodes: "data/*".
         labels: tables of labels (.csv); by default labels.csv beside the episodes, if it exists.
-        label_by: "folder" labels each episode, or gives its outcome, by the name of its folder.
+        label_by: "folder" labels each episode, or gives its outcome, by the name of its folder;
+            "outcome" takes the outcome from `next.success`, or an attribute `success` in .h5.
         allow_overlap: the reason why episodes may share most of their content.
         folds: also report the thresholds without each of this many folds.
         shard: (1, 3) reads the first of three shards of the episodes, and writes a part.

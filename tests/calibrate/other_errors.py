@@ -160,7 +160,8 @@ def lines_of(report):
         elif head:
             name = head[1] or head[2]
         if "the other error" in line or line.strip().startswith("in all ") or \
-                "broken variant" in line:
+                "broken variant" in line or "satisfied a median" in line or \
+                "never satisfied in" in line:
             if name:
                 found.setdefault(name, []).append(line.strip())
         if line == "guarantees":
@@ -175,7 +176,7 @@ def judged(spec, number, thresholds, folder="demos"):
     return json.loads(out)
 
 
-VARIANTS = ("cut", "swapped", "reversed", "frozen")
+VARIANTS = ("cut", "phases_reversed", "reversed", "frozen")
 
 
 def variant_line(evaluated, name, kind):
@@ -196,8 +197,31 @@ def variant_line(evaluated, name, kind):
     errors, cases, share = shown(counts)
     words = ("satisfied", "violated") if kind == "success" else ("violated", "satisfied")
     kinds = ", ".join(f"{variant} {number}" for variant, number in made.items() if number > 0)
-    return (f"on {sum(made.values())} broken variants ({kinds}): {words[0]} on {errors} of {cases} "
+    line = (f"on {sum(made.values())} broken variants ({kinds}): {words[0]} on {errors} of {cases} "
             f"truly {words[1]}, {share}")
+    if kind == "alarm":
+        missed = [one["monitors"][name]["variants"]["all"] for one in evaluated]
+        errors = sum(one["false_positives"] for one in missed)
+        cases = errors + sum(one["true_negatives"] + one["unknown_negatives"] for one in missed)
+        line += f"; satisfied on {errors} of {cases} truly violated" if cases > 0 else ""
+    return line
+
+
+def lateness_line(pairs):
+    """`pairs`: per demonstration its steps as pairs of verdict and truth."""
+    late, never = [], 0
+    for steps in pairs:
+        true = [step for step, (_, is_) in enumerate(steps) if is_]
+        said = [step for step, (says, _) in enumerate(steps) if says]
+        if true and said:
+            late.append(max(said[0] - true[0], 0))
+        never += bool(true and not said)
+    middle = sorted(late)[(len(late) - 1) // 2]
+    plural = lambda count, word: f"{count} {word}{'' if count == 1 else 's'}"
+    line = f"satisfied a median of {plural(middle, 'step')} after it truly is, in " + \
+        plural(len(late), "episode")
+    return line + (f"; never satisfied in {plural(never, 'episode')} in which it truly is"
+                   if never else "")
 
 
 def pairs_of(evaluated, name):

@@ -102,10 +102,10 @@ def npz(path, arrays):
     np.savez(f"{path}.npz", **arrays)
 
 
-def h5(path, arrays, groups=()):
-    """Writes the arrays with the C library, some into groups."""
+def h5(path, arrays, groups=(), success=None):
+    """Writes the arrays with the C library, some into groups; `success`: an attribute."""
     lib = ctypes.CDLL(ctypes.util.find_library("hdf5_serial") or ctypes.util.find_library("hdf5"))
-    for name in ("H5Fcreate", "H5Screate_simple", "H5Dcreate2", "H5Gcreate2"):
+    for name in ("H5Fcreate", "H5Screate_simple", "H5Dcreate2", "H5Gcreate2", "H5Acreate2"):
         getattr(lib, name).restype = ctypes.c_int64
     lib.H5open()
     handle = ctypes.c_int64
@@ -122,6 +122,12 @@ def h5(path, arrays, groups=()):
         lib.H5Dwrite(data, double, handle(0), handle(0), handle(0),
                      array.ctypes.data_as(ctypes.c_void_p))
         lib.H5Dclose(data)
+    if success is not None:
+        one = (ctypes.c_uint64 * 1)(1)
+        space = handle(lib.H5Screate_simple(1, one, None))
+        attribute = handle(lib.H5Acreate2(file, b"success", double, space, handle(0), handle(0)))
+        lib.H5Awrite(attribute, double, ctypes.byref(ctypes.c_double(success)))
+        lib.H5Aclose(attribute)
     lib.H5Fclose(file)
 
 
@@ -239,8 +245,8 @@ def folders_agree(made):
 
 
 def outcomes_agree(made):
-    """Folders and a table say alike which episodes succeed; calibration on normal episodes leaves
-    the others out."""
+    """Folders, a table and the recordings say alike which episodes succeed; calibration on normal
+    episodes leaves the others out."""
     spec = SPEC.split("predicate")[0] + "predicate near = min l2(z, bay) <= {};\n" \
         "monitor calm = G near;\n"
     pathlib.Path("normal.etl").write_text(spec.format("calibrated(normal, alpha = 0.25)"))
@@ -274,6 +280,24 @@ def outcomes_agree(made):
     # The table says when an episode failed; folders do not.
     times = [name for name in said[0] if name.startswith("warning")]
     assert all(said[0][name] == said[1][name] for name in said[0] if name not in times), said
+    for store in (npz, h5, csv):
+        os.mkdir("told")
+        for number, (z, _) in enumerate(made):
+            succeeds = number % 3 != 1
+            name, success = f"told/{number:02}", np.arange(len(z)) == 5
+            if store == h5 and number > 5:
+                h5(name, {"z": z}, success=succeeds)
+            else:
+                store(name, {"z": z, "next.success": success & succeeds})
+        figures = call("evaluate", "fixed.etl", "--label-by", "outcome", "--data", "told", "--json",
+                       "-")
+        told = json.loads(figures)["monitors"]["calm"]["outcomes"]
+        for one in (told, said[0]):  # an interval from resamples depends on the order
+            one.pop("auroc_interval", None)
+        assert told == said[0], (store, told, said[0])
+        shutil.rmtree("told")
+    error = call("evaluate", "fixed.etl", "--label-by", "outcome", "--data", *kept, status=1)
+    assert "no episode has 'next.success', which is true at some step of a success" in error, error
     for line, why in (
         (["success/0", "", "", "", "failed"], "found 'failed', expected success, failure or"),
         (["success/0", "near", "", "", "success"], "stands in a row of its own"),
@@ -359,6 +383,11 @@ def data_sets_agree():
                     lines.append([named, "near", start / lerobot.FPS, end / lerobot.FPS])
         write_table(f"{name}/labels.csv", lines, "episode,predicate,start_s,end_s")
         expect_same(results("rows.etl", *halves, *mapped), expected, release)
+        told = json.loads(call("evaluate", "rows.etl", "--thresholds", "rows.thresholds.json",
+                               "--label-by", "outcome", "--data", *halves[1], *mapped,
+                               "--by-episode", "--json", "-"))["by_episode"]
+        succeeded = ["success" if truth[number][2].any() else "failure" for number in (3, 4, 5)]
+        assert sorted(row["outcome"] for row in told) == sorted(succeeded), told
 
 
 def unlabelled_is_not_false(made):

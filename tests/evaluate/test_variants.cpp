@@ -117,7 +117,7 @@ std::vector<std::vector<std::size_t>> expected(Variant variant, const Rehearsal&
         all.emplace_back();
         for (std::size_t t = n; t-- > 0;) all.back().push_back(t);
     }
-    if (variant == Variant::swapped &&
+    if (variant == Variant::phases_reversed &&
         std::find(is_turn.begin(), is_turn.end(), true) != is_turn.end()) {
         auto& order = all.emplace_back();
         std::size_t end = n;
@@ -141,7 +141,7 @@ TEST(Variants, HaveTheVerdictsOfFilesWithTheirFrames) {
         files.push_back(recorded.back().csv(all));
     }
     const std::vector<Variant> kinds = {Variant::reversed, Variant::cut, Variant::frozen,
-                                        Variant::swapped};
+                                        Variant::phases_reversed};
     const evaluate::Evaluation found = evaluated(kVaried, files, 2, kinds);
     const evaluate::Evaluation plain = evaluated(kVaried, files);
     ASSERT_EQ(found.variants.size(), kinds.size());
@@ -178,14 +178,15 @@ TEST(Variants, HaveTheVerdictsOfFilesWithTheirFrames) {
 
 TEST(Variants, AnEpisodeWithoutAChangeOfTruthIsOnlyReversed) {
     const std::string flat = "u,w,y,z[0],z[1],truth.p\n1,1,1,0,0,1\n2,1,1,1,1,1\n";
-    const evaluate::Evaluation found = evaluated(
-        kVaried, {flat}, 1, {Variant::cut, Variant::swapped, Variant::reversed, Variant::frozen});
+    const evaluate::Evaluation found =
+        evaluated(kVaried, {flat}, 1,
+                  {Variant::cut, Variant::phases_reversed, Variant::reversed, Variant::frozen});
     for (const evaluate::VariantsMade& kind : found.variants) {
         EXPECT_EQ(kind.made, kind.variant == Variant::reversed ? 1U : 0U);
         EXPECT_EQ(kind.left_out, kind.variant == Variant::reversed ? 0U : 1U);
     }
     EXPECT_NE(evaluate::table({{{"t.etl", found, {}}}})
-                  .find("or without a change of a truth: 1 cut, 1 swapped, 1 frozen\n"),
+                  .find("or without a change of a truth: 1 cut, 1 phases_reversed, 1 frozen\n"),
               std::string::npos);
 }
 

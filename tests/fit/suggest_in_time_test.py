@@ -11,7 +11,7 @@ import tempfile
 
 import numpy as np
 
-VARIANTS = "cut,swapped,reversed,frozen"
+VARIANTS = "cut,phases_reversed,reversed,frozen"
 
 # Frames flicker: without debouncing everybody holds the thing twice.
 TWICE = """spec twice;

@@ -121,11 +121,25 @@ void add_variants(const std::vector<Broken>& variants, const std::vector<Guarant
         for (const Broken& broken : variants) {
             ++error.made[static_cast<std::size_t>(broken.variant)];
             const Concluded& verdicts = broken.concluded[i];
+            if (all[i].open == Open::violated && verdicts.actual == Label::no) {
+                ++error.missed_alarms.whole;
+                error.missed_alarms.part += verdicts.predicted == Label::yes ? 1 : 0;
+            }
             if (!is_cost && verdicts.actual != right) continue;
             ++of.whole;
             of.part += verdicts.predicted == wrong ? 1 : 0;
         }
     }
+}
+
+/// Adds how late the monitor says in an episode that it is satisfied.
+void add_lateness(const VerdictCounts& counts, OtherError& error) {
+    if (counts.first_truly_satisfied == 0) return;
+    if (counts.first_satisfied == 0)
+        ++error.never;
+    else
+        error.lateness.push_back(std::max(counts.first_satisfied, counts.first_truly_satisfied) -
+                                 counts.first_truly_satisfied);
 }
 
 /// Counts the errors of guarantees. `thresholds_of(g)` returns those of a group. An error with a
@@ -160,6 +174,7 @@ void count(const check::Model& model, const std::vector<Guaranteed>& all, const 
                 fractions[i][group].whole += counts.all;
                 continue;
             }
+            if (all[i].open == Open::violated) add_lateness(counts, errors[i]);
             errors[i].predicted += success ? counts.satisfied : counts.violated;
             errors[i].actual += success ? counts.truly_satisfied : truly_violated;
             fractions[i][group].part += static_cast<std::int64_t>(
@@ -381,8 +396,8 @@ std::string note_on_other_errors(bool by_group, bool has_cost) {
     const char* const each = by_group ? "group" : "episode";
     return fmt::format(
         "    The other error {1} counted in each {0} with the thresholds that the other {0}s give; "
-        "in "
-        "brackets {2} 95 % interval over {0}s.\n",
+        "in brackets {2} 95 % interval over {0}s for these thresholds. A new calibration moves "
+        "them, so expect more.\n",
         each, has_cost ? "and the cost are" : "is", has_cost ? "their" : "its");
 }
 
@@ -392,7 +407,7 @@ std::uint64_t all_made(const VariantError& error) {
     return std::accumulate(error.made.begin(), error.made.end(), std::uint64_t{0});
 }
 
-/// Returns "153 broken variants (cut 40, swapped 38, reversed 40, frozen 35)".
+/// Returns "153 broken variants (cut 40, phases_reversed 38, reversed 40, frozen 35)".
 std::string made(const VariantError& error) {
     std::string kinds;
     for (const auto& [variant, name] : episodes::kVariants) {
@@ -414,9 +429,30 @@ std::string errors_of(const VariantError& error, const Guaranteed& of) {
 std::string describe(const VariantError& error, const Guaranteed& of) {
     if (!error.why.empty()) return fmt::format("broken variants not judged: {}\n", error.why);
     if (all_made(error) == 0) return "no broken variants: the episodes are too short\n";
-    if (error.cases == 0)
-        return fmt::format("on {}: none is truly {}\n", made(error), actual_word(of));
-    return fmt::format("on {}: {}, {}\n", made(error), errors_of(error, of), share_of(error));
+    std::string text = fmt::format("on {}: ", made(error));
+    text += error.cases == 0 ? fmt::format("none is truly {}", actual_word(of))
+                             : fmt::format("{}, {}", errors_of(error, of), share_of(error));
+    if (error.missed_alarms.whole > 0)
+        text += fmt::format("; satisfied on {} of {} truly violated", error.missed_alarms.part,
+                            error.missed_alarms.whole);
+    return text + "\n";
+}
+
+/// Returns the line about when a monitor that must not miss an alarm is satisfied; "" for others.
+std::string describe_lateness(const OtherError& error) {
+    std::vector<std::uint64_t> late = error.lateness;
+    if (late.empty() && error.never == 0) return "";
+    std::string text;
+    if (!late.empty()) {
+        const auto middle = late.begin() + static_cast<std::ptrdiff_t>((late.size() - 1) / 2);
+        std::nth_element(late.begin(), middle, late.end());
+        text = fmt::format("satisfied a median of {} after it truly is, in {}",
+                           counted(*middle, "step"), counted(late.size(), "episode"));
+    }
+    if (error.never > 0)
+        text += fmt::format("{}never satisfied in {} in which it truly is",
+                            late.empty() ? "" : "; ", counted(error.never, "episode"));
+    return text + "\n";
 }
 
 /// Whether the monitor says the same at nearly all steps, in most of such data.
@@ -457,7 +493,9 @@ std::string describe(const OtherError& error, const Guaranteed& of, const std::s
     if (error.why.empty() && error.steps < error.all)
         text += fmt::format("{}the truth is open at {} of {} steps\n", indent,
                             error.all - error.steps, error.all);
-    return error.why.empty() ? text + indent + describe(error.variants, of) : text;
+    if (!error.why.empty()) return text;
+    if (const std::string late = describe_lateness(error); !late.empty()) text += indent + late;
+    return text + indent + describe(error.variants, of);
 }
 
 void warn_of_empty(const check::Model& model, const Guaranteed& of, const OtherError& error,

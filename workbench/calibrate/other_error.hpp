@@ -40,6 +40,8 @@ struct ErrorShare {
 /// The error in the verdicts on broken variants of the episodes.
 struct VariantError : ErrorShare {
     std::array<std::uint64_t, std::size(episodes::kVariants)> made{};  ///< variants of each kind
+    /// Against missed alarms, the error that is bounded on episodes: satisfied, truly violated.
+    episodes::Fraction missed_alarms;
 };
 
 struct OtherError : ErrorShare {
@@ -49,6 +51,10 @@ struct OtherError : ErrorShare {
     std::uint64_t actual = 0;     ///< those at which the truth is that verdict
     std::uint32_t parts = 0;      ///< groups were left out in this many parts; 0: one by one
     VariantError variants;        ///< of a monitor
+    /// Against missed alarms: per episode with a truly satisfied step, the number of steps from the
+    /// first one to the first satisfied verdict; 0 where this comes before.
+    std::vector<std::uint64_t> lateness;
+    std::uint64_t never = 0;  ///< such episodes without a satisfied verdict
 };
 
 /// The tracks of all episodes, in order.

@@ -318,7 +318,11 @@ void Replayer::note(std::vector<VerdictCounts>& counts) {
         follow(m);
         ++counts[m].all;
         counts[m].unknown += predicted.unknown() ? 1 : 0;
+        if (predicted.satisfied() && counts[m].first_satisfied == 0)
+            counts[m].first_satisfied = counts[m].all;
         if (actual.unknown()) continue;
+        if (actual.satisfied() && counts[m].first_truly_satisfied == 0)
+            counts[m].first_truly_satisfied = counts[m].all;
         ++counts[m].steps;
         counts[m].satisfied += predicted.satisfied() ? 1 : 0;
         counts[m].violated += predicted.violated() ? 1 : 0;

@@ -73,6 +73,9 @@ struct VerdictCounts {
     std::uint64_t truly_satisfied = 0;
     std::uint64_t falsely_satisfied = 0;
     std::uint64_t falsely_violated = 0;
+    /// `all` at the first satisfied verdict, and at the first truly satisfied one; 0: none.
+    std::uint64_t first_satisfied = 0;
+    std::uint64_t first_truly_satisfied = 0;
 };
 
 /// The verdict of a monitor on a whole episode and that of its truth: the last one, or that a

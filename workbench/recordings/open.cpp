@@ -125,6 +125,25 @@ diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path,
         with_dataset_meant("unknown kind of trace, expected " + trace_endings(), path)};
 }
 
+diag::Result<std::optional<bool>> recorded_success(const std::string& path) {
+    std::vector<std::string> names{"next.success"};
+    if (is_hdf5(trace_file(path))) names.emplace_back("@success");
+    for (const std::string& name : names) {
+        const auto trace = open_trace(path, {{name, Channel::Kind::boolean}});
+        if (!trace && trace.failure().code == diag::Code::no_such_channel) continue;
+        if (!trace) return trace.failure();
+        bool succeeded = false;
+        Sample sample;
+        for (;;) {
+            const auto more = (*trace)->next(sample);
+            if (!more) return more.failure();
+            if (!*more) return std::optional(succeeded);
+            succeeded = succeeded || (sample.present[0] && sample.values[0][0] != 0);
+        }
+    }
+    return std::optional<bool>();
+}
+
 std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& names) {
     for (Channel& channel : channels) channel.name = name_in_file(channel.name, names);
     return channels;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,11 @@ diag::Diagnostic in_trace(const diag::Failure& failure, const std::string& path)
 /// E08; their messages do not repeat the path: `in_trace` adds it.
 diag::Result<std::unique_ptr<data::Trace>> open_trace(const std::string& path,
                                                       const std::vector<data::Channel>& channels);
+
+/// Returns whether an episode says that it succeeded: `next.success` is true at some step, as in
+/// data sets, or the attribute `success` of the episode's group in an .h5 file is. Nothing where
+/// it has neither. Failures do not repeat the path.
+diag::Result<std::optional<bool>> recorded_success(const std::string& path);
 
 /// Names in the file by the names of the channels, where the two differ: `--map z=obs/z`.
 using NamesInFile = std::map<std::string, std::string>;

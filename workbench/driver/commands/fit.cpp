@@ -108,7 +108,7 @@ public:
         asked_.jobs = asked.jobs;
         asked_.limits = request.limits;
         asked_.progress = asked.progress;
-        asked_.variants = {episodes::Variant::cut, episodes::Variant::swapped,
+        asked_.variants = {episodes::Variant::cut, episodes::Variant::phases_reversed,
                            episodes::Variant::reversed, episodes::Variant::frozen};
     }
 

@@ -61,8 +61,9 @@ Takes settings() {
 }
 
 Takes label_by() {
-    Takes takes =
-        choice<bool>({{"folder", true}}, in(&Call::labels, &episodes::LabelSources::by_folder));
+    using episodes::LabelBy;
+    Takes takes = choice<LabelBy>({{"folder", LabelBy::folder}, {"outcome", LabelBy::outcome}},
+                                  in(&Call::labels, &episodes::LabelSources::by));
     takes.usual.clear();
     return takes;
 }
@@ -189,7 +190,10 @@ std::vector<Option> make_options() {
          "tables of labels, .csv files (default: labels.csv beside the episodes, if it exists)"},
         {kReadEpisodes, "--label-by", label_by(),
          "folder: a folder with the name of a predicate labels the episodes in it and below it: it "
-         "holds in these, and in no other; folders success and failure give their outcome"},
+         "holds in these, and in no other; folders success and failure give their outcome; "
+         "outcome: "
+         "an episode succeeded where its next.success, or its .h5 group's attribute success, says "
+         "so, and failed where that is false"},
         {kReadRecordings, "--map", several(form("NAME=OTHER", read_names)),
          "name of an input in the files: --map z=obs/z"},
     };
@@ -381,7 +385,8 @@ std::vector<Option> make_own_options() {
         {kEvaluate, "--by-episode", flag(in(&Call::evaluate, &Call::Evaluate::by_episode)),
          "also print a row for each episode, the worst first; the CSV then has these rows"},
         {kEvaluate, "--variants", form("KIND,...", read_variants),
-         "also judge the monitors on failures made of the episodes: cut, swapped, reversed or "
+         "also judge the monitors on failures made of the episodes: cut, phases_reversed, reversed "
+         "or "
          "frozen, separated by commas"},
         {kEvaluate, "--json", file(in(&Call::evaluate, &Call::Evaluate::json)),
          "also write the result as JSON; - is standard output"},

@@ -485,6 +485,25 @@ public:
         }
     }
 
+    /// Takes the outcomes that episodes say of themselves.
+    void read_outcomes() {
+        for (const std::string& episode : episodes_) {
+            const auto succeeded = recordings::recorded_success(episode);
+            if (!succeeded) {
+                sink_.report(recordings::in_trace(succeeded.failure(), episode));
+                return;
+            }
+            if (!*succeeded) continue;
+            add_outcome(episode, {**succeeded ? Outcome::Kind::success : Outcome::Kind::failure},
+                        "--label-by outcome", 0);
+        }
+        if (!result_->has_outcomes())
+            sink_.report(data::in_file({Code::nothing_to_label,
+                                        "no episode has 'next.success', which is true at some step "
+                                        "of a success, nor an attribute 'success' of an .h5 group"},
+                                       "--label-by outcome"));
+    }
+
     /// Returns the labels if none is in error.
     std::shared_ptr<const LabelSet> finish() {
         for (auto& [episode, labels] : result_->of_)
@@ -707,7 +726,8 @@ std::shared_ptr<const LabelSet> LabelSet::read(const LabelSources& sources,
     LabelReader reader(models, episodes, sink);
     for (const TableFile& file : label_files(sources, episodes))
         reader.read_table(file, sources.has_episodes);
-    if (sources.by_folder) reader.read_folders();
+    if (sources.by == LabelBy::folder) reader.read_folders();
+    if (sources.by == LabelBy::outcome && sources.has_episodes) reader.read_outcomes();
     return reader.finish();
 }
 

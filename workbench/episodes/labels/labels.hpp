@@ -106,11 +106,18 @@ bool is_episode_in(const std::string& folder, const std::string& name);
 
 // ---- labels -------------------------------------------------------------------------------------
 
+/// Labels of whole episodes besides those of tables.
+enum class LabelBy : std::uint8_t {
+    nothing,
+    folder,   ///< folders are named after predicates or outcomes
+    outcome,  ///< episodes say whether they succeeded
+};
+
 /// Where the labels of a call are.
 struct LabelSources {
     std::vector<std::string> tables;  ///< empty: labels.csv beside the episodes, if there is one
-    bool by_folder = false;           ///< folders are named after predicates or outcomes
-    bool has_episodes = true;         ///< false where parts are merged: no episode is looked for
+    LabelBy by = LabelBy::nothing;
+    bool has_episodes = true;  ///< false where parts are merged: no episode is looked for
 };
 
 /// Steps from `start` up to but excluding `end` with this label.

@@ -58,7 +58,7 @@ std::vector<Order> orders(Variant variant, const std::vector<std::vector<Label>>
                           result.back().end(), change - 1);
             }
             break;
-        case Variant::swapped: {
+        case Variant::phases_reversed: {
             if (all.empty()) break;
             Order& order = result.emplace_back();
             std::uint64_t end = frames;

@@ -1,7 +1,7 @@
 // Makes failures of a recorded episode, because most people record successes only. A variant is the
-// episode with its frames in another order: cut short, its phases swapped, played backward, or
-// frozen. It is read as a file with these frames would be, so truths, `hold` and `stale after` see
-// the new order.
+// episode with its frames in another order: cut short, its phases in reverse order, played
+// backward, or frozen. It is read as a file with these frames would be, so truths, `hold` and
+// `stale after` see the new order.
 #pragma once
 
 #include <cstdint>
@@ -17,16 +17,16 @@
 namespace etlc::episodes {
 
 enum class Variant : std::uint8_t {
-    cut,       ///< ends before a truth's last change
-    swapped,   ///< the phases between changes of truths come in reverse order
-    reversed,  ///< played backward
-    frozen,    ///< the frame before a truth's last change repeats to the end
+    cut,              ///< ends before a truth's last change
+    phases_reversed,  ///< the phases between changes of truths come in reverse order
+    reversed,         ///< played backward
+    frozen,           ///< the frame before a truth's last change repeats to the end
 };
 
 /// All variants with their names in --variants and in results.
 inline constexpr std::pair<Variant, std::string_view> kVariants[] = {
     {Variant::cut, "cut"},
-    {Variant::swapped, "swapped"},
+    {Variant::phases_reversed, "phases_reversed"},
     {Variant::reversed, "reversed"},
     {Variant::frozen, "frozen"}};
 

@@ -123,8 +123,9 @@ struct Channel {
     hid_t memory_type = -1;
     bool bools = false;
     std::vector<hsize_t> shape;
+    std::vector<double> constant;  ///< of an attribute
 
-    bool present() const { return dataset >= 0; }
+    bool present() const { return dataset >= 0 || !constant.empty(); }
     std::string quoted() const { return "'" + name + "'"; }
 };
 
@@ -158,8 +159,32 @@ void refuse_foreign_data(const Channel& channel) {
              "dataset " + channel.quoted() + " keeps its data in other files, which are not read");
 }
 
+/// Reads '@NAME', a number or bool that is an attribute of the group, as an array of one element.
+void read_attribute(hid_t group, Channel& channel) {
+    const char* const name = channel.name.c_str() + 1;
+    if (H5Aexists(group, name) <= 0) return;
+    const hid_t attribute = H5Aopen(group, name, H5P_DEFAULT);
+    const hid_t type = H5Aget_type(attribute);
+    const H5T_class_t kind = H5Tget_class(type);
+    const bool is_bool = kind == H5T_ENUM && H5Tget_size(type) == 1;
+    const bool is_number = (kind == H5T_INTEGER || kind == H5T_FLOAT) && H5Tget_size(type) <= 8;
+    if (H5Sget_simple_extent_npoints(H5Aget_space(attribute)) != 1 || (!is_bool && !is_number))
+        fail(Cause::elements,
+             "attribute '" + channel.name.substr(1) + "' is neither a number nor a bool");
+    signed char byte = 0;
+    double number = 0;
+    const herr_t read = is_bool
+                            ? H5Aread(attribute, H5Tget_native_type(type, H5T_DIR_ASCEND), &byte)
+                            : H5Aread(attribute, H5T_NATIVE_DOUBLE, &number);
+    if (read < 0) fail(Cause::array, "attribute '" + channel.name.substr(1) + "' is damaged");
+    channel.constant = {is_bool ? byte : number};
+    channel.shape = {1};
+}
+
 void open_channel(hid_t group, Channel& channel) {
     channel.dataset = open_object(group, channel.name);
+    if (!channel.present() && channel.name.starts_with("@")) read_attribute(group, channel);
+    if (!channel.constant.empty()) return;
     if (!channel.present()) {
         if (channel.optional) return;
         const std::string whole = channel.name.substr(0, channel.name.rfind('['));
@@ -231,6 +256,10 @@ std::string why_unread(const Channel& channel) {
 /// Reads `count` steps from `first` on into rows of `stride` doubles.
 void read_block(const Channel& channel, hsize_t first, hsize_t count, double* to,
                 std::size_t stride) {
+    if (!channel.constant.empty()) {
+        *to = channel.constant[0];
+        return;
+    }
     const std::size_t n = count * channel.width;
     const hid_t file_space = H5Dget_space(channel.dataset);
     const hsize_t start[2] = {first, 0};
