@@ -41,13 +41,16 @@ public:
         for (check::Let& let : model_.lets) let.telemetry = false;
     }
 
-    /// Tries a sliding monitor in place of `G f`, or of a formula with a bounded future.
+    /// Tries a sliding monitor in place of `G f` or `F f`, or of a formula with a bounded future:
+    /// it looks back at what the prefix has to foresee.
     std::optional<diag::Note> as_sliding_monitor() {
         check::Monitor& monitor = model_.monitors[monitor_];
         const check::Monitor written = monitor;
         const Formula& top = model_.formulas[written.formula];
         if (written.sliding || written.calibration) return std::nullopt;
-        if (top.kind == Formula::Kind::always && top.low == 0 && top.high == check::kUnbounded)
+        const bool is_unbounded = top.low == 0 && top.high == check::kUnbounded;
+        const bool is_eventual = is_unbounded && top.kind == Formula::Kind::eventually;
+        if (is_eventual || (is_unbounded && top.kind == Formula::Kind::always))
             monitor.formula = top.operands[0];
         const check::Reach reach = check::reaches(model_)[monitor.formula];
         monitor.sliding = true;
@@ -59,9 +62,10 @@ public:
         if (!cost) return std::nullopt;
         return diag::Note{std::nullopt,
                           fmt::format("'sliding monitor {} = {}' fits: it reports every position, "
-                                      "{} late, and takes {}",
+                                      "{} late, and takes {}{}",
                                       written.name, formula, diag::counted(reach.horizon, "step"),
-                                      in_words(*cost))};
+                                      in_words(*cost),
+                                      is_eventual ? "; one satisfied position satisfies F" : "")};
     }
 
     /// Shortens the longest window.

@@ -37,10 +37,10 @@ std::vector<Index> conjuncts_of(const check::Model& model, Index formula) {
     return conjuncts;
 }
 
-/// Returns the conjuncts of each of a, b, ... in F (a && F (b && ...)); fewer than two for any
-/// other formula.
-std::vector<std::vector<Index>> stages_of(const check::Model& model,
-                                          const std::vector<check::Reach>& reaches, Index formula) {
+}  // namespace
+
+std::vector<std::vector<Index>> stages_of(const check::Model& model, Index formula) {
+    const std::vector<check::Reach> reaches = check::reaches(model);
     std::vector<std::vector<Index>> stages;
     while (is_eventually(model.formulas[formula])) {
         std::vector<Index> conjuncts = conjuncts_of(model, model.formulas[formula].operands[0]);
@@ -55,6 +55,8 @@ std::vector<std::vector<Index>> stages_of(const check::Model& model,
     }
     return {};
 }
+
+namespace {
 
 Index append(check::Model& model, Kind kind, std::vector<Index> operands) {
     Formula formula;
@@ -96,7 +98,6 @@ Subject subject(const check::Model& model, std::vector<Index> labelled) {
         if (truth.lets[l].telemetry) result.lets.push_back(l);
     }
     const std::vector<check::Monitor> true_monitors = std::exchange(truth.monitors, {});
-    const std::vector<check::Reach> reaches = check::reaches(truth);
     for (Index m = 0; m < model.monitors.size(); ++m) {
         const check::Monitor& monitor = model.monitors[m];
         MonitorSubject& subject = result.monitors.emplace_back();
@@ -105,7 +106,7 @@ Subject subject(const check::Model& model, std::vector<Index> labelled) {
         if (!subject.lacking.empty()) continue;
         subject.truth = static_cast<Index>(truth.monitors.size());
         truth.monitors.push_back(true_monitors[m]);
-        const auto stages = stages_of(truth, reaches, true_monitors[m].formula);
+        const auto stages = stages_of(truth, true_monitors[m].formula);
         if (monitor.sliding || stages.size() < 2) continue;
         for (const auto& conjuncts : stages)
             subject.stages.push_back(append_visit(truth, monitor.name, conjuncts));

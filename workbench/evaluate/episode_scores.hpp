@@ -25,6 +25,10 @@ namespace etlc::evaluate {
 
 using check::Index;
 
+/// Returns the conjuncts of each of a, b, ... in F (a && F (b && ...)); one such list for F a, and
+/// none for any other formula.
+std::vector<std::vector<Index>> stages_of(const check::Model& model, Index formula);
+
 struct MonitorSubject {
     Index monitor = 0;           ///< in the model
     std::vector<Index> lacking;  ///< predicates without a truth; empty: it can be evaluated

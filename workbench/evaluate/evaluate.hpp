@@ -197,12 +197,23 @@ Evaluation summarise(const Judgement& judgement, unsigned jobs);
 
 /// A figure of each resample of the episodes.
 using Statistic = std::function<std::vector<std::optional<double>>(const Weights&)>;
-/// A rate by frames of a predicate or let.
-Statistic by_frames(const Judgement& judgement, std::size_t predicate, Rate rate);
-/// The mean of a monitor's rates on the episodes, by their steps or verdicts, and by verdicts on
-/// their broken variants; on the episodes alone where there are no variants.
-Statistic with_variants(const Judgement& judgement, std::size_t monitor,
-                        Counts MonitorEpisode::*of_episode, Rate rate);
+
+/// Counts of a predicate or monitor in each episode, in the order of the request.
+struct EpisodeCounts {
+    std::vector<Counts> own;
+    std::vector<Counts> on_variants;  ///< on broken variants of each; empty: not judged
+};
+/// Frames of a predicate or let.
+EpisodeCounts counts_by_frames(const Judgement& judgement, std::size_t predicate);
+/// A monitor's steps or verdicts, and its verdicts on broken variants.
+EpisodeCounts counts_by_truth(const Judgement& judgement, std::size_t monitor,
+                              Counts MonitorEpisode::*of_episode);
+/// A prediction for each episode: an alarm says that it failed. Where no episode has an outcome,
+/// all are taken for successes.
+EpisodeCounts counts_by_outcome(const Judgement& judgement, std::size_t monitor);
+bool has_outcomes(const Judgement& judgement);
+/// The mean of a rate on the episodes and on their variants; of that which is defined.
+Statistic statistic(const EpisodeCounts& counts, Rate rate);
 /// Returns the second less the first, over the same resamples.
 Figure less(const Bootstrap& bootstrap, const Statistic& second, const Statistic& first);
 /// Returns the F1 by frames of the duration baseline.

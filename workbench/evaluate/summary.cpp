@@ -241,34 +241,57 @@ Evaluation summarise(const Judgement& judgement, unsigned jobs) {
     return result;
 }
 
-Statistic by_frames(const Judgement& judgement, std::size_t predicate, Rate rate) {
-    return [rate, each = judgement.each(judgement.predicates[predicate].episodes,
-                                        [](const PredicateEpisode& one) { return one.frames; })](
-               const Weights& weights) {
-        std::vector<std::optional<double>> values;
-        for (const Rates& one : rates(each, weights)) values.push_back(one.*rate);
-        return values;
-    };
+EpisodeCounts counts_by_frames(const Judgement& judgement, std::size_t predicate) {
+    return {judgement.each(judgement.predicates[predicate].episodes,
+                           [](const PredicateEpisode& one) { return one.frames; }),
+            {}};
 }
 
-Statistic with_variants(const Judgement& judgement, std::size_t monitor,
-                        Counts MonitorEpisode::*of_episode, Rate rate) {
+EpisodeCounts counts_by_truth(const Judgement& judgement, std::size_t monitor,
+                              Counts MonitorEpisode::*of_episode) {
     const auto& all = judgement.monitors[monitor].episodes;
-    return
-        [rate,
-         verdicts = judgement.each(all, [=](const MonitorEpisode& one) { return one.*of_episode; }),
-         variants = judgement.each(all, [](const MonitorEpisode& one) {
-             Counts sum;
-             for (const Counts& kind : one.variants) sum.add(kind);
-             return sum;
-         })](const Weights& weights) {
-            const std::vector<Rates> on_episodes = rates(verdicts, weights);
-            const std::vector<Rates> on_variants = rates(variants, weights);
-            std::vector<std::optional<double>> means;
-            for (std::size_t i = 0; i < on_episodes.size(); ++i)
-                means.push_back(mean(on_episodes[i].*rate, on_variants[i].*rate));
-            return means;
-        };
+    return {judgement.each(all, [=](const MonitorEpisode& one) { return one.*of_episode; }),
+            judgement.each(all, [](const MonitorEpisode& one) {
+                Counts sum;
+                for (const Counts& kind : one.variants) sum.add(kind);
+                return sum;
+            })};
+}
+
+bool has_outcomes(const Judgement& judgement) {
+    bool found = false;
+    judgement.for_each(judgement.episodes, [&](std::size_t, const episodes::Recorded& episode) {
+        found |= episode.outcome.kind != episodes::Outcome::Kind::none;
+    });
+    return found;
+}
+
+EpisodeCounts counts_by_outcome(const Judgement& judgement, std::size_t monitor) {
+    using Kind = episodes::Outcome::Kind;
+    const Kind success = has_outcomes(judgement) ? Kind::success : Kind::none;
+    EpisodeCounts result;
+    judgement.for_each(judgement.episodes, [&](std::size_t e, const episodes::Recorded& episode) {
+        const MonitorEpisode said = judgement.monitors[monitor].episodes[judgement.place[e]];
+        const Kind outcome = episode.outcome.kind;
+        result.own.emplace_back().add(said.alarm ? Label::yes : Label::no,
+                                      outcome == success         ? Label::no
+                                      : outcome == Kind::failure ? Label::yes
+                                                                 : Label::unknown);
+    });
+    return result;
+}
+
+Statistic statistic(const EpisodeCounts& counts, Rate rate) {
+    return [counts, rate](const Weights& weights) {
+        const std::vector<Rates> on_episodes = rates(counts.own, weights);
+        std::vector<std::optional<double>> values;
+        for (const Rates& one : on_episodes) values.push_back(one.*rate);
+        if (counts.on_variants.empty()) return values;
+        const std::vector<Rates> on_variants = rates(counts.on_variants, weights);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            values[i] = mean(values[i], on_variants[i].*rate);
+        return values;
+    };
 }
 
 std::optional<double> f1_of_duration(const Judgement& judgement, std::size_t predicate) {

@@ -12,3 +12,5 @@ SPEC
 printf 'z[0],z[1],x\n1,2,3\n' > episode.csv
 "$ETLC" fit t.etl --suggest naer near slow --data episode.csv
 "$ETLC" fit t.etl --suggest --data episode.csv
+sed 's/= F/= G/' t.etl > u.etl
+"$ETLC" fit u.etl --suggest --data episode.csv

@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "calibrate/scores.hpp"
@@ -29,13 +32,35 @@ std::optional<check::Model> check_text(const source::File& file, const check::Op
     return sink.has_errors() ? std::nullopt : std::move(model);
 }
 
+/// Returns the phases of each monitor that has some; a deadline of a phase is for good.
+std::vector<fit::Phases> phases_of(const check::Model& model) {
+    std::vector<fit::Phases> phases;
+    for (const check::Monitor& monitor : model.monitors)
+        phases.push_back(monitor.sliding || monitor.restarts != check::Restarts::never
+                             ? fit::Phases{}
+                             : evaluate::stages_of(model, monitor.formula));
+    return phases;
+}
+
 bool suggest(const source::File& file, const check::Model& model, const check::Options& options,
              const Request& request, const fit::Request& asked, diag::Sink& sink) {
+    const std::vector<fit::Phases> phases = phases_of(model);
+    const bool of_monitors =
+        (asked.reading.labels && asked.reading.labels->has_outcomes()) ||
+        std::any_of(phases.begin(), phases.end(), [](const auto& one) { return !one.empty(); });
     auto result = fit::suggest(
         model, [&](const std::string& text) { return check_text(file, options, text); },
-        request.fit.predicates, asked, sink);
+        request.fit.predicates, of_monitors, asked, sink);
     if (!result || sink.refused()) return false;
     result->in_time = suggest_in_time(file, model, *result, request, asked);
+    if (result->of.empty() && result->in_time.all.empty()) {
+        const std::string& why = result->in_time.why_not;
+        sink.report(diag::Code::nothing_to_suggest, model.monitors.front().span,
+                    "no predicate of this spec has labels and measures from one point, and nothing "
+                    "was tried for its monitors: " +
+                        (why.empty() ? result->in_time.why_no_deadlines : why));
+        return false;
+    }
     OutputFiles files(sink);
     return files.add(std::string(kStandardOutput),
                      request.fit.json ? fit::json(*result)
@@ -101,12 +126,15 @@ class TrialRun {
 public:
     TrialRun(const source::File& file, const Request& request, const fit::Request& asked)
         : file_(file), request_(request) {
+        constexpr std::uint64_t kTrials = 16;  // beside each other; nobody compiles them together
         request_.check.judged_lets = true;
+        request_.limits.code_bytes *= kTrials;
+        request_.limits.operations *= kTrials;
         asked_.episodes = asked.episodes;
         asked_.reading = asked.reading;
         asked_.allow_overlap = asked.allow_overlap;
         asked_.jobs = asked.jobs;
-        asked_.limits = request.limits;
+        asked_.limits = request_.limits;
         asked_.progress = asked.progress;
         asked_.variants = {episodes::Variant::cut, episodes::Variant::phases_reversed,
                            episodes::Variant::reversed, episodes::Variant::frozen};
@@ -121,7 +149,8 @@ public:
             sink.add(of_spec, "");
             return std::nullopt;
         }
-        if (model->fitted.empty() && calibrate::calibrated_predicates(*model).empty()) {
+        if (model->fitted.empty() && calibrate::calibrated_predicates(*model).empty() &&
+            calibrate::calibrated_monitors(*model).empty()) {
             const auto compiled = compile(file_, request_.check, request_, of_spec);
             if (compiled) return judge_as_it_is(*compiled, file_.path(), request_, asked_, sink);
             sink.add(of_spec, "");
@@ -150,41 +179,79 @@ std::size_t place_of(const std::vector<Named>& all, const std::string& name) {
 
 /// Returns the rate by which candidates are ranked.
 evaluate::Rate rate_of(const fit::RankedInTime& ranking) {
-    if (ranking.by_decided) return &evaluate::Rates::decided;
+    if (ranking.by != fit::RankedBy::truth) return &evaluate::Rates::decided;
     return ranking.of_monitor ? &evaluate::Rates::agreement : &evaluate::Rates::f1;
 }
-evaluate::Counts evaluate::MonitorEpisode::*counts_of(const fit::RankedInTime& ranking) {
-    return ranking.by_decided ? &evaluate::MonitorEpisode::steps
-                              : &evaluate::MonitorEpisode::episode;
+
+std::optional<double> rate_of_sum(const std::vector<evaluate::Counts>& all, evaluate::Rate rate) {
+    evaluate::Counts sum;
+    for (const evaluate::Counts& one : all) sum.add(one);
+    return evaluate::rates(sum).*rate;
 }
 
-/// Sums the verdicts of a monitor over the episodes, and over their variants.
-void add_parts(const evaluate::Judgement& judgement, std::size_t monitor,
-               const fit::RankedInTime& ranking, fit::InTime& one) {
-    evaluate::Counts on_episodes;
-    evaluate::Counts on_variants;
-    judgement.for_each(judgement.monitors[monitor].episodes,
-                       [&](std::size_t, const evaluate::MonitorEpisode& episode) {
-                           on_episodes.add(episode.*counts_of(ranking));
-                           for (const evaluate::Counts& kind : episode.variants)
-                               on_variants.add(kind);
-                       });
-    one.on_episodes = evaluate::rates(on_episodes).*rate_of(ranking);
-    one.on_variants = evaluate::rates(on_variants).*rate_of(ranking);
-}
-
-/// Returns the score of a candidate in each resample; nothing where it cannot be judged.
-std::optional<evaluate::Statistic> score_of(const evaluate::Judgement& judgement,
-                                            const fit::RankedInTime& ranking,
-                                            const std::string& trial) {
-    if (ranking.of_monitor) {
-        const std::size_t m = place_of(judgement.monitors, trial);
-        if (!judgement.monitors[m].lacking.empty()) return std::nullopt;
-        return evaluate::with_variants(judgement, m, counts_of(ranking), rate_of(ranking));
+/// Returns the counts of a candidate; nothing where it cannot be judged.
+std::optional<evaluate::EpisodeCounts> counts_of(const evaluate::Judgement& judgement,
+                                                 const fit::RankedInTime& ranking,
+                                                 const std::string& trial) {
+    if (!ranking.of_monitor) {
+        const std::size_t p = place_of(judgement.predicates, trial);
+        if (p == judgement.predicates.size()) return std::nullopt;
+        return evaluate::counts_by_frames(judgement, p);
     }
-    const std::size_t p = place_of(judgement.predicates, trial);
-    if (p == judgement.predicates.size()) return std::nullopt;
-    return evaluate::by_frames(judgement, p, rate_of(ranking));
+    const std::size_t m = place_of(judgement.monitors, trial);
+    if (ranking.by == fit::RankedBy::outcome) return evaluate::counts_by_outcome(judgement, m);
+    if (!judgement.monitors[m].lacking.empty()) return std::nullopt;
+    return evaluate::counts_by_truth(judgement, m,
+                                     ranking.by == fit::RankedBy::decided
+                                         ? &evaluate::MonitorEpisode::steps
+                                         : &evaluate::MonitorEpisode::episode);
+}
+
+/// Returns the parts of a monitor's score, as titles_of names them.
+std::vector<std::optional<double>> parts_of(const evaluate::EpisodeCounts& counts,
+                                            const fit::RankedInTime& ranking) {
+    if (ranking.by == fit::RankedBy::outcome)
+        return {rate_of_sum(counts.own, &evaluate::Rates::false_positive_rate),
+                rate_of_sum(counts.own, &evaluate::Rates::recall)};
+    return {rate_of_sum(counts.own, rate_of(ranking)),
+            rate_of_sum(counts.on_variants, rate_of(ranking))};
+}
+
+/// Returns the score where each fold is judged by the candidate that is the best on the others.
+std::optional<double> nested_score(const evaluate::Judgement& judgement,
+                                   const std::vector<evaluate::EpisodeCounts>& candidates,
+                                   evaluate::Rate rate) {
+    const auto score = [&](const evaluate::EpisodeCounts& counts, auto&& is_taken) {
+        evaluate::Counts own;
+        evaluate::Counts variants;
+        for (std::size_t e = 0; e < counts.own.size(); ++e) {
+            if (!is_taken(e)) continue;
+            own.add(counts.own[e]);
+            if (!counts.on_variants.empty()) variants.add(counts.on_variants[e]);
+        }
+        return evaluate::mean(evaluate::rates(own).*rate, evaluate::rates(variants).*rate);
+    };
+    const auto fold_of = [&](std::size_t e) {
+        return judgement.folds.empty() ? judgement.groups.of(e) % kFolds : judgement.fold_of[e];
+    };
+    evaluate::EpisodeCounts chosen = candidates.front();
+    const std::size_t folds = judgement.folds.empty() ? kFolds : judgement.folds.size();
+    for (std::size_t fold = 0; fold < folds; ++fold) {
+        std::optional<double> greatest;
+        const evaluate::EpisodeCounts* best = &candidates.front();
+        for (const evaluate::EpisodeCounts& one : candidates) {
+            const auto found = score(one, [&](std::size_t e) { return fold_of(e) != fold; });
+            if (!found || (greatest && *found <= *greatest)) continue;
+            greatest = found;
+            best = &one;
+        }
+        for (std::size_t e = 0; e < chosen.own.size(); ++e) {
+            if (fold_of(e) != fold) continue;
+            chosen.own[e] = best->own[e];
+            if (!chosen.on_variants.empty()) chosen.on_variants[e] = best->on_variants[e];
+        }
+    }
+    return score(chosen, [](std::size_t) { return true; });
 }
 
 /// Whether the interval of the difference reaches 0.
@@ -197,17 +264,22 @@ bool may_be_as_good(const evaluate::Figure& difference) {
 void fill_in(const evaluate::Judgement& judgement, fit::RankedInTime& ranking) {
     const evaluate::Bootstrap bootstrap(judgement.groups);
     std::map<std::string, evaluate::Statistic> scores;  // by trial
+    std::vector<evaluate::EpisodeCounts> candidates;
     for (fit::InTime& one : ranking.ranked) {
-        const auto score = score_of(judgement, ranking, one.trial);
-        if (!score) continue;
-        scores[one.trial] = *score;
-        one.score = bootstrap.figure(*score);
+        const auto counts = counts_of(judgement, ranking, one.trial);
+        if (!counts) continue;
+        const auto score = evaluate::statistic(*counts, rate_of(ranking));
+        scores[one.trial] = score;
+        one.score = bootstrap.figure(score);
         if (ranking.of_monitor)
-            add_parts(judgement, place_of(judgement.monitors, one.trial), ranking, one);
-        else if (one.lines.empty() && !ranking.by_decided)
+            one.parts = parts_of(*counts, ranking);
+        else if (one.lines.empty() && ranking.by == fit::RankedBy::truth)
             ranking.clock =
                 evaluate::f1_of_duration(judgement, place_of(judgement.predicates, one.trial));
+        candidates.push_back(*counts);
     }
+    if (candidates.size() > 1 && !ranking.of_deadlines)
+        ranking.nested = nested_score(judgement, candidates, rate_of(ranking));
     fit::rank(ranking);
     const auto best = scores.find(ranking.ranked.front().trial);
     for (fit::InTime& one : ranking.ranked) {
@@ -217,23 +289,69 @@ void fill_in(const evaluate::Judgement& judgement, fit::RankedInTime& ranking) {
     }
 }
 
+/// Replaces `calibrated(...)` in a deadline by what the folds gave: "F[0, 34 to 38 steps] lifted".
+void show_durations(const evaluate::Judgement& judgement, fit::InTime& trial) {
+    float least = std::numeric_limits<float>::infinity();
+    float greatest = 0;
+    for (const evaluate::Judgement::Fold& fold : judgement.folds)
+        for (const auto& [name, steps] : fold.thresholds)
+            if (name == trial.trial + ", steps") {
+                least = std::min(least, steps);
+                greatest = std::max(greatest, steps);
+            }
+    const std::size_t begin = trial.formula.find("calibrated(");
+    trial.formula.replace(begin, trial.formula.find(')', begin) + 1 - begin,
+                          least == greatest ? fmt::format("{} steps", least)
+                                            : fmt::format("{} to {} steps", least, greatest));
+}
+
+/// Adds a deadline for each phase of the monitors that have phases.
+void suggest_deadlines(const source::File& file, const check::Model& model, const Request& request,
+                       const fit::Request& asked, fit::SuggestedInTime& result) {
+    fit::TimeTrials trials = fit::deadline_trials(model, phases_of(model));
+    if (trials.all.empty()) return;
+    const source::File text(file.path(), std::move(trials.text));
+    diag::Sink sink;
+    const auto judgement = TrialRun(text, request, asked).judge(sink);
+    if (!judgement) {
+        result.why_no_deadlines = first_error(sink);
+        return;
+    }
+    for (fit::RankedInTime& ranking : trials.all) {
+        fill_in(*judgement, ranking);
+        for (fit::InTime& one : ranking.ranked) show_durations(*judgement, one);
+        result.all.push_back(std::move(ranking));
+    }
+}
+
 }  // namespace
 
 fit::SuggestedInTime suggest_in_time(const source::File& file, const check::Model& model,
                                      const fit::Suggested& suggested, const Request& request,
                                      const fit::Request& asked) {
-    fit::TimeTrials trials = fit::time_trials(model, suggested.predicates, suggested.labelled);
     fit::SuggestedInTime result;
-    const source::File text(file.path(), std::move(trials.text));
-    diag::Sink sink;
-    const auto judgement = TrialRun(text, request, asked).judge(sink);
-    if (!judgement) {
-        result.why_not = first_error(sink);
-        return result;
+    const bool by_outcome = asked.reading.labels && asked.reading.labels->has_outcomes();
+    if (!suggested.labelled.empty() || by_outcome) {
+        fit::TimeTrials trials = fit::time_trials(model, suggested.predicates, suggested.labelled);
+        const source::File text(file.path(), std::move(trials.text));
+        diag::Sink sink;
+        const auto judgement = TrialRun(text, request, asked).judge(sink);
+        if (!judgement) {
+            result.why_not = first_error(sink);
+            return result;
+        }
+        result.folds = judgement->folds.size();
+        result.all = std::move(trials.all);
+        for (fit::RankedInTime& ranking : result.all) {
+            if (ranking.of_monitor && by_outcome) ranking.by = fit::RankedBy::outcome;
+            fill_in(*judgement, ranking);
+        }
+        std::erase_if(result.all, [](const fit::RankedInTime& ranking) {  // without a truth
+            return std::none_of(ranking.ranked.begin(), ranking.ranked.end(),
+                                [](const fit::InTime& one) { return one.score.value.has_value(); });
+        });
     }
-    result.folds = judgement->folds.size();
-    result.all = std::move(trials.all);
-    for (fit::RankedInTime& ranking : result.all) fill_in(*judgement, ranking);
+    suggest_deadlines(file, model, request, asked, result);
     return result;
 }
 

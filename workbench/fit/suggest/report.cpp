@@ -77,6 +77,7 @@ std::string json(const Suggestions& all) {
 }  // namespace
 
 std::string report(const Suggested& suggested) {
+    if (suggested.of.empty()) return report(suggested.in_time);
     std::string text = fmt::format(
         "Tried on {}, {}: the area under the ROC curve by frame, on episodes that were\n"
         "not fitted on ({}), with the 95 % interval over episodes, and the elements that a\n"
@@ -116,12 +117,26 @@ std::string shown(const std::optional<double>& value) {
     return value ? fmt::format("{:.3f}", *value) : "-";
 }
 
-std::string row(const InTime& one, bool of_monitor) {
-    const std::string columns =
-        of_monitor ? fmt::format("{:>9}  {:>9}  ", shown(one.on_episodes), shown(one.on_variants))
-                   : "";
-    return fmt::format("{} {:20}  {}{}{}\n", one.ties ? '*' : ' ', shown(one.score), columns,
-                       one.formula, one.lines.empty() ? " (as it is)" : "");
+std::string row(const InTime& one, const RankedInTime& all) {
+    std::string columns;
+    for (std::size_t i = 0; all.of_monitor && i < one.parts.size(); ++i)
+        columns += fmt::format("{:>{}}  ", shown(one.parts[i]), titles_of(all)[i].size());
+    return fmt::format("{} {:20}  {}{}{}\n", one.ties && !all.of_deadlines ? '*' : ' ',
+                       shown(one.score), columns, one.formula,
+                       one.lines.empty() ? " (as it is)" : "");
+}
+
+/// Returns what is above the columns.
+std::string heading_of(const RankedInTime& all) {
+    if (!all.of_monitor)
+        return fmt::format("\n{}\n  {:20}  formula\n", all.name,
+                           all.by == RankedBy::decided ? "decided by frame" : "F1 by frame");
+    const auto [first, second] = titles_of(all);
+    const char* const score = all.by == RankedBy::outcome   ? "balanced accuracy"
+                              : all.by == RankedBy::decided ? "mean of decided"
+                                                            : "mean";
+    return fmt::format("\nmonitor {}\n  {:20}  {}  {}  {}\n", all.name, score, first, second,
+                       all.of_deadlines ? "deadline of a phase" : "in place of a predicate");
 }
 
 /// Returns the predicate or monitor as it is, among the candidates.
@@ -133,18 +148,21 @@ const InTime& as_it_is(const RankedInTime& all) {
 /// `monitors_gain`: whether some monitor is surely better with a formula than as it is; nothing
 /// without monitors.
 std::string text_of_ranking(const RankedInTime& all, std::optional<bool> monitors_gain) {
-    std::string text = all.of_monitor
-                           ? fmt::format(
-                                 "\nmonitor {}\n  {:20}  {:>9}   variants  "
-                                 "in place of a predicate\n",
-                                 all.name, all.by_decided ? "mean of decided" : "mean",
-                                 all.by_decided ? "steps" : "episodes")
-                           : fmt::format("\n{}\n  {:20}  formula\n", all.name,
-                                         all.by_decided ? "decided by frame" : "F1 by frame");
+    std::string text = heading_of(all);
+    if (all.of_deadlines) {
+        for (const InTime& one : all.ranked) text += row(one, all);
+        text += '\n';
+        for (const InTime& one : all.ranked)
+            for (const std::string& line : one.lines) text += fmt::format("  {}\n", line);
+        return text;
+    }
     const InTime& own = as_it_is(all);
     for (const InTime& one : all.ranked)
         if (&one - all.ranked.data() < static_cast<std::ptrdiff_t>(kShown) || &one == &own)
-            text += row(one, all.of_monitor);
+            text += row(one, all);
+    if (all.nested)
+        text +=
+            fmt::format("  {:20}  chosen on the other folds, judged on each\n", shown(all.nested));
     if (all.clock) {
         text += fmt::format("  {:20}  the number of the step alone\n", shown(all.clock));
         const episodes::Figure& best = all.ranked.front().score;
@@ -167,7 +185,13 @@ std::string number(const std::optional<double>& value) {
     return value ? fmt::format("{}", *value) : "null";
 }
 
-std::string json_of(const InTime& one) {
+std::string json_of(const InTime& one, const RankedInTime& all) {
+    std::string parts;
+    for (std::size_t i = 0; i < one.parts.size(); ++i) {
+        std::string key(titles_of(all)[i]);
+        std::replace(key.begin(), key.end(), ' ', '_');
+        parts += fmt::format("\"{}\": {}, ", key, number(one.parts[i]));
+    }
     std::vector<std::string> lines;
     for (const std::string& line : one.lines) lines.push_back(source::json_string(line));
     const auto end = [&](double episodes::Interval::*which) {
@@ -175,11 +199,11 @@ std::string json_of(const InTime& one) {
                                          : std::nullopt);
     };
     return fmt::format(
-        "{{\"score\": {}, \"low\": {}, \"high\": {}, \"ties\": {}, \"episodes\": {}, "
-        "\"variants\": {},\n       \"formula\": {},\n       \"lines\": [{}]}}",
+        "{{\"score\": {}, \"low\": {}, \"high\": {}, \"ties\": {}, {}"
+        "\n       \"formula\": {},\n       \"lines\": [{}]}}",
         number(one.score.value), end(&episodes::Interval::low), end(&episodes::Interval::high),
-        one.ties, number(one.on_episodes), number(one.on_variants),
-        source::json_string(one.formula), fmt::join(lines, ",\n                 "));
+        one.ties, parts, source::json_string(one.formula),
+        fmt::join(lines, ",\n                 "));
 }
 
 }  // namespace
@@ -187,22 +211,39 @@ std::string json_of(const InTime& one) {
 std::string report(const SuggestedInTime& suggested) {
     if (!suggested.why_not.empty())
         return fmt::format("\nNothing was tried in time: {}\n", suggested.why_not);
-    std::string text = fmt::format(
-        "\nIn time{}: formulas beside the truth of\n"
-        "a predicate, by F1 over frames; and in its place in monitors, by the mean of the\n"
-        "agreements on episodes and on broken variants of them. *: may be as good as the best.\n",
+    const auto is_any = [&](const auto& is_such) {
+        return std::any_of(suggested.all.begin(), suggested.all.end(), is_such);
+    };
+    const std::string trained =
         suggested.folds > 0 ? fmt::format(", trained on other episodes ({} folds)", suggested.folds)
-                            : "");
-    if (std::any_of(suggested.all.begin(), suggested.all.end(),
-                    [](const RankedInTime& one) { return one.by_decided; }))
+                            : "";
+    std::string text;
+    if (is_any([](const RankedInTime& one) { return !one.of_deadlines; }))
+        text = fmt::format(
+            "\nIn time{}: formulas beside the truth of\n"
+            "a predicate, by F1 over frames; and in its place in monitors, by the mean of the\n"
+            "agreements on episodes and on broken variants of them. *: may be as good as the "
+            "best.\n",
+            trained);
+    if (is_any([](const RankedInTime& one) { return one.by == RankedBy::decided; }))
         text +=
             "decided: against both errors, in place of F1 and agreement: the share that is "
             "decided\n"
             "and right, of what is truly satisfied and of what is truly violated, on average.\n";
+    if (is_any([](const RankedInTime& one) { return one.by == RankedBy::outcome; }))
+        text +=
+            "\nbalanced accuracy: the share of successes without an alarm and of failures with "
+            "one, on\n"
+            "average. Where no episode has an outcome, all count as successes.\n"
+            "Deadlines are those that one in ten new successes misses at most, by the times of "
+            "others.\n";
     std::optional<bool> monitors_gain;
     for (const RankedInTime& one : suggested.all)
-        if (one.of_monitor) monitors_gain = monitors_gain.value_or(false) || !as_it_is(one).ties;
+        if (one.of_monitor && !one.of_deadlines)
+            monitors_gain = monitors_gain.value_or(false) || !as_it_is(one).ties;
     for (const RankedInTime& one : suggested.all) text += text_of_ranking(one, monitors_gain);
+    if (!suggested.why_no_deadlines.empty())
+        text += fmt::format("\nNo deadlines were tried: {}\n", suggested.why_no_deadlines);
     return text;
 }
 
@@ -210,12 +251,18 @@ std::string json(const SuggestedInTime& suggested) {
     std::vector<std::string> all;
     for (const RankedInTime& one : suggested.all) {
         std::vector<std::string> ranked;
-        for (const InTime& candidate : one.ranked) ranked.push_back(json_of(candidate));
+        for (const InTime& candidate : one.ranked) ranked.push_back(json_of(candidate, one));
         all.push_back(
-            fmt::format("{{\"{}\": {}, \"by_decided\": {}, \"clock\": {}, \"ranked\": [\n      "
-                        "{}]}}",
-                        one.of_monitor ? "monitor" : "predicate", source::json_string(one.name),
-                        one.by_decided, number(one.clock), fmt::join(ranked, ",\n      ")));
+            fmt::format("{{\"{}\": {}, \"by\": \"{}\", \"clock\": {}, \"nested\": {}, "
+                        "\"ranked\": [\n      {}]}}",
+                        one.of_deadlines ? "deadlines"
+                        : one.of_monitor ? "monitor"
+                                         : "predicate",
+                        source::json_string(one.name),
+                        one.by == RankedBy::outcome   ? "outcome"
+                        : one.by == RankedBy::decided ? "decided"
+                                                      : "truth",
+                        number(one.clock), number(one.nested), fmt::join(ranked, ",\n      ")));
     }
     return fmt::format("{{\"folds\": {}, \"why_not\": {}, \"of\": [\n    {}]}}", suggested.folds,
                        suggested.why_not.empty() ? "null" : source::json_string(suggested.why_not),

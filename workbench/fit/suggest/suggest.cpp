@@ -39,10 +39,12 @@ bool refuse(const check::Model& model, const std::string& name, const std::strin
     return false;
 }
 
-/// Returns the predicates to suggest for, in the order of the model.
+/// Returns the predicates to suggest for, in the order of the model; none where there is something
+/// to suggest for monitors alone.
 std::optional<std::vector<Index>> asked_for(const check::Model& model,
                                             const std::vector<std::string>& names,
-                                            const std::vector<Index>& labelled, diag::Sink& sink) {
+                                            const std::vector<Index>& labelled, bool of_monitors,
+                                            diag::Sink& sink) {
     std::vector<Index> result;
     bool all = true;
     for (const std::string& name : names) {
@@ -67,6 +69,7 @@ std::optional<std::vector<Index>> asked_for(const check::Model& model,
     if (!all) return std::nullopt;
     for (const Index predicate : labelled)
         if (names.empty() && plain_need(model, predicate)) result.push_back(predicate);
+    if (result.empty() && names.empty() && of_monitors) return result;
     if (result.empty()) {
         sink.report(Code::nothing_to_suggest, model.monitors.front().span,
                     "no predicate of this spec has labels and measures from one point");
@@ -252,18 +255,24 @@ std::optional<Separations> measure(const check::Model& spec, const std::vector<M
 }  // namespace
 
 std::optional<Suggested> suggest(const check::Model& model, const CheckText& check_text,
-                                 const std::vector<std::string>& names, const Request& request,
-                                 diag::Sink& sink) {
+                                 const std::vector<std::string>& names, bool of_monitors,
+                                 const Request& request, diag::Sink& sink) {
     const auto labelled = episodes::labelled_in(model, request.episodes.front(), request.reading);
     if (!labelled) {
         sink.report(recordings::in_trace(labelled.failure(), request.episodes.front()));
         return std::nullopt;
     }
-    const auto predicates = asked_for(model, names, *labelled, sink);
+    const auto predicates = asked_for(model, names, *labelled, of_monitors, sink);
     if (!predicates) return std::nullopt;
     Suggested result;
     result.predicates = *predicates;
     result.labelled = *labelled;
+    if (predicates->empty()) {
+        result.labelled.clear();
+        for (Index p = 0; p < model.predicates.size(); ++p)
+            if (!model.predicates[p].name.empty()) result.predicates.push_back(p);
+        return result;
+    }
     Trials trials(model, check_text);
     for (const Index predicate : *predicates) result.of.push_back(trials.add(predicate));
     const auto spec = trials.spec();
@@ -496,21 +505,23 @@ std::string without_monitors(const Model& model) {
 
 class Building {
 public:
-    Building(const Model& model, const std::vector<Index>& asked)
+    Building(const Model& model, const std::vector<Index>& asked,
+             const std::vector<Index>& labelled)
         : model_(model),
           asked_(asked),
+          labelled_(labelled),
           words_(words_of(model.file.text())),
           taken_(words_),
           names_("", taken_) {}
 
-    void add_predicate(Index predicate, const std::vector<Index>& labelled) {
+    void add_predicate(Index predicate) {
         const std::string& p = model_.predicates[predicate].name;
         RankedInTime& ranking = result_.all.emplace_back();
         ranking.name = p;
-        ranking.by_decided = against_both(predicate);
+        if (against_both(predicate)) ranking.by = RankedBy::decided;
         ranking.ranked.push_back({p, {}, p});
         for (const Formula& formula : over_one(model_, p)) add_let(ranking, predicate, formula);
-        for (const Index other : labelled)
+        for (const Index other : labelled_.empty() ? asked_ : labelled_)
             if (other != predicate)
                 for (const Formula& formula : over_two(model_, p, other))
                     add_let(ranking, predicate, formula);
@@ -527,8 +538,9 @@ public:
         RankedInTime ranking;
         ranking.name = monitor.name;
         ranking.of_monitor = true;
-        ranking.by_decided = std::any_of(used.begin(), used.end(),
-                                         [&](Index predicate) { return against_both(predicate); });
+        if (std::any_of(used.begin(), used.end(),
+                        [&](Index predicate) { return against_both(predicate); }))
+            ranking.by = RankedBy::decided;
         add_trial(ranking, monitor, {});
         std::map<std::uint32_t, std::vector<const Let*>> steady;
         for (const Let& let : lets_) {
@@ -579,7 +591,9 @@ private:
 
     void declare(std::vector<std::string>& lines, const std::string& name, const Let& let) const {
         lines.push_back(fmt::format("let {} = {};", name, let.formula.text));
-        lines.push_back(fmt::format("truth {} = {};", name, model_.predicates[let.predicate].name));
+        if (!labelled_.empty())
+            lines.push_back(
+                fmt::format("truth {} = {};", name, model_.predicates[let.predicate].name));
     }
 
     void add_trial(RankedInTime& ranking, const check::Monitor& monitor,
@@ -608,6 +622,7 @@ private:
 
     const Model& model_;
     const std::vector<Index>& asked_;
+    const std::vector<Index>& labelled_;
     const std::set<std::string> words_;  ///< words of the spec
     std::set<std::string> taken_;        ///< with the names declared since
     Declarations names_;
@@ -620,13 +635,58 @@ private:
 
 TimeTrials time_trials(const Model& model, const std::vector<Index>& asked,
                        const std::vector<Index>& labelled) {
-    Building building(model, asked);
-    for (const Index predicate : asked) building.add_predicate(predicate, labelled);
+    Building building(model, asked, labelled);
+    for (const Index predicate : asked) building.add_predicate(predicate);
     for (const check::Monitor& monitor : model.monitors) building.add_monitor(monitor);
     return std::move(building).take();
 }
 
+TimeTrials deadline_trials(const Model& model, const std::vector<Phases>& phases) {
+    constexpr std::string_view kDeadline = "F[0, calibrated(conformal, alpha = 0.1)] ";
+    TimeTrials result;
+    std::set<std::string> taken = words_of(model.file.text());
+    Declarations names("", taken);
+    std::vector<std::string> all;
+    for (Index m = 0; m < model.monitors.size(); ++m) {
+        if (phases[m].empty()) continue;
+        RankedInTime& ranking = result.all.emplace_back();
+        ranking.name = model.monitors[m].name;
+        ranking.of_monitor = ranking.of_deadlines = true;
+        ranking.by = RankedBy::outcome;
+        std::string before;
+        for (const std::vector<Index>& conjuncts : phases[m]) {
+            InTime& trial = ranking.ranked.emplace_back();
+            std::vector<std::string> parts;
+            for (const Index part : conjuncts) parts.push_back(check::print(model, part));
+            if (!before.empty()) parts.push_back(before);
+            std::string phase = fmt::format("{}", fmt::join(parts, " && "));
+            if (parts.size() > 1) phase = "(" + phase + ")";
+            std::string name = ranking.name;
+            if (phases[m].size() > 1) {
+                name = names.unused(fmt::format("{}_{}", name, ranking.ranked.size()));
+                trial.lines.push_back(fmt::format("let {} = O {};", name, phase));
+                phase = name;
+            }
+            trial.formula = before.empty()
+                                ? fmt::format("{}{}", kDeadline, phase)
+                                : fmt::format("G ({} -> {}{})", before, kDeadline, phase);
+            trial.trial = names.unused(name + "_in_time");
+            trial.lines.push_back(fmt::format("monitor {} = {};", trial.trial, trial.formula));
+            all.insert(all.end(), trial.lines.begin(), trial.lines.end());
+            before = phase;
+        }
+    }
+    result.text = fmt::format("{}\n{}\n", without_monitors(model), fmt::join(all, "\n"));
+    return result;
+}
+
+std::array<std::string_view, 2> titles_of(const RankedInTime& ranking) {
+    if (ranking.by == RankedBy::outcome) return {"false alarms", "detected"};
+    return {ranking.by == RankedBy::decided ? "steps" : "episodes", "variants"};
+}
+
 void rank(RankedInTime& all) {
+    if (all.of_deadlines) return;
     std::stable_sort(all.ranked.begin(), all.ranked.end(), [](const InTime& a, const InTime& b) {
         return a.score.value.value_or(-1) > b.score.value.value_or(-1);
     });
