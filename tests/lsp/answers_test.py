@@ -5,6 +5,7 @@ CASES: the folder tests/spec, whose specs get the diagnostics of `etlc SPEC --ch
 import json
 import os
 import pathlib
+import re
 import struct
 import subprocess
 import sys
@@ -113,6 +114,29 @@ def hovers():
         "```etl\npredicate at_bay = min cosine(z, bay) <= limit;\n```\n\n"
         "Predicate: min cosine(z, bay) \\<= 0.25.\n\n"
         "Threshold 0.25: written in the spec; no guarantee.\n\nRobustness in \\[-1.75, 0.25\\].")}
+    assert client.end() == 0
+
+
+def words():
+    """Every word of the specs of this project has a hover, but names that another file declares."""
+    client, seen = Client(ETLC), set()
+    for path in sorted((CASES / "ok").glob("*.etl")) + sorted(
+            (CASES.parent.parent / "examples").glob("*/*.etl")):
+        spec = path.read_text()
+        text = client.open(spec, path.as_uri())
+        blank = re.sub(r'//[^\n]*|/\*.*?\*/|"[^"\n]*"|\b\d[\w.]*',
+                       lambda found: re.sub(r"[^\n]", " ", found[0]), spec, flags=re.S)
+        for word in re.finditer(r"[A-Za-z_]\w*", blank):
+            if word[0] in seen or not spec.isascii():
+                continue
+            seen.add(word[0])
+            line = spec.count("\n", 0, word.start())
+            column = word.start() - spec.rfind("\n", 0, word.start()) - 1
+            place = {"position": {"line": line, "character": column}}
+            shown = client.ask("textDocument/hover", {"textDocument": {"uri": text.uri}, **place})
+            assert shown is not None, (path.name, line + 1, word[0])
+        text.close()
+    assert len(seen) > 300, len(seen)
     assert client.end() == 0
 
 
@@ -271,42 +295,6 @@ def completions():
     assert client.end() == 0
 
 
-def formats():
-    client = Client(ETLC)
-    text = client.open("")
-
-    def formatted(spec):
-        text.replace(spec)
-        once = text.format()
-        text.replace(once)
-        assert text.format() == once, once
-        return once
-
-    assert formatted(
-        "\n\n// about a\nspec   a ;  // its name\n\n\n\n// inputs\n\ninput p:bool;// p\n"
-        "input long_name : bool ; /* q */ // r\n"
-        "let f = always (p implies (long_name)) ; \n"
-        "monitor m = /* why */ always(((p /* a */ or long_name)) // here\n and p);\n\n\n// end"
-    ) == (
-        "// about a\nspec a;  // its name\n\n// inputs\n\ninput p : bool;          // p\n"
-        "input long_name : bool;  /* q */ // r\n"
-        "let f = G (p -> long_name);\n"
-        "monitor m = /* why */ G ((p /* a */ || long_name) // here\n"
-        "                         && p);\n\n// end\n")
-    # Line breaks inside a declaration stay, indented to their bracket.
-    assert formatted("spec a;\ntarget t = [[1,2],\n[3,4]];\ntarget u = [\n[1,2]\n];\n"
-                     "input z : f32[2];\nmonitor m = F min l2(z,t)<\n1;") == (
-        "spec a;\ntarget t = [[1, 2],\n            [3, 4]];\ntarget u = [\n    [1, 2]\n];\n"
-        "input z : f32[2];\nmonitor m = F (min l2(z, t) <\n               1);\n")
-    assert formatted("spec a;\r\n// x\r\nmonitor m=true;\r\n") == (
-        "spec a;\r\n// x\r\nmonitor m = true;\r\n")
-    assert formatted("\ufeffspec a;monitor m=true;") == "\ufeffspec a;\nmonitor m = true;\n"
-    assert formatted(DOCK) == DOCK.replace("z    :", "z :")
-    text.replace("spec a; monitor m = ;")
-    assert text.format() is None
-    assert client.end() == 0
-
-
 def actions():
     client = Client(ETLC)
     text = client.open("")
@@ -394,11 +382,11 @@ def files():
 
 same_as_check()
 hovers()
+words()
 thresholds()
 places()
 renames()
 completions()
-formats()
 actions()
 files()
 print("all answers are right")

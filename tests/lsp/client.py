@@ -143,12 +143,6 @@ class Text:
         return self.client.error("textDocument/" + method,
                                  self.params(self.at(words, offset), **more))
 
-    def format(self):
-        """Returns the formatted text, or None if it cannot be formatted."""
-        edits = self.client.ask("textDocument/formatting", {
-            "textDocument": {"uri": self.uri}, "options": {"tabSize": 4, "insertSpaces": True}})
-        return None if edits is None else applied(self.text, edits)
-
     def close(self):
         self.client.tell("textDocument/didClose", {"textDocument": {"uri": self.uri}})
 

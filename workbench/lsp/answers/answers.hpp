@@ -57,8 +57,6 @@ Json rename(const Question& question);
 /// Answers with an edit for each finding in a range that says what was probably meant; a name is
 /// changed everywhere.
 Json code_actions(const Question& question);
-/// Answers with the lines that change, as one edit, so that marks in other lines stay.
-Json formatting(const Question& question);
 
 /// The findings of `etlc SPEC --check` and of planning in the order of their places, each once. One
 /// about another file is shown where the spec names that file.
@@ -82,6 +80,7 @@ struct WordInfo {
         aggregation,
         function,
         distance,
+        argument,  ///< of calibrated(...), fitted(...) or an encoder; no word of the grammar
     };
     std::string_view word;
     Kind kind;

@@ -110,7 +110,8 @@ int item_kind(WordInfo::Kind kind) {
         case WordInfo::Kind::function:
         case WordInfo::Kind::distance: return kFunction;
         case WordInfo::Kind::declaration:
-        case WordInfo::Kind::keyword: break;
+        case WordInfo::Kind::keyword:
+        case WordInfo::Kind::argument: break;
     }
     return kKeyword;
 }

@@ -7,7 +7,6 @@
 
 #include "check/names/reserved.hpp"
 #include "lsp/answers/answers.hpp"
-#include "lsp/format/format.hpp"
 #include "lsp/text/json.hpp"
 #include "parse/parse.hpp"
 #include "parse/stream/words.hpp"
@@ -157,29 +156,6 @@ Json code_actions(const Question& question) {
                            {"edit", {{"changes", {{question.uri(), edits(found, analysis)}}}}}});
     }
     return actions;
-}
-
-Json formatting(const Question& question) {
-    const Analysis& analysis = question.analysis();
-    const auto after = formatted(analysis.file);
-    if (!after) return nullptr;
-    const std::string_view before = analysis.file.text();
-    if (*after == before) return Json::array();
-    std::size_t same = 0;
-    while (same < before.size() && same < after->size() && before[same] == (*after)[same]) ++same;
-    const std::size_t line = before.rfind('\n', same == 0 ? 0 : same - 1);
-    const std::size_t begin = same == 0 || line == std::string_view::npos ? 0 : line + 1;
-    std::size_t end = 0;  // bytes from the end
-    while (end < before.size() - begin && end < after->size() - begin &&
-           before[before.size() - end - 1] == (*after)[after->size() - end - 1])
-        ++end;
-    // The edit ends after a line end, which may have two bytes.
-    const std::size_t tail = before.find('\n', before.size() - end);
-    end = tail == std::string_view::npos ? 0 : before.size() - tail - 1;
-    const source::Span span{static_cast<std::uint32_t>(begin),
-                            static_cast<std::uint32_t>(before.size() - end)};
-    return Json::array({{{"range", analysis.lines.range(span)},
-                         {"newText", after->substr(begin, after->size() - end - begin)}}});
 }
 
 namespace {

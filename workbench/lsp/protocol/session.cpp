@@ -39,8 +39,7 @@ Json capabilities(Encoding encoding) {
             {"renameProvider", {{"prepareProvider", true}}},
             {"completionProvider", {{"triggerCharacters", {"[", "(", ","}}}},
             {"documentSymbolProvider", true},
-            {"codeActionProvider", {{"codeActionKinds", {"quickfix"}}}},
-            {"documentFormattingProvider", true}};
+            {"codeActionProvider", {{"codeActionKinds", {"quickfix"}}}}};
 }
 
 Client client_of(const Json& params) {
@@ -69,7 +68,6 @@ const std::map<std::string_view, Json (*)(const Question&)>& answers() {
         {"textDocument/completion", completion},
         {"textDocument/documentSymbol", symbols},
         {"textDocument/codeAction", code_actions},
-        {"textDocument/formatting", formatting},
     };
     return all;
 }
