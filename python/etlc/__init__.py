@@ -11,6 +11,8 @@ The verdicts equal those of the class that etlc generates, bit for bit. docs/pyt
 of all functions.
 """
 
+import sys as _sys
+
 from ._library import library as _native
 from .arrays import (
     BatchEpisode,
@@ -35,12 +37,13 @@ from .errors import (
 )
 from .encoding import Encoder
 from .description import REFERENCE_FRAMES, Input, Measurement, Measurements
-from .judging import crossvalidate, evaluate, report
-from .labelling import Labelling, label, propose
+from .judging import crossvalidate, evaluate, prove, report
+from .labelling import Labelling, Watching, label, propose, watch
 from .learning import calibrate, embed, fit, merge, suggest
 from .monitor import Monitor
-from .results import Checked, Evaluation, Run, Suggestions, Written
+from .results import Checked, Evaluation, Proof, Run, Suggestions, Written
 from .specs import check, compile
+from .splitting import split
 from .traces import explain, incident, run
 from .verdicts import Explanation, Verdict, Verdicts
 
@@ -69,6 +72,7 @@ __all__ = [
     "Measurements",
     "Monitor",
     "NotKeptError",
+    "Proof",
     "REFERENCE_FRAMES",
     "Run",
     "RunVerdicts",
@@ -78,6 +82,7 @@ __all__ = [
     "Verdict",
     "VerdictArrays",
     "Verdicts",
+    "Watching",
     "Written",
     "calibrate",
     "check",
@@ -91,7 +96,19 @@ __all__ = [
     "label",
     "merge",
     "propose",
+    "prove",
     "report",
     "run",
+    "split",
     "suggest",
+    "watch",
 ]
+
+# Modules are no part of the interface: `etlc.batch` would look like a function.
+for _name in [name for name, one in globals().items() if isinstance(one, type(_sys))]:
+    if not _name.startswith("_"):
+        del globals()[_name]
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__all__", "__doc__", "__version__"]

@@ -153,10 +153,17 @@ def _title(ax: Any, name: str, text: str) -> None:
     ax.set_title(f"{name}  {text}".replace("$", r"\$"), loc="left", fontsize="small")
 
 
+def standing(one: Any) -> str:
+    """Returns the status in words: a verdict that may still change is not called violated."""
+    status: str = one.status
+    if one.final:
+        return status + " for good"
+    return {"violated": "not yet satisfied", "satisfied": "satisfied so far"}.get(status, status)
+
+
 def rows_of_step(verdicts: Verdicts | Iterable[Any]) -> Iterator[tuple[object, ...]]:
     """Yields the cells of a small table: the verdict of each monitor."""
     from ._html import number
 
     for one in verdicts:
-        status = one.status + (" for good" if one.final else "")
-        yield one.name, status, *map(number, (one.robustness, one.lower, one.upper))
+        yield one.name, standing(one), *map(number, (one.robustness, one.lower, one.upper))

@@ -31,7 +31,7 @@ class Options(ctypes.Structure):
         ("settings", POINTER(c_char_p)), ("setting_count", c_size_t), ("values", c_uint32),
         ("targets_as", c_uint32), ("lets", c_uint32), ("reserved", c_uint32),
         ("max_state", c_uint64), ("max_code", c_uint64), ("max_work", c_uint64),
-        ("history", c_uint64), ("recorder", c_char_p),
+        ("history", c_uint64), ("recorder", c_char_p), ("embedded", c_char_p),
     ]  # fmt: skip
 
 

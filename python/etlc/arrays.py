@@ -13,7 +13,7 @@ from ._library import ALARM, DECIDED, FINAL, FULFILLED, SATISFIED, VIOLATED
 from ._types import Array, untyped
 from .errors import InputError
 from .names import is_text, no_such
-from .verdicts import contains
+from .verdicts import Verdict, contains, verdict_of
 
 VERDICT_DTYPE = np.dtype(
     [("robustness", "f4"), ("lower", "f4"), ("upper", "f4"), ("status", "u4")]
@@ -122,6 +122,18 @@ class EpisodeVerdicts(VerdictArrays):
     """
 
     _ask = "its .first_alarm, .alarm.any(), .satisfied[-1], .violated[-1], ..."
+
+    def __getitem__(self, step: int) -> Verdict:
+        """Returns the verdict of a step; the last one is -1.
+
+        Raises:
+            IndexError: there is no such step.
+        """
+        one = self._table[step]
+        if np.ndim(one) != 0:
+            raise IndexError(f"{step!r} is not one step: take them from .robustness, .status, ...")
+        lower, upper, robustness = (float(one[key]) for key in ("lower", "upper", "robustness"))
+        return verdict_of(self.name, lower, upper, robustness, int(one["status"]))
 
     @property
     def first_alarm(self) -> int | None:

@@ -1,4 +1,4 @@
-"""The commands that compare monitors with ground truth: `evaluate`, `crossvalidate`, `report`."""
+"""The commands that judge monitors: `evaluate`, `crossvalidate`, `report`, `prove`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, Iterable, Mapping
 
 from ._keywords import FilePath, FilePaths, checks_names, path_of, words_of
 from ._process import run
-from .results import Evaluation, Written
+from .results import Evaluation, Proof, Written
 
 
 @checks_names
@@ -156,6 +156,54 @@ def report(
     """
     ran = run(words_of("report", locals()))
     return Written(path_of("output", output), ran.report, ran.diagnostics)
+
+
+@checks_names
+def prove(
+    spec: FilePath,
+    *,
+    steps: int | None = None,
+    header: FilePath | None = None,
+    counterexample: FilePath | None = None,
+    output: FilePath | None = None,
+    thresholds: FilePath | None = None,
+    fitted: FilePath | None = None,
+    embedded: FilePath | None = None,
+    settings: Mapping[str, object] | None = None,
+    namespace: str | None = None,
+    explain: bool = False,
+    retargetable: bool = False,
+    recorder: str | tuple[int | str, int | str, int] | None = None,
+    lets: bool = False,
+    values: str | None = None,
+    targets_as: str | None = None,
+    max_state: int | None = None,
+    max_code: int | None = None,
+    max_work: int | None = None,
+    warnings_are_errors: bool = False,
+) -> Proof:
+    """Proves that the temporal part of the generated class gives the verdicts of the definition.
+
+    It takes a C++ compiler, $CXX or c++.
+
+    Args:
+        spec: the path of the spec.
+        steps: the length of the longest inputs; by default twice the longest horizon.
+        header: a header that has to be, byte for byte, the one that is proved.
+        counterexample: where an input on which the class is wrong is written, without its ending.
+        output: also write the certificate into this file.
+        namespace, explain, retargetable, recorder, lets: as in `compile`.
+        thresholds, fitted, embedded, settings, values, targets_as, max_state, max_code, max_work,
+            warnings_are_errors: as in `evaluate`.
+
+    Raises:
+        SpecError: the class is wrong, or cannot be proved; the message gives the reason.
+        InputError: an argument is invalid.
+    """
+    ran = run(words_of("prove", locals()))
+    if output is None:
+        return Proof(ran.report, ran.diagnostics)
+    return Proof(path_of("output", output).read_text(encoding="utf-8"), ran.diagnostics)
 
 
 def _judged(command: str, given: dict[str, Any]) -> Evaluation:

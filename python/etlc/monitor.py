@@ -31,6 +31,7 @@ class Monitor(Stepping, Keeping, Referring):
         text: the text of the spec.
         thresholds: a file; by default SPEC.thresholds.json beside the spec, if it exists.
         fitted: a file; by default SPEC.fitted.npz beside the spec, if it exists.
+        embedded: a file of `embed`; by default SPEC.embedded.npz beside the spec, if it exists.
         settings: other values for constants: {"limit": 0.25, "deadline": "2s"}.
         values: "robustness", or "boolean" for verdicts without numbers.
         targets_as: the storage of target sets: "f32", "f16" or "i8".
@@ -63,6 +64,7 @@ class Monitor(Stepping, Keeping, Referring):
         text: str | None = None,
         thresholds: str | os.PathLike[str] | None = None,
         fitted: str | os.PathLike[str] | None = None,
+        embedded: str | os.PathLike[str] | None = None,
         settings: Mapping[str, object] | None = None,
         values: str = "robustness",
         targets_as: str = "f32",
@@ -105,12 +107,14 @@ class Monitor(Stepping, Keeping, Referring):
             max_work=size("max_work", max_work),
             history=size("history", history),
             recorder=recorder_text(recorder),
+            embedded=None if embedded is None else encoded_path("embedded", embedded),
         )
         #: The arguments, to open it again.
         self._opened_with: dict[str, Any] = {
             "spec": spec if spec is None else os.fspath(spec), "text": text,
             "thresholds": thresholds if thresholds is None else os.fspath(thresholds),
             "fitted": fitted if fitted is None else os.fspath(fitted),
+            "embedded": embedded if embedded is None else os.fspath(embedded),
             "settings": None if settings is None else dict(settings), "values": values,
             "targets_as": targets_as, "lets": lets, "history": history, "recorder": recorder,
             "max_state": max_state, "max_code": max_code, "max_work": max_work,

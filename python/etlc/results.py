@@ -63,6 +63,10 @@ class Evaluation(Ambiguous):
 
     _ask = "its .data or .report"
 
+    def __str__(self) -> str:
+        """Returns the tables."""
+        return self.report
+
     def to_pandas(self) -> Any:
         """Returns a pandas.DataFrame: a row for each predicate by frames, and for each monitor by
         steps and by episodes, with the bounds of 95 % intervals.
@@ -167,3 +171,21 @@ class Run(Ambiguous):
     def _content(self) -> tuple[Any, ...]:
         lets = [(name, values.tobytes()) for name, values in self.lets.items()]
         return self.episode._content(), self.positions.tobytes(), lets, self.summary
+
+
+@dataclass(frozen=True)
+class Proof:
+    """The result of `prove`: the class is right on all inputs of so many steps. Always true: a
+    class that is not proved raises SpecError.
+
+    Attributes:
+        certificate: what was proved, and from what, in words.
+        diagnostics: the warnings.
+    """
+
+    certificate: str
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+    def __str__(self) -> str:
+        """Returns the certificate."""
+        return self.certificate

@@ -132,13 +132,13 @@ class Verdict(Ambiguous):
         return explanation
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _verdict, (self.name, *self.bounds, self.robustness, self._status)
+        return verdict_of, (self.name, *self.bounds, self.robustness, self._status)
 
     def _content(self) -> tuple[Any, ...]:
         return self.name, _VERDICT.pack(*self.bounds, self.robustness, self._status)
 
     def __repr__(self) -> str:
-        text = f"<{self.name}: {self.status}{' for good' if self.final else ''}"
+        text = f"<{self.name}: {_frames.standing(self)}"
         if self.decided:
             text += f", {self.robustness:.6g} in [{self.lower:.6g}, {self.upper:.6g}]"
         return text + ">"
@@ -228,8 +228,8 @@ def contains(verdicts: Any, one: object, ask: str) -> bool:
     )
 
 
-def _verdict(name: str, lower: float, upper: float, robustness: float, status: int) -> Verdict:
-    """Makes a verdict that was pickled."""
+def verdict_of(name: str, lower: float, upper: float, robustness: float, status: int) -> Verdict:
+    """Makes a verdict that was pickled, or is one of an array."""
     return Verdict(
         names_of((name,)), 0, name, _VERDICT.pack(robustness, lower, upper, status), 0
     )

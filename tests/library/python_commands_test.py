@@ -24,7 +24,7 @@ from etlc._keywords import keyword_of, words_of
 from etlc._options import OPTIONS
 
 #: Commands that serve a program, and have no function.
-WITHOUT = {"lsp", "watch", "prove"}
+WITHOUT = {"lsp"}
 #: A loop in Python takes several traces.
 SEVERAL = ("--data", "--episodes")
 #: The functions of each command, with the options that each of them does not take, or sets itself.
@@ -39,6 +39,7 @@ FUNCTIONS = {
     "embed": {"embed": {"--pipe"}},  # etlc.Encoder has it
     "run": {"run": {"--summary", "--changes", *SEVERAL}},
     "explain": {"explain": {"--format"}},
+    "watch": {"watch": {"--trace"}},
 }  # fmt: skip
 #: Arguments that the command line cannot have.
 MORE = {"embed": {"encoder"}}
@@ -85,7 +86,7 @@ class Table(unittest.TestCase):
             for option in options:
                 if command not in WITHOUT and option.name != "--diagnostics":
                     own = {"--pipe", "--summary", "--changes", "--check", "--format", "--json",
-                           "--proposals", *(SEVERAL if command == "run" else ())}
+                           "--proposals", "--trace", *(SEVERAL if command == "run" else ())}
                     self.assertIn(option.name, taken | own, command)
 
     def test_every_keyword_is_described(self):
@@ -121,7 +122,8 @@ class Table(unittest.TestCase):
                 continue  # the function itself writes the text
             value, words = self.value_of(option)
             with self.assertRaises(etlc.SpecError):
-                function(**{**needed, keyword: value})
+                running = function(**{**needed, keyword: value})
+                list(running)  # of `watch`
             found = json.loads(said.read_text())
             self.assertEqual(found[0], "word" if command == "compile" else command)
             self.assertIn("\0".join(words), "\0".join(found), f"{name}({keyword}={value!r})")
@@ -354,6 +356,44 @@ class Commands(unittest.TestCase):
         with self.assertRaisesRegex(etlc.InputError, "--port"):
             etlc.label(self.spec, self.path / "data", port=0)
         self.assertIsInstance(etlc.propose(self.spec, self.path / "data").data, dict)
+
+    def test_prove_and_watch(self):
+        text = "spec t; input x : f32; predicate p = x > 0; monitor m = F[0, 3] p;"
+        (self.path / "t.etl").write_text(text)
+        proof = etlc.prove(self.path / "t.etl", steps=8, output=self.path / "t.txt")
+        self.assertEqual(str(proof), (self.path / "t.txt").read_text())
+        self.assertIn("8 steps", proof.certificate)
+        with self.assertRaises(etlc.SpecError):
+            etlc.prove(self.path / "none.etl")
+        with self.assertRaises(etlc.SpecError):  # it has no encoder
+            list(etlc.watch(self.path / "t.etl", self.path / "none.mp4"))
+        with etlc.watch(self.path / "t.etl", "none.mp4") as watching:
+            watching.stop()
+
+    def test_split(self):
+        names = [str(self.path / "split" / f"{n:02}.npz") for n in range(20)]
+        (self.path / "split").mkdir()
+        for n, name in enumerate(names):
+            np.savez(name, z=np.full((3, 2), n))
+        in_order = etlc.split(self.path / "split", 0.25, 0.25, 0.5, by="order")
+        self.assertEqual(in_order, [names[:5], names[5:10], names[10:]])
+        dealt = etlc.split(self.path / "split", 0.25, 0.25, 0.5)
+        self.assertEqual([len(part) for part in dealt], [5, 5, 10])
+        self.assertEqual(sorted(sum(dealt, [])), names)
+        self.assertNotEqual(dealt, in_order)
+        content = [[np.load(name)["z"][0, 0] for name in part] for part in dealt]
+        os.rename(self.path / "split", self.path / "moved")
+        for n, name in enumerate(names):  # the names do not matter
+            moved = name.replace("split", "moved")
+            os.rename(moved, moved.replace(f"{n:02}.npz", f"{(7 * n) % 20}x.npz"))
+        again = etlc.split(str(self.path / "moved" / "*.npz"), 0.25, 0.25, 0.5)
+        self.assertEqual([[np.load(name)["z"][0, 0] for name in part] for part in again], content)
+        for shares, by in (((0.5, 0.6), "hash"), ((1,), "hash"), ((0.5, 0.5), "name"),
+                           ((0.01, 0.99), "hash")):
+            with self.assertRaises(etlc.InputError):
+                etlc.split(self.path / "moved", *shares, by=by)
+        with self.assertRaises(etlc.InputError):
+            etlc.split(self.path / "none", 0.5, 0.5)
 
 
 if __name__ == "__main__":

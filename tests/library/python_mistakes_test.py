@@ -50,7 +50,8 @@ class Truth(unittest.TestCase):
             monitor.measure("is_high"), monitor.inputs["x"], place, etlc.Written(Path("f"), "r"),
             etlc.Evaluation({}, "r"), etlc.EtlcWarning("w"), etlc.Checked(),
             etlc.Suggestions({}), etlc.Run(steps, np.zeros((30, 6))),
-            etlc.Labelling.__new__(etlc.Labelling), etlc.Encoder.__new__(etlc.Encoder),
+            etlc.Labelling.__new__(etlc.Labelling), etlc.Watching.__new__(etlc.Watching),
+            etlc.Proof("c"), etlc.Encoder.__new__(etlc.Encoder),
         ]  # fmt: skip
         made += [
             getattr(etlc, name)("m") for name in etlc.__all__ if name.endswith("Error")

@@ -19,6 +19,7 @@ from pathlib import Path
 import numpy as np
 
 import etlc
+from etlc import conversion
 
 SPECS = Path(sys.argv.pop()).resolve()
 
@@ -313,7 +314,7 @@ class Running(unittest.TestCase):
     def test_arrays_of_the_right_type_are_read_where_they_lie(self):
         z = self.episode()["z"]
         for array in (z, z[::2], z[::-1]):
-            rows = etlc.conversion.as_rows("z", array, np.dtype("f4"), (3,), ("N",))
+            rows = conversion.as_rows("z", array, np.dtype("f4"), (3,), ("N",))
             self.assertIsNone(rows.present)
             self.assertTrue(np.shares_memory(rows.data, z))
 
@@ -736,6 +737,30 @@ monitor docked = F min l2(z, bay) <= 0.3;
         with np.load(path / "episodes" / "drive.npz") as episode:
             verdicts = etlc.Monitor(path / "look.etl").run(z=episode["z"])
         self.assertEqual(verdicts.docked.satisfied.tolist(), [True] * 3)
+
+    def test_one_verdict_of_many(self):
+        text = "spec a; input x : f32; predicate p = x > 0; monitor f = F p; monitor g = G p;"
+        monitor = etlc.Monitor(text=text)
+        verdicts = monitor.run(x=[-1, 2, 3])
+        each = [monitor.step(x=x) for x in (-1, 2, 3) if x > -1 or monitor.reset() is None]
+        for step, one in enumerate(each):
+            self.assertEqual(verdicts.f[step], one.f)
+            self.assertEqual(verdicts.g[step], one.g)
+        self.assertEqual(list(verdicts.f), [one.f for one in each])
+        self.assertTrue(verdicts.g[-1].alarm)
+        self.assertEqual(repr(verdicts.f[0]), "<f: not yet satisfied, -1 in [-1, inf]>")
+        with self.assertRaises(IndexError):
+            verdicts.f[3]
+        with self.assertRaises(IndexError):
+            verdicts.f[0:2]
+
+    def test_no_module_looks_like_a_function(self):
+        self.assertEqual({name for name in dir(etlc) if not name.startswith("_")},
+                         set(etlc.__all__))
+        self.assertFalse(hasattr(etlc, "batch"))
+        import etlc.batch as module  # those who need it have it
+
+        self.assertIs(module.Batch, etlc.Batch)
 
     def test_say_why_they_fail(self):
         path = self.folder(threshold="nothing")

@@ -130,7 +130,7 @@ fi
 # build folder is there after the first, or made by the second.
 [ "$generator" = Ninja ] || exit 0
 top=$here/../..
-[ "$(sed -n '/^## Get it/,/^## /p' "$top/README.md" |
+[ "$(sed -n '/^## Install/,/^## /p' "$top/README.md" |
     grep -oE '^    (\./demo\.sh|cmake --(build|install) build/release)' | tr -d '\n')" = \
     "    ./demo.sh    cmake --build build/release    cmake --install build/release" ] ||
     fail "README.md on how to install etlc"

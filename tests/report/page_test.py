@@ -120,6 +120,23 @@ def follows(page, step):
     assert grey == 6 * step, (grey, step)
 
 
+def begins_where_it_is_wrong(page):
+    """The first thing on the page is an episode, at a step where its monitor is wrong: in words,
+    with the picture of that step. What may still change is not called violated."""
+    assert page.value("document.querySelector('main section').id") == "episodes"
+    step, said, true = page.value("""(() => {
+        const lane = view.timelines.lanes.find((of) => of.name === (view.row.wrong[0] ?? view.row.firstError[1]));
+        return [view.step, lane.said[view.step], lane.truth[view.step]];
+    })()""")
+    headline = page.value("document.getElementById('headline').textContent")
+    assert headline.startswith(f"Wrong at step {step} "), headline
+    assert {said % 4, true % 4} == {0, 1}, (said, true)
+    assert page.value("document.getElementById('frame').dataset.step") == str(step)
+    words = page.value("Array.from(document.querySelectorAll('td.said.monitor'), "
+                       "(cell) => [cell.textContent, cell.className])")
+    assert not any(text == "violated" and "final" not in of for text, of in words), words
+
+
 def look(browser, path, width, height, judged):
     page = browser.page(path, width, height)
     page.wait("view.episode !== null")
@@ -132,6 +149,7 @@ def look(browser, path, width, height, judged):
     page.click("#rows .row:nth-child(2)")
     page.wait("view.row === list.shown[1]")
     assert page.value("document.getElementById('episode-name').textContent").endswith("worst.npz")
+    begins_where_it_is_wrong(page)
 
     page.key("Home")
     follows(page, 0)

@@ -101,9 +101,9 @@ def between_two_thresholds(browser):
                                  stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         page = browser.page(watch.stdout.readline().strip())
         for step, (d, near, seldom, stays) in enumerate((
-                ("d\n0.2", "yes", "unknown", "satisfied"),
+                ("d\n0.2", "yes", "unknown", "so far"),
                 ("0.7", "unknown", "unknown", "unknown"),
-                ("3", "no", "no", "violated, for good"))):
+                ("3", "no", "no", "violated"))):
             watch.stdin.write(d + "\n")
             watch.stdin.flush()
             page.wait(f"document.getElementById('readout').dataset.step === '{step}'")

@@ -91,10 +91,11 @@ typedef struct etlc_options {
   /* From version 2 on. BEFORE,AFTER,INCIDENTS: the steps to record around each alarm, and the
    * number of alarms, such as "2s,1s,4" or "40,20,4"; null: none. */
   const char *recorder;
+  const char *embedded; /* from version 5 on: a file; null: SPEC.embedded.npz beside the spec */
 } etlc_options;
 
 #define ETLC_OPTIONS \
-  {sizeof(etlc_options), ETLC_API_VERSION, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+  {sizeof(etlc_options), ETLC_API_VERSION, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
 
 /* Compiles the spec and opens a session before its first step. ETLC_REFUSED where it does not
  * compile. Several threads may call it at once. Allocates memory. */

@@ -74,8 +74,34 @@ std::vector<std::string> levels(const check::Threshold& threshold) {
     return texts;
 }
 
+namespace {
+
+/// Adds where a predicate or monitor is first called wrong, and where it is for the last time: the
+/// page begins there.
+void add_errors(const Tracks& tracks, std::vector<std::uint64_t>& steps) {
+    for (const auto& [said_of, true_of] :
+         {std::pair("holds", "truth"), {"status", "monitor_truth"}})
+        for (const Codes& said : tracks.codes)
+            for (const Codes& is : tracks.codes) {
+                if (said.of != said_of || is.of != true_of || said.index != is.index) continue;
+                std::vector<std::uint64_t> begins;
+                bool before = false;
+                for (std::size_t step = 0; step < is.values.size(); ++step) {
+                    const auto [a, b] =
+                        std::minmax(said.values[step] % kFinal, is.values[step] % kFinal);
+                    const bool is_wrong = a == kNo && b == kYes;
+                    if (is_wrong && !before) begins.push_back(step);
+                    before = is_wrong;
+                }
+                if (!begins.empty()) steps.insert(steps.end(), {begins.front(), begins.back()});
+            }
+}
+
+}  // namespace
+
 std::vector<std::uint64_t> telling_steps(const Tracks& tracks) {
     std::vector<std::uint64_t> steps;
+    add_errors(tracks, steps);
     for (const Why& why : tracks.reasons) {
         if (why.critical) steps.push_back(why.critical->first);
         steps.push_back(std::min(why.step, tracks.frames - 1));
@@ -182,7 +208,7 @@ void TrackReader::note_frame(const episodes::Recording& recording, Tracks& track
 void TrackReader::note_truth(std::size_t monitor) {
     const plan::Monitor& of = scene_.plan.monitors[monitor];
     const Verdict& is = truths_->verdict(truth_of_[monitor]);
-    monitor_tracks_[monitor].truth.push_back(code_of(is) % kFinal);
+    monitor_tracks_[monitor].truth.push_back(code_of(is));
     if (of.restarts == check::Restarts::when_final && monitors_.verdicts()[monitor].final())
         truths_->restart(truth_of_[monitor]);
 }
@@ -485,7 +511,8 @@ private:
                                : status == kUnknown ? "unknown"
                                                     : "open";
             shows_unknown_ |= status == kUnknown;
-            if (codes.of == "status" && code < kFinal) kind += " so-far";
+            if (codes.of == "status" && code < kFinal)
+                kind = status == kNo ? "no" : kind + " so-far";
             rectangle(kind, from, to, top_, kStrip);
         });
         top_ += kStrip + 2;

@@ -118,8 +118,8 @@ struct Tracks {
     std::vector<Why> reasons;
 };
 
-/// Returns the steps whose pictures tell most, these first: of the samples that explain the
-/// verdicts, then where a truth, a verdict or a bool changes.
+/// Returns the steps whose pictures tell most, these first: where something is called wrong,
+/// of the samples that explain the verdicts, then where a truth, a verdict or a bool changes.
 std::vector<std::uint64_t> telling_steps(const Tracks& tracks);
 
 /// Reads one episode after the other, on one thread. The scene must outlive it.

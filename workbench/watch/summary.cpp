@@ -12,6 +12,12 @@ const char* status(const etlmon::Verdict& verdict) {
     return verdict.satisfied() ? "satisfied" : verdict.violated() ? "violated" : "unknown";
 }
 
+std::string standing(const etlmon::Verdict& verdict) {
+    if (!verdict.decided()) return status(verdict);
+    if (verdict.final()) return std::string(status(verdict)) + " for good";
+    return verdict.violated() ? "not yet satisfied" : std::string(status(verdict)) + " so far";
+}
+
 std::string when(const check::Model& model, std::uint64_t step) {
     const double length = model.step_seconds;
     if (length == 0) return fmt::format("step {}", step);
@@ -44,10 +50,8 @@ void Summary::add(std::size_t monitor, std::uint64_t step, const etlmon::Verdict
 }
 
 std::string Summary::of_prefix(const OfMonitor& m) const {
-    std::string text = fmt::format("{} so far", status(m.last));
-    if (m.final_since)
-        text = fmt::format("{} for good from {} on", status(m.last),
-                           when(*plan_.model, *m.final_since));
+    std::string text = standing(m.last);
+    if (m.final_since) text += fmt::format(" from {} on", when(*plan_.model, *m.final_since));
     return text + fmt::format(", robustness {:.6g}", m.last.robustness);
 }
 
@@ -58,7 +62,7 @@ std::string Summary::of_repeating(const OfMonitor& m) const {
     if (m.ended_unknown > 0)
         text += fmt::format("; unknown {}", diag::counted(m.ended_unknown, "time"));
     return text +
-           fmt::format("; at the end {}, robustness {:.6g}", status(m.last), m.last.robustness);
+           fmt::format("; at the end {}, robustness {:.6g}", standing(m.last), m.last.robustness);
 }
 
 std::string Summary::of_sliding(const OfMonitor& m, std::uint64_t horizon) const {
@@ -131,8 +135,7 @@ std::string Changes::after_finish(std::uint64_t step, const std::vector<etlmon::
 std::string Changes::of_monitor(std::size_t m, std::uint64_t step, const etlmon::Verdict& verdict,
                                 const execute::Evaluator& evaluator) {
     const plan::Monitor& monitor = plan_.monitors[m];
-    std::string words = status(verdict);
-    if (!monitor.sliding && verdict.decided()) words += verdict.final() ? " for good" : " so far";
+    std::string words = monitor.sliding ? status(verdict) : standing(verdict);
     // A monitor that begins again has another final verdict each time.
     const bool repeats = monitor.restarts == check::Restarts::when_final && verdict.final();
     if (words == said_[m] && !repeats) return "";

@@ -16,6 +16,8 @@ namespace etlc::watch {
 
 /// Returns "satisfied", "violated", "unknown" or "undecided".
 const char* status(const etlmon::Verdict& verdict);
+/// Returns the status of a prefix: "violated for good", "satisfied so far", "not yet satisfied".
+std::string standing(const etlmon::Verdict& verdict);
 
 /// Returns "step 5 (1.25 s)".
 std::string when(const check::Model& model, std::uint64_t step);

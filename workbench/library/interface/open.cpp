@@ -85,6 +85,7 @@ etlc_status take(const etlc_options& options, Wish& wish) {
         return refuse_null("options.path, and options.text with it,");
     wish.check.thresholds_path = text_of(options.thresholds);
     wish.check.fitted_path = text_of(options.fitted);
+    wish.check.embedded_path = text_of(options.embedded);
     if (const etlc_status failed = take_settings(options, wish)) return failed;
     if (const etlc_status failed = take_recorder(options, wish)) return failed;
     return take_choices(options, wish);
@@ -116,9 +117,9 @@ std::unique_ptr<Session> open(const etlc_options& options, const Wish& wish, sou
 /// The size of etlc_options in each version of etlc.h.
 constexpr std::uint32_t kSizes[ETLC_API_VERSION + 1] = {0,
                                                         offsetof(etlc_options, recorder),
-                                                        sizeof(etlc_options),
-                                                        sizeof(etlc_options),
-                                                        sizeof(etlc_options),
+                                                        offsetof(etlc_options, embedded),
+                                                        offsetof(etlc_options, embedded),
+                                                        offsetof(etlc_options, embedded),
                                                         sizeof(etlc_options)};
 
 /// Converts the caller's options to those of this version.

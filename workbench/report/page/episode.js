@@ -19,13 +19,6 @@ const valueText = (values) =>
   values.length === 2 && values[0] !== values[1]
     ? `${measured(values[0])} … ${measured(values[1])}` : measured(values[0]);
 
-function saidCell(code, kind) {
-  const words = kind === "monitor" ? statusWords : ["no", "yes", "unknown", "undecided"];
-  const status = statusOf(code);
-  return element("td", { class: `said ${kind} ${statusWords[status]}` },
-    words[status] + (isFinal(code) ? ", for good" : ""));
-}
-
 function readoutRow(lane, step) {
   const of = lane.kind === "predicate" ? "distance" : "robustness";
   const row = element("tr", { "data-lane": lane.name }, element("th", {}, lane.name),
@@ -90,13 +83,41 @@ function moveCursor(step) {
 
 function summaryOf(row) {
   const verdicts = row.outcomes.map((outcome, index) => {
-    const final = outcome.finalAt === null ? "" : `, for good at ${when(outcome.finalAt)}`;
-    return `${data.monitors[index].name}: ${statusWords[outcome.status]}${final}`;
+    const since = outcome.finalAt === null ? "" : ` from ${when(outcome.finalAt)} on`;
+    return `${data.monitors[index].name}: ${verdictWord(endOf(outcome, index))}${since}`;
   });
-  if (row.firstError)
-    verdicts.push(`first wrong: ${row.firstError[1]} at ${when(row.firstError[0])}`);
   if (row.missing > 0) verdicts.push(`${counted(row.missing, "sample")} missing`);
   return verdicts.join(" · ");
+}
+
+// Returns where to begin: where the first wrong monitor begins to stay wrong, or else where a
+// predicate is first called wrong.
+function errorOf(row) {
+  const lane = view.timelines.lanes.find((of) => of.kind === "monitor" && of.name === row.wrong[0]);
+  if (!lane?.truth) return row.firstError;
+  const isWrong = (step) => differs(lane.said[step], lane.truth[step]);
+  let step = lane.said.length - 1;
+  while (step > 0 && !isWrong(step)) step--;
+  while (step > 0 && isWrong(step - 1)) step--;
+  return isWrong(step) ? [step, lane.name] : row.firstError;
+}
+
+// Returns what was said and what is true there, or else the first alarm.
+function headlineOf(row, error) {
+  if (error) {
+    const [step, name] = error;
+    const lane = view.timelines.lanes.find((of) => of.name === name);
+    const word = (codes) => {
+      const short = saidCell(codes[step], lane.kind).textContent;
+      return { "so far": "satisfied so far", "not yet": "not yet satisfied" }[short] ?? short;
+    };
+    const both = lane?.truth && step < lane.said.length
+      ? `${word(lane.said)}; true is: ${word(lane.truth)}` : "called wrong";
+    return `Wrong at ${when(step)}: ${name} is ${both}.`;
+  }
+  const alarm = row.outcomes.findIndex((of) => of.alarm !== null && of.alarm === row.alarm);
+  if (alarm >= 0) return `Alarm at ${when(row.alarm)}: ${data.monitors[alarm].name} is violated.`;
+  return data.has_truth ? "Nothing is called wrong in it." : "It raised no alarm.";
 }
 
 async function selectEpisode(row) {
@@ -108,7 +129,7 @@ async function selectEpisode(row) {
   document.getElementById("episode-summary").textContent = summaryOf(row);
   if (row.series === null) {
     view.episode = null;
-    for (const id of ["readout", "why", "planes", "pictures", "nearest"]) fill(id);
+    for (const id of ["headline", "readout", "why", "planes", "pictures", "nearest"]) fill(id);
     fill("tracks", element("p", {}, "No timelines: they were left out to keep this page small."));
     return;
   }
@@ -119,7 +140,9 @@ async function selectEpisode(row) {
   const broken = row.outcomes.findIndex((outcome) => outcome.alarm !== null);
   const wrong = data.monitors.findIndex((monitor) => row.wrong.includes(monitor.name));
   view.why = wrong >= 0 ? wrong : Math.max(broken, 0);
-  view.step = row.firstError?.[0] ??
+  const error = errorOf(row);
+  document.getElementById("headline").textContent = headlineOf(row, error);
+  view.step = error?.[0] ??
     episode.why.find((of) => of.monitor === view.why)?.step ?? 0;
   view.timelines.draw();
   showPlanes();

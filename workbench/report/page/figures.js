@@ -20,7 +20,7 @@ function headRow(...titles) {
 const blindHeads = [
   ["always true", "F1 of always claiming true"],
   ["always false", "F1 of always claiming false"],
-  ["duration", "F1 of a threshold on the length of the episode, or the number of the step"],
+  ["duration", "F1 of a clock: true from one number of steps to another, and nothing else"],
 ];
 
 function blindCells(of, key) {

@@ -7,6 +7,24 @@ const statusWords = ["violated", "satisfied", "unknown", "undecided"];
 const isFinal = (code) => code >= 4;
 const statusOf = (code) => code % 4;
 
+// Returns what a verdict is called: one that may still change is "not yet" or "so far".
+const verdictWord = (code) =>
+  (isFinal(code) ? statusWords : ["not yet", "so far", "unknown", "undecided"])[statusOf(code)];
+// Returns the code of a monitor's verdict: that of a sliding one about a position never changes.
+const verdictCode = (code, monitor) =>
+  code + (data.monitors[monitor].sliding && code < statusWords.indexOf("undecided") ? 4 : 0);
+
+// Whether what is said is wrong; unknown is not.
+const differs = (said, is) => statusOf(is) <= 1 && statusOf(said) === 1 - statusOf(is);
+// Returns the classes of a verdict, or of what a predicate is called.
+const codeClass = (code) => statusWords[statusOf(code)] + (isFinal(code) ? " final" : "");
+
+function saidCell(code, kind) {
+  const words = ["no", "yes", "unknown", "undecided"];
+  return element("td", { class: `said ${kind} ${codeClass(code)}` },
+    kind === "monitor" ? verdictWord(code) : words[statusOf(code)]);
+}
+
 // element("td", {class: "number"}, "0.5", child, ...)
 function element(name, attributes, ...children) {
   const made = document.createElement(name);

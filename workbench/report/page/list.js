@@ -30,10 +30,14 @@ const rowsAtOnce = 120;
 
 const list = { order: "worst", filter: "", shown: [], drawn: 0, selected: null };
 
+// Returns the code of the last verdict; the worst of a sliding monitor.
+const endOf = (outcome, index) =>
+  verdictCode(statusOf(outcome.status) + (outcome.finalAt === null ? 0 : 4), index);
+
 function statusDot(outcome, index) {
-  const word = statusWords[statusOf(outcome.status)];
-  return element("span", { class: `dot ${word}`,
-    title: `${data.monitors[index].name}: ${word}` });
+  const code = endOf(outcome, index);
+  return element("span", { class: `dot ${codeClass(code)}`,
+    title: `${data.monitors[index].name}: ${verdictWord(code)}` });
 }
 
 function rowElement(episode) {

@@ -49,11 +49,12 @@ class Timelines {
         said: tracks.holds[index][0], truth: tracks.truth?.[index]?.[0] });
     });
     data.monitors.forEach((monitor, index) => {
+      const codes = (of) => of?.[index]?.[0].map((code) => verdictCode(code, index));
       lanes.push({ kind: "monitor", index, name: monitor.name, text: monitor.formula, levels: [0],
-        points: pointsOf(this.episode, tracks.robustness[index]), said: tracks.status[index][0],
+        points: pointsOf(this.episode, tracks.robustness[index]), said: codes(tracks.status),
         bounds: monitor.sliding ? null : [tracks.lower, tracks.upper].map((of) =>
           pointsOf(this.episode, of?.[index] ?? tracks.robustness[index])),
-        truth: tracks.monitor_truth?.[index]?.[0] });
+        truth: codes(tracks.monitor_truth) });
     });
     return lanes;
   }
@@ -116,7 +117,7 @@ class Timelines {
     if (!lane.truth) return;
     strip(lane.truth, "truth", "true");
     const wrong = Array.from(lane.truth, (is, step) =>
-      is <= 1 && statusOf(lane.said[step]) === 1 - is ? 1 : 0);  // unknown is not wrong
+      differs(lane.said[step], is) ? 1 : 0);
     strip(wrong, "wrong", "wrong");
   }
 
@@ -135,7 +136,7 @@ class Timelines {
   drawStrip(g, codes, top, kind) {
     this.rects(g.append("g"), codes, (code) => kind !== "wrong" || code === 1)
       .attr("class", ([, , code]) =>
-        `strip ${kind} ${statusWords[statusOf(code)]}${isFinal(code) ? " final" : ""}`)
+        `strip ${kind} ${codeClass(code)}`)
       .attr("y", top).attr("height", laneSize.strip);
   }
 

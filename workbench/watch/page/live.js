@@ -40,12 +40,6 @@ function valueCell(value) {
   return element("td", { class: "number" }, measured(value));
 }
 
-function saidOf(code, kind) {
-  const words = kind === "monitor" ? statusWords : ["no", "yes", "unknown", "undecided"];
-  return element("td", { class: `said ${kind} ${statusWords[statusOf(code)]}` },
-    words[statusOf(code)] + (isFinal(code) ? ", for good" : ""));
-}
-
 function showReadout(one) {
   const head = element("tr", { class: "head" }, element("th", {}, when(one.step)),
     element("th", {}, "value"), element("th", {}, "threshold"), element("th", {}, "said"));
@@ -53,11 +47,11 @@ function showReadout(one) {
     element("tr", { "data-predicate": predicate.shown }, element("th", {}, predicate.shown),
       valueCell(one.distance[index]),
       element("td", {}, `${predicate.comparison} ${levelsText(predicate)}`),
-      saidOf(one.holds[index], "predicate")));
+      saidCell(one.holds[index], "predicate")));
   const monitors = data.monitors.map((monitor, index) =>
     element("tr", { "data-monitor": monitor.name }, element("th", {}, monitor.name),
       valueCell(one.robustness[index]), element("td", {}, ">= 0"),
-      saidOf(monitor.sliding ? one.status[index] % 4 : one.status[index], "monitor")));
+      saidCell(verdictCode(one.status[index], index), "monitor")));
   fill("readout", element("tbody", {}, head, ...predicates, ...monitors));
   document.getElementById("readout").dataset.step = one.step;
 }
