@@ -112,8 +112,8 @@ function headlineOf(row, error) {
       return { "so far": "satisfied so far", "not yet": "not yet satisfied" }[short] ?? short;
     };
     const both = lane?.truth && step < lane.said.length
-      ? `${word(lane.said)}; true is: ${word(lane.truth)}` : "called wrong";
-    return `Wrong at ${when(step)}: ${name} is ${both}.`;
+      ? `${word(lane.said)}; in truth it is ${word(lane.truth)}` : "wrong";
+    return `Wrong at ${when(step)}: ${name} is called ${both}.`;
   }
   const alarm = row.outcomes.findIndex((of) => of.alarm !== null && of.alarm === row.alarm);
   if (alarm >= 0) return `Alarm at ${when(row.alarm)}: ${data.monitors[alarm].name} is violated.`;

@@ -61,7 +61,7 @@ class Timelines {
 
   draw() {
     this.parent.replaceChildren();
-    const width = Math.max(this.parent.clientWidth, 360);
+    const width = Math.max(this.parent.clientWidth, 320);
     const inner = width - laneMargin.left - laneMargin.right;
     let height = 4;
     for (const lane of this.lanes) {
