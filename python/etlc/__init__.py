@@ -37,6 +37,7 @@ from .errors import (
 )
 from .encoding import Encoder
 from .description import REFERENCE_FRAMES, Input, Measurement, Measurements
+from .guard import Guard
 from .judging import crossvalidate, evaluate, prove, report
 from .labelling import Labelling, Watching, label, propose, watch
 from .learning import calibrate, embed, fit, merge, suggest
@@ -65,6 +66,7 @@ __all__ = [
     "EtlcWarning",
     "Evaluation",
     "Explanation",
+    "Guard",
     "Input",
     "InputError",
     "Labelling",

@@ -51,7 +51,7 @@ class Truth(unittest.TestCase):
             etlc.Evaluation({}, "r"), etlc.EtlcWarning("w"), etlc.Checked(),
             etlc.Suggestions({}), etlc.Run(steps, np.zeros((30, 6))),
             etlc.Labelling.__new__(etlc.Labelling), etlc.Watching.__new__(etlc.Watching),
-            etlc.Proof("c"), etlc.Encoder.__new__(etlc.Encoder),
+            etlc.Proof("c"), etlc.Guard(monitor), etlc.Encoder.__new__(etlc.Encoder),
         ]  # fmt: skip
         made += [
             getattr(etlc, name)("m") for name in etlc.__all__ if name.endswith("Error")

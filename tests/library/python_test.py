@@ -119,7 +119,7 @@ class Describing(unittest.TestCase):
         for kind in (etlc.Monitor, etlc.Verdict, etlc.Verdicts, etlc.Episode,
                      etlc.EpisodeVerdicts, etlc.Explanation, etlc.Batch, etlc.BatchVerdicts,
                      etlc.BatchEpisode, etlc.VerdictArrays, etlc.RunVerdicts, etlc.Run,
-                     etlc.Encoder, etlc.Labelling):  # fmt: skip
+                     etlc.Encoder, etlc.Guard, etlc.Labelling):  # fmt: skip
             calls += [name for name, _ in inspect.getmembers(kind) if not name.startswith("_")]
         calls += [name for name in vars(etlc.Monitor(text=DOCK)) if not name.startswith("_")]
         self.assertGreater(len(calls), 50)
@@ -753,6 +753,60 @@ monitor docked = F min l2(z, bay) <= 0.3;
             verdicts.f[3]
         with self.assertRaises(IndexError):
             verdicts.f[0:2]
+
+    def test_guard(self):
+        class Tensor:  # as torch has them, of a batch of one
+            def __init__(self, *numbers):
+                self.numbers = np.array([numbers], "f4")
+
+            detach = cpu = lambda self: self
+
+            def numpy(self):
+                return self.numbers
+
+        monitor = etlc.Monitor(history=9, text="""spec a;
+            input z : f32[2]; input s : f32; target home = [[0, 0]];
+            predicate near = l2(z, home) <= 1;
+            monitor safe = G (s < 1 -> !near); monitor done = F near;""")
+        guard = etlc.Guard(monitor, on_alarm="hand_over", on_fulfilled={"done": "stop"},
+                           on_unknown="retry", names={"z": "observation.state", "s": "speed"})
+        self.assertIsNone(guard.verdicts)
+        far, here = Tensor(3, 4), Tensor(0, 0.5)
+
+        def see(z, s):
+            return guard.step({"observation.state": z, "speed": s, "observation.image": None})
+
+        self.assertEqual(see(far, [0.5]), "continue")
+        self.assertEqual(see(here, 2.0), "stop")
+        self.assertEqual(guard.why(), {})
+        guard.reset()
+        self.assertEqual(see(None, 2), "retry")  # no sample of `z`
+        guard.reset()
+        guard = etlc.Guard(monitor, on_alarm="hand_over", names={"z": "observation.state"},
+                           encode=lambda observation: {"z": observation["frame"], "s": 0.0})
+        self.assertEqual(guard.step({"frame": [3, 4]}), "continue")
+        self.assertEqual(guard.step({"frame": [0, 0]}), "hand_over")
+        self.assertIn("near holds at step 1", guard.why()["safe"])
+        self.assertEqual(guard.step({"frame": [3, 4]}), "hand_over")  # until the next episode
+        guard.reset()
+        self.assertEqual(guard.step({"frame": [3, 4]}), "continue")
+        encoded = etlc.Guard(monitor, encode=lambda observation: np.ones((1, 2)))
+        self.assertEqual(encoded.step({"s": 5}), "continue")
+        alone = etlc.Guard(etlc.Monitor(
+            text="spec a; input x : f32; predicate p = x > 0; monitor m = G p;"))
+        self.assertEqual([alone.step(x) for x in (1, np.array([2.0]), -1)],
+                         ["continue", "continue", "stop"])
+        for call, why in (
+            (lambda: guard.step({}), "frame"), (lambda: encoded.step({"x": 1}), "no 's'"),
+            (lambda: etlc.Guard(monitor).step(3), "there are z, s"),
+            (lambda: etlc.Guard(monitor).step({"s": 1}), "no 'z' for the input 'z': s"),
+            (lambda: etlc.Guard(monitor).step({"z": [1, 2, 3], "s": 1}), "z"),
+            (lambda: etlc.Guard(monitor, on_alarm="halt"), "expected one of continue, retry"),
+            (lambda: etlc.Guard(monitor, on_alarm={"saf": "stop"}), "did you mean 'safe'"),
+            (lambda: etlc.Guard(monitor, names={"y": "z"}), "no input 'y'"),
+        ):
+            with self.assertRaisesRegex((etlc.InputError, KeyError), why):
+                call()
 
     def test_no_module_looks_like_a_function(self):
         self.assertEqual({name for name in dir(etlc) if not name.startswith("_")},
