@@ -63,6 +63,10 @@ BOOL    : 'bool' ;
 RESTARTABLE : 'restartable' ;
 REPEATING   : 'repeating' ;
 
+// ---- contextual: whether a calibration still holds
+
+DRIFT : 'drift' ;
+
 // ---- contextual: operators of formulas
 
 RISE : 'rise' ;

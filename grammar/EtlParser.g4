@@ -31,6 +31,7 @@ declaration
     | LET name ASSIGN formula SEMICOLON                                   # LetDeclaration
     | kind=(SLIDING | RESTARTABLE | REPEATING)? MONITOR name ASSIGN formula calibrated? SEMICOLON
                                                                           # MonitorDeclaration
+    | DRIFT name ASSIGN OF name (COMMA argument)* SEMICOLON               # DriftDeclaration
     ;
 
 rounding
@@ -284,7 +285,7 @@ name
     : IDENTIFIER
     | IN | HOLD | MISSING | SCALE | STALE | AFTER
     | F32 | F16 | I8 | BOOL
-    | RESTARTABLE | REPEATING
+    | RESTARTABLE | REPEATING | DRIFT
     | RISE | FALL | HELD
     | PROJECTION | OFFSET | FITTED | FRAMES | STRIDE | OF | WHERE
     | ENCODER | BY | IMAGES | IMAGE | DEVIATION | RESIZE | FLIP | CHANNELS

@@ -61,7 +61,8 @@ ItemTakers Items::takers() {
                 }};
         };
         if (path.back() == "episodes") return take_into(episodes_, hash_of);
-        const bool is_of_scores = path.back() == "scores" || path.back().starts_with("losses");
+        const std::string& key = path.back();
+        const bool is_of_scores = key == "scores" || key == "measured" || key.starts_with("losses");
         if (is_of_scores && of_entry) return take_into(scores_, score_of);
         return {};
     };

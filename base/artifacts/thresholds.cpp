@@ -104,6 +104,7 @@ void members(Archive& archive, auto& entry, bool of_monitor) {
         archive("against", entry.against, artifacts::Words{{"false_positives", "both"}},
                 Presence::where_any);
     archive("within", entry.within, Presence::where_any);
+    archive("measured", entry.measured, Presence::where_any);
     if (of_monitor) archive("episodes", entry.episodes, Presence::always);
     if constexpr (Archive::kReads)
         if (of_two != (entry.against == "both"))

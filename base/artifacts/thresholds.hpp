@@ -59,6 +59,9 @@ struct Entry : Side {
     std::uint64_t within = 0;  ///< steps around a change of the truth without labels
     /// Against both: the threshold within which it is called true or satisfied.
     std::optional<Side> inner;
+    /// Normal: the scores as this machine measures them, without the margin of other builds; drifts
+    /// compare them with those of new episodes.
+    std::vector<double> measured;
     std::vector<std::uint64_t> episodes;  ///< monitors: hashes of the calibration episodes
     /// Monitors with a calibrated duration: that, in steps. Scores are durations too; there is no
     /// epsilon.

@@ -334,8 +334,16 @@ struct Monitor {
     Span span;
 };
 
+/// drift NAME = of PREDICATE_OR_MONITOR, level = L
+struct Drift {
+    Name name;
+    Name of;
+    std::vector<Calibrated::Argument> arguments;
+    Span span;
+};
+
 using Declaration = std::variant<Rate, Constant, Encoder, Input, Projection, Target, Predicate,
-                                 Truth, Let, Monitor>;
+                                 Truth, Let, Monitor, Drift>;
 
 struct Spec {
     Name name;  ///< empty if missing or unreadable, which has been reported

@@ -106,13 +106,19 @@ std::string text_of(const Distance& distance) {
                        text_of(distance.point), text_of(distance.other));
 }
 
+/// ", k = 8, of = z".
+template <class Argument>
+std::string text_of_all(const std::vector<Argument>& arguments) {
+    std::string text;
+    for (const Argument& a : arguments)
+        text += fmt::format(", {} = {}", a.key.text, text_of(a.value));
+    return text;
+}
+
 /// "calibrated(f1)", "fitted(kmeans, k = 8, ...)".
 template <class Call>
 std::string call_text(std::string_view word, const Call& call) {
-    std::string arguments;
-    for (const auto& a : call.arguments)
-        arguments += fmt::format(", {} = {}", a.key.text, text_of(a.value));
-    return fmt::format("{}({}{})", word, call.method.text, arguments);
+    return fmt::format("{}({}{})", word, call.method.text, text_of_all(call.arguments));
 }
 
 std::string text_of(const Fitted& fitted) {
@@ -277,6 +283,11 @@ std::string text_of(const Monitor& monitor) {
     constexpr std::array<std::string_view, 4> kWords{"", "sliding ", "restartable ", "repeating "};
     return fmt::format("{}monitor {} = {}{}", kWords[static_cast<std::size_t>(monitor.kind)],
                        monitor.name.text, print(*monitor.formula), calibrated);
+}
+
+std::string text_of(const Drift& drift) {
+    return fmt::format("drift {} = of {}{}", drift.name.text, drift.of.text,
+                       text_of_all(drift.arguments));
 }
 
 }  // namespace

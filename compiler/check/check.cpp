@@ -27,6 +27,7 @@ void check_all(Context& context, ast::Spec& spec) {
     check_fitted_frames(context);
     check_fitted_entries(context);
     check_monitors(context);
+    check_drifts(context);
     choose_telemetry(context);
     check_thresholds(context);
     set_robustness(context);

@@ -56,6 +56,8 @@ std::vector<Member> own_members(const Context& context) {
     result.insert(result.end(), telemetry.begin(), telemetry.end());
     const std::vector<Member> thresholds = threshold_members(context);
     result.insert(result.end(), thresholds.begin(), thresholds.end());
+    const std::vector<Member> drifts = drift_members(context);
+    result.insert(result.end(), drifts.begin(), drifts.end());
     for (const auto& [m, name] : context.names.verdict_member)
         result.push_back({context.spelling.verdict, name, "last verdict, for finish()",
                           fmt::format("{} = {}();", name, context.spelling.verdict), ""});
@@ -254,6 +256,7 @@ void declare_halves(Printer& out) {
 std::string reset_words(const Context& context) {
     std::string words = "Starts a new episode";
     if (!context.names.threshold_member.empty()) words += "; adaptive thresholds are kept";
+    if (!context.names.drifts.empty()) words += "; drifts are kept";
     if (context.plan.recorder)
         words += "; incidents are kept, and those that wait for steps are completed";
     return words + ".";
@@ -296,6 +299,7 @@ void print_interface(Printer& out, const Context& context, const std::vector<Mem
     print_why(out, context);
     print_let_interface(out, context);
     print_adaptive_interface(out, context);
+    print_drift_interface(out, context);
     print_doc(out, fmt::format("Returns the number of steps at which a predicate or bool input{} "
                                "was unknown{}; saturates.",
                                context.on_demand ? " that was evaluated" : "",
@@ -387,6 +391,7 @@ void print_class(Printer& out, const Context& context) {
     if (context.on_demand) declare_advance(out);
     declare_parts(out, context);
     print_adaptation_constants(out, context);
+    print_drift_constants(out, context);
     print_state(out, all);
     out.close("};");
     out.line(

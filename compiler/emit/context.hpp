@@ -207,6 +207,17 @@ std::string comment_of_array(const Context& context, const plan::Member& first,
                              const plan::Member& last, bool more);
 std::vector<Member> threshold_members(const Context& context);
 
+// Drifts. These print nothing for a spec without one.
+std::vector<Member> drift_members(const Context& context);
+/// Prints end_episode(), alarm_D(), drift_D() and what restores it.
+void print_drift_interface(Printer& out, const Context& context);
+void print_drift_constants(Printer& out, const Context& context);
+/// Prints that the drifts of a predicate see its distance or expression at this step, `delta`.
+void print_seen(Printer& out, const Context& context, check::Index predicate,
+                const std::string& delta);
+/// Prints that the drifts of monitors see the verdicts of this step.
+void print_seen_verdicts(Printer& out, const Context& context, std::string_view verdicts);
+
 // The parameters of a retargetable class. These print nothing for other classes.
 /// Returns a description of the parameters.
 std::string about_parameters(const plan::Plan& plan, bool is_calibrated);

@@ -66,6 +66,7 @@ std::set<std::string> runtime_headers(const Context& context) {
     }
     if (!plan.pasts.empty()) headers.insert("past/numbers");
     if (!context.names.threshold_member.empty()) headers.insert("temporal/adaptation");
+    if (!context.names.drifts.empty()) headers.insert("temporal/drift");
     for (Index i : plan.inputs) {
         const check::Input& input = context.model.inputs[i];
         if (input.type == InputType::f16 || input.type == InputType::i8)

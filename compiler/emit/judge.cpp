@@ -301,6 +301,7 @@ void print_judge(Printer& out, const Context& context) {
     for (std::uint32_t part = 0; part < context.parts.count; ++part)
         out.line("judge_{}(now, {}verdicts);", part + 1, context.parts.share() ? "shared, " : "");
     print_lets(out, context);
+    print_seen_verdicts(out, context, "verdicts");
     print_progress(out, context, "verdicts");
     print_record(out, context, "verdicts");
     if (plan.counts_steps) print_wrapped(out, counted("position_"));

@@ -109,6 +109,10 @@ private:
             names_.threshold_member[p] = member(members_, predicate.name + "_threshold");
             names_.adaptation_constant[p] = member(members_, predicate.name + "_adaptation");
         }
+        for (const check::Index d : plan_.drifts) {
+            const std::string& name = model_.drifts[d].name;
+            names_.drifts[d] = {member(members_, name), member(members_, name + "_cells")};
+        }
         for (check::Index p : plan::built_points(model_, plan_.distances)) {
             const std::string name = identifier(model_.points[p].text, "point");
             const std::string ago = model_.points[p].is_delayed() ? "_ago" : "";

@@ -53,6 +53,12 @@ struct Names {
     std::map<check::Index, std::string> threshold_member;
     std::map<check::Index, std::string> adaptation_constant;  ///< and the constants of its
                                                               ///< adaptation
+    /// Per drift of the model: its state, and the constant with the scores of calibration.
+    struct OfDrift {
+        std::string member;
+        std::string cells;
+    };
+    std::map<check::Index, OfDrift> drifts;
     std::map<check::Index, std::string> hold_member;
     std::map<check::Index, std::string> stale_member;
     struct OfStream {

@@ -93,6 +93,7 @@ const std::vector<etlmon::Verdict>& Evaluator::step(const SampleView* samples, b
     advance_streams();
     advance_readings();
     judge();
+    see_scores();
     for (std::size_t m = 0; m < plan_.monitors.size(); ++m)
         if (plan_.monitors[m].restarts == check::Restarts::when_final &&
             state_->verdicts[m].final())
@@ -133,6 +134,25 @@ const std::vector<etlmon::Verdict>& Evaluator::finish() {
     advance_streams();
     judge();
     return state_->verdicts;
+}
+
+/// The score of a step is the distance, or how little the monitor may still reach.
+void Evaluator::see_scores() {
+    for (std::size_t i = 0; i < plan_.drifts.size(); ++i) {
+        const check::Drift& drift = model_.drifts[plan_.drifts[i]];
+        if (drift.predicate == kNone) {
+            for (std::size_t m = 0; m < plan_.monitors.size(); ++m)
+                if (plan_.monitors[m].index == drift.monitor)
+                    state_->drifts[i].see(-state_->verdicts[m].upper);
+            continue;
+        }
+        const float delta = distance(drift.predicate);
+        state_->drifts[i].see(model_.predicates[drift.predicate].upper_bound() ? delta : -delta);
+    }
+}
+
+void Evaluator::end_episode() {
+    for (std::size_t i = 0; i < plan_.drifts.size(); ++i) state_->drifts[i].end(drift_cells(i));
 }
 
 void Evaluator::observe(Index predicate, float distance, bool truth) {

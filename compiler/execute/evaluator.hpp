@@ -82,6 +82,13 @@ public:
     float threshold(check::Index predicate) const { return state_->thresholds[predicate]; }
     void observe(check::Index predicate, float distance, bool truth);
 
+    /// Ends the episode regularly: its scores count for the drifts, by index of plan.drifts.
+    void end_episode();
+    const etlmon::DriftCells& drift_cells(std::size_t drift) const {
+        return model_.drifts[plan_.drifts[drift]].cells;
+    }
+    const etlmon::Drift& drift(std::size_t drift) const { return state_->drifts[drift]; }
+
     /// Return what the predicates of the last step were computed from, by index in the model: an
     /// input's values after `hold`, null where missing, and a distance with its nearest row.
     const float* input(check::Index input) const { return inputs_[input]; }
@@ -151,6 +158,7 @@ private:
     etlmon::Value value(const plan::Term& term, const State::OfReading& state,
                         std::uint64_t position) const;
     void judge();
+    void see_scores();
 
     const plan::Plan& plan_;
     const check::Model& model_;

@@ -74,6 +74,7 @@ State::State(const Plan& plan, const Shape& shape) {
     contrast_rows.resize(predicates);
     for (const check::Predicate& predicate : model.predicates)
         thresholds.push_back(predicate.threshold.value);
+    for (const Index d : plan.drifts) drifts.emplace_back(model.drifts[d].cells);
     predicate_values.resize(predicates, Value{etlmon::kBottom, kTop});
     flags.resize(inputs, Value{etlmon::kBottom, kTop});
     streams.resize(plan.streams.size());
@@ -98,6 +99,7 @@ void State::reset(const Plan& plan, const Shape& shape) {
     for (Slot slot = 0; slot < streams.size(); ++slot) reset_stream(slot, shape);
     for (std::size_t i = 0; i < readings.size(); ++i) reset_reading(i, plan, shape);
     for (PastState& past : pasts) past.reset();
+    for (etlmon::Drift& drift : drifts) drift.begin();
     std::fill(measured.begin(), measured.end(), etlmon::Measured{etlmon::kMissing, 0});
     std::fill(verdicts.begin(), verdicts.end(), etlmon::Verdict{});
     lets.assign(plan.lets.size(), etlmon::Verdict{});
@@ -220,6 +222,7 @@ void State::visit(Self& self, Archive& archive) {
         archive.number(right);
     }
     archive.fixed(self.thresholds);
+    archive.fixed(self.drifts);
     archive.fixed(self.predicate_values);
     archive.fixed(self.flags);
     for (auto& stream : self.streams) {

@@ -14,6 +14,7 @@
 #include "check/model/model.hpp"
 #include "etlmon/distance/aggregate.hpp"
 #include "etlmon/past/numbers.hpp"
+#include "etlmon/temporal/drift.hpp"
 #include "etlmon/temporal/handover.hpp"
 #include "etlmon/temporal/monoid.hpp"
 #include "etlmon/temporal/pending.hpp"
@@ -210,7 +211,7 @@ struct State {
 
     State(const plan::Plan& plan, const Shape& shape);
 
-    /// Begins an episode. Thresholds stay.
+    /// Begins an episode. Thresholds stay, and so does what drifts know of episodes that ended.
     void reset(const plan::Plan& plan, const Shape& shape);
     void reset_stream(plan::Slot stream, const Shape& shape);
     void reset_reading(std::size_t reading, const plan::Plan& plan, const Shape& shape);
@@ -230,6 +231,7 @@ struct State {
     /// Per predicate: the nearest rows of its two distances, where narrow rows leave it open.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> contrast_rows;
     std::vector<float> thresholds;                ///< per predicate
+    std::vector<etlmon::Drift> drifts;            ///< as plan.drifts
     std::vector<etlmon::Value> predicate_values;  ///< per predicate
     std::vector<etlmon::Value> flags;             ///< per input
     std::vector<OfStream> streams;

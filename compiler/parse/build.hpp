@@ -54,6 +54,8 @@ private:
     static std::optional<bool> missing(Grammar::MissingContext* context);  ///< null if not written
     ast::Monitor monitor(Grammar::MonitorDeclarationContext& context, source::Span span) const;
     ast::Calibrated calibrated(Grammar::CalibratedContext& context) const;
+    std::vector<ast::Calibrated::Argument> arguments(
+        const std::vector<Grammar::ArgumentContext*>& contexts) const;
     std::string content(const Token& string) const;  ///< without its quotes
     template <class Named, class Context>
     void set_file(Named& to, const Context& context) const;  ///< sets path and key

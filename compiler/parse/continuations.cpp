@@ -112,9 +112,12 @@ Role role_in(const std::vector<std::size_t>& rules, std::size_t declaration) {
         case EtlParser::RuleEncodedBy: return Role::encoder;
         case EtlParser::RuleCalibrated: return Role::calibration;
         case EtlParser::RuleFitted: return Role::fitting;
-        case EtlParser::RuleArgument: return Role::calibration_argument;
+        case EtlParser::RuleArgument:
+            return declaration == EtlParser::DRIFT ? Role::drift_argument
+                                                   : Role::calibration_argument;
         case EtlParser::RuleDeclaration:
             if (declaration == EtlParser::TRUTH) return Role::predicate;
+            if (declaration == EtlParser::DRIFT) return Role::watched;
             return declaration == EtlParser::PERIOD ? Role::amount : Role::none;
         default: return Role::none;
     }
@@ -187,6 +190,8 @@ void ask(Continuations& found, Tokens tokens, std::uint32_t offset) {
     }
     if (const auto rules = probe.rules_of(EtlLexer::IDENTIFIER)) {
         found.role = role_in(*rules, declaration);
+        if (found.role == Role::watched && previous != EtlLexer::OF)
+            found.role = Role::none;  // the drift itself
         // Names between the brackets of [px, py] are scalars, and a distance has its target last.
         const bool is_whole = rules->size() > 2 && (*rules)[2] == EtlParser::RuleDistance;
         const bool in_list = previous == EtlLexer::LBRACKET || previous == EtlLexer::COMMA;

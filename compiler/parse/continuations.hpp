@@ -24,9 +24,11 @@ enum class Role : std::uint8_t {
     bound,    ///< a constant that is a bound of an interval
     encoder,
     predicate,             ///< in a truth
+    watched,               ///< by a drift: a predicate or a monitor
     calibration,           ///< a method of calibrated(...)
     fitting,               ///< a method of fitted(...)
     calibration_argument,  ///< the word before '='
+    drift_argument,        ///< the word before '='
     fitting_argument,      ///< the word before '='; `of` and `where` are words of the language
 };
 

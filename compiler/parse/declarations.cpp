@@ -51,6 +51,8 @@ ast::Declaration Builder::built(Grammar::DeclarationContext& context) const {
         return ast::Truth{name(*d->name()), formula(*d->formula()).root, span};
     if (auto* const d = dynamic_cast<Grammar::LetDeclarationContext*>(&context))
         return ast::Let{name(*d->name()), formula(*d->formula()).root, span};
+    if (auto* const d = dynamic_cast<Grammar::DriftDeclarationContext*>(&context))
+        return ast::Drift{name(*d->name(0)), name(*d->name(1)), arguments(d->argument()), span};
     return monitor(dynamic_cast<Grammar::MonitorDeclarationContext&>(context), span);
 }
 
@@ -238,9 +240,16 @@ ast::Monitor Builder::monitor(Grammar::MonitorDeclarationContext& context,
 ast::Calibrated Builder::calibrated(Grammar::CalibratedContext& context) const {
     ast::Calibrated result;
     result.method = name(*context.name());
+    result.arguments = arguments(context.argument());
     result.span = span_of(context);
-    for (Grammar::ArgumentContext* const argument : context.argument()) {
-        ast::Calibrated::Argument& added = result.arguments.emplace_back();
+    return result;
+}
+
+std::vector<ast::Calibrated::Argument> Builder::arguments(
+    const std::vector<Grammar::ArgumentContext*>& contexts) const {
+    std::vector<ast::Calibrated::Argument> result;
+    for (Grammar::ArgumentContext* const argument : contexts) {
+        ast::Calibrated::Argument& added = result.emplace_back();
         added.key = name(*argument->name());
         ast::Bound value{number(*argument->number()), "", span_of(*argument->number())};
         if (argument->unit() != nullptr) {

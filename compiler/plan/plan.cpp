@@ -158,6 +158,11 @@ public:
             if (program_.lets[i] != kNone) plan_.lets.push_back({i, streams_.of(program_.lets[i])});
     }
 
+    void add_drifts() {
+        for (Index d = 0; d < plan_.model->drifts.size(); ++d)
+            if (plan_.model->drifts[d].is_calibrated()) plan_.drifts.push_back(d);
+    }
+
     Plan finish(Storage targets_as, diag::Sink& sink) {
         keep_used_streams();
         share_windows(plan_);
@@ -166,12 +171,29 @@ public:
         if (!plan_.model->retargetable)
             plan_.stored = stored_sets(plan_, limits_.inline_target_bytes);
         narrow_targets(plan_, targets_as, sink);
+        check_drifts(sink);
         count_steps();
         add_costs(plan_);
         return std::move(plan_);
     }
 
 private:
+    /// A score is compared with those of calibration, so it needs exact distances at every step.
+    void check_drifts(diag::Sink& sink) const {
+        const bool is_boolean = plan_.values == check::Values::boolean;
+        const auto is_bounded = [](const NarrowSet& set) { return !set.lossless; };
+        if (!is_boolean && std::none_of(plan_.narrow.begin(), plan_.narrow.end(), is_bounded))
+            return;
+        for (const Index d : plan_.drifts)
+            sink.report(
+                diag::Code::drift_of, plan_.model->drifts[d].span,
+                fmt::format("'{}' needs the exact distance at every step; {}",
+                            plan_.model->drifts[d].name,
+                            is_boolean ? "with --values boolean it is measured only where a "
+                                         "verdict depends on it"
+                                       : "with --targets-as it is known within bounds only"));
+    }
+
     /// Drops streams that folding left unused, and puts operands before their users after sharing.
     void keep_used_streams() {
         std::vector<bool> used(plan_.streams.size(), false);
@@ -227,6 +249,9 @@ private:
             if (stream.op == StreamOp::flag) flags.insert(stream.index);
             if (stream.op == StreamOp::predicate) predicates.insert(stream.index);
         }
+        for (const Index d : plan_.drifts)
+            if (plan_.model->drifts[d].predicate != kNone)
+                predicates.insert(plan_.model->drifts[d].predicate);
         need(plan_, std::move(flags), predicates);
     }
 
@@ -248,6 +273,7 @@ std::optional<Plan> plan(const ir::Program& program, const Limits& limits, diag:
         complete = planning.add_monitor(m, sink, complete ? advice : Advice{}) && complete;
     if (!complete) return std::nullopt;
     planning.add_lets();
+    planning.add_drifts();
     Plan result = planning.finish(targets_as, sink);
     if (result.model->retargetable) check_parameters(result, sink);
     check_budget(result, limits, advice, sink);

@@ -36,7 +36,7 @@ from .errors import (
     UndecidedError,
 )
 from .encoding import Encoder
-from .description import REFERENCE_FRAMES, Input, Measurement, Measurements
+from .description import REFERENCE_FRAMES, Drift, Input, Measurement, Measurements
 from .guard import Guard
 from .judging import crossvalidate, evaluate, prove, report
 from .labelling import Labelling, Watching, label, propose, watch
@@ -59,6 +59,7 @@ __all__ = [
     "Checked",
     "ClosedError",
     "Diagnostic",
+    "Drift",
     "Episode",
     "EpisodeVerdicts",
     "Encoder",

@@ -15,7 +15,7 @@ from .errors import BusyError, ClosedError, Error, InputError, NotKeptError, Spe
 from .errors import UndecidedError, diagnostics_of
 from .names import is_text
 
-API_VERSION = 5
+API_VERSION = 6
 
 F32, BOOL, F16, I8 = range(4)
 INPUTS, MONITORS, PREDICATES, LETS = range(4)
@@ -105,6 +105,13 @@ class Measured(ctypes.Structure):
     _fields_ = [("distance", c_float), ("threshold", c_float), ("nearest", c_uint32)]
 
 
+class DriftStruct(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32), ("is_alarm", c_uint32), ("episodes", c_uint32),
+        ("wealth", c_float), ("limit", c_float), ("counts", c_uint32 * 8),
+    ]  # fmt: skip
+
+
 class Counts(ctypes.Structure):
     _fields_ = [("missing", c_uint64), ("out_of_range", c_uint64), ("held", c_uint64)]
 
@@ -129,6 +136,8 @@ _ARGUMENTS: dict[str, list[Any] | None] = {
     "etlc_measure": [c_uint64, c_uint32, POINTER(Measured)],
     "etlc_inner_threshold": [c_uint64, c_uint32, POINTER(c_float)],
     "etlc_let": [c_uint64, c_uint32, c_void_p],
+    "etlc_end_episode": [c_uint64],
+    "etlc_drifted": [c_uint64, c_char_p, POINTER(DriftStruct)],
     "etlc_encoder_difference": [
         c_uint64, c_char_p, c_uint32, POINTER(c_float), c_size_t, POINTER(c_double)
     ],  # fmt: skip

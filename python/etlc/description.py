@@ -70,6 +70,30 @@ class Measurement(Ambiguous):
     _ask = "its .distance, .threshold or .nearest"
 
 
+@dataclass(frozen=True)
+class Drift:
+    """What a drift knows after the episodes so far.
+
+    Attributes:
+        alarm: whether episodes no longer score like those of calibration. It stays. While nothing
+            has changed it is ever raised with probability at most the level.
+        wealth: the martingale, 1 at first; the alarm is raised where it reaches `limit`.
+        limit: 1 / level.
+        counts: the episodes that ended regularly, up to the alarm, by the cell of their score; of
+            the 8 cells the first has the most usual scores.
+    """
+
+    alarm: bool
+    wealth: float
+    limit: float
+    counts: tuple[int, ...]
+
+    @property
+    def episodes(self) -> int:
+        """The number of episodes that ended regularly, up to the alarm."""
+        return sum(self.counts)
+
+
 @dataclass(frozen=True, eq=False)
 class Measurements(Ambiguous):
     """The values of a predicate at the last step of each environment of a batch.

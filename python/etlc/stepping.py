@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from ctypes import byref, c_float, c_size_t, c_uint64
+from ctypes import byref, c_float, c_size_t, c_uint64, sizeof
 from typing import Any, Callable, NoReturn
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from . import _library, conversion
 from ._library import call, library
 from ._types import Array
-from .description import Described, Input, Measurement
+from .description import Described, Drift, Input, Measurement
 from .errors import InputError
 from .names import no_such
 from .verdicts import Verdicts
@@ -143,8 +143,26 @@ class Stepping(Described):
         self._begin += 1
         return Verdicts(self, self._call[-1].tobytes(), self._said)
 
+    def end_episode(self) -> None:
+        """Ends an episode that ended regularly: its scores count for the drifts.
+
+        Call it after the last step, before `reset`, which alone drops an episode that was cut
+        short.
+        """
+        call(library.etlc_end_episode, self._session)
+
+    def drift(self, name: str) -> Drift:
+        """Returns what a drift of the spec knows after the episodes that ended regularly.
+
+        Raises:
+            InputError: the spec has no drift of this name.
+        """
+        found = _library.DriftStruct(struct_size=sizeof(_library.DriftStruct))
+        call(library.etlc_drifted, self._session, _library.encoded("name", name), byref(found))
+        return Drift(bool(found.is_alarm), found.wealth, found.limit, tuple(found.counts))
+
     def reset(self) -> None:
-        """Begins a new episode. Adaptive thresholds keep their values."""
+        """Begins a new episode. Adaptive thresholds keep their values, drifts their episodes."""
         call(library.etlc_reset, self._session)
         self._said += 1
         self._begin = self._said

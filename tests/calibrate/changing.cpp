@@ -365,10 +365,21 @@ void visit(check::Model& model, check::Truth& of, Changing& changing) {
     field(changing, "span", span);
 }
 
+void visit(check::Model& model, check::Drift& of, Changing& changing) {
+    changing.of("Drift");
+    auto& [name, predicate, monitor, level, cells, span] = of;
+    field(changing, "name", name);
+    field(changing, "predicate", Place{predicate, model.predicates.size()});
+    field(changing, "monitor", Place{monitor, model.monitors.size()});
+    field(changing, "level", level);
+    field(changing, "cells", cells.id);
+    field(changing, "span", span);
+}
+
 void visit(check::Model& of, Changing& changing) {
     auto& [name, retargetable, constants, file, step_seconds, rounded, rounding, encoders, encoded,
            inputs, projections, points, targets, fitted, distances, pasts, predicates, formulas,
-           lets, truths, monitors, dependencies, reservations] = of;
+           lets, truths, monitors, drifts, dependencies, reservations] = of;
     visit_all(of, encoders, changing);
     visit_all(of, inputs, changing);
     visit_all(of, projections, changing);
@@ -382,6 +393,7 @@ void visit(check::Model& of, Changing& changing) {
     visit_all(of, lets, changing);
     visit_all(of, truths, changing);
     visit_all(of, monitors, changing);
+    visit_all(of, drifts, changing);
     changing.of("Model");
     field(changing, "name", name);
     field(changing, "retargetable", retargetable);

@@ -8,8 +8,10 @@ of the command line.
 import inspect
 import json
 import os
+import pickle
 import re
 import stat
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -316,6 +318,50 @@ class Commands(unittest.TestCase):
             status.append((verdicts.arrives.satisfied, verdicts.arrives.violated))
         self.assertEqual(status, [(True, False), (False, False), (False, True)])
         self.assertIn("inner_threshold", repr(found))
+
+    def test_drift(self):
+        normal = "calibrated(normal, alpha = 0.2)"
+        self.spec.write_text(
+            "spec t;\ninput z : f32[2];\ntarget goal = [[0, 0]];\n"
+            f"predicate usual = l2(z, goal) <= {normal};\nmonitor ok = G usual;\n"
+            "drift moved = of usual, level = 0.02;\n")
+        source, known, later = np.random.default_rng(3), self.path / "known", self.path / "later"
+        for folder, count in ((known, 30), (later, 60)):
+            folder.mkdir()
+            for i in range(count):
+                shift = 1 if folder is later and i >= 20 else 0
+                np.savez(folder / f"{i:02}.npz", z=source.normal(shift, 1, (8, 2)).astype("f4"))
+        etlc.calibrate(self.spec, known)
+        lines = subprocess.run(
+            [os.environ["ETLC_COMMAND"], "run", self.spec, "--data", later, "--summary", "-o",
+             self.path / "rows.csv"],
+            check=True, capture_output=True, text=True).stdout.splitlines()  # fmt: skip
+        expected = [line for line in lines if line.startswith("drift")]
+        monitor = etlc.Monitor(self.spec)
+        self.assertEqual(monitor.drift("moved").wealth, 1)
+        found = []
+        for i, path in enumerate(sorted(later.iterdir())):
+            episode = np.load(path)["z"]
+            if i % 2:
+                monitor.step(z=episode[0] + 9)
+                monitor.reset()  # an episode that was cut short does not count
+            for z in episode:
+                monitor.step(z=z)
+            monitor.end_episode()
+            monitor.reset()
+            drift = monitor.drift("moved")
+            found.append(
+                f"drift moved: {'ALARM' if drift.alarm else 'no alarm'} after {drift.episodes} "
+                f"episode{'' if drift.episodes == 1 else 's'}, "
+                f"wealth {drift.wealth:.3g} of {drift.limit:.3g}")
+            self.assertEqual(len(drift.counts), 8)
+            if i == 10:
+                monitor = pickle.loads(pickle.dumps(monitor))
+        self.assertEqual(found, expected)
+        self.assertIn("no alarm", found[19])
+        self.assertIn("ALARM", found[-1])
+        with self.assertRaisesRegex(etlc.InputError, "the spec has no drift 'nothing'"):
+            monitor.drift("nothing")
 
     def test_crossvalidate(self):
         found = etlc.crossvalidate(self.spec, self.path / "data", folds=3)

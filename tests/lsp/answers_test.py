@@ -157,6 +157,8 @@ def thresholds():
            ("monitor reach", "P(some verdict of a new episode misses a success) <= 0.1"),
            ("monitor avoid", "No guarantee: 'near_c' has a threshold that was not calibrated"),
            ("monitor steady", "20 steps late"))
+    hovers("drift", ("drift camera_moved", "without reason ever with probability <= 0.01"),
+           ("of calm", "P(a false alarm in a new normal episode) <= 0.5"))
     hovers("adaptive",
            ("predicate low", "in [0.5, 2]; starts at conformal score 3 of 3"),
            ("predicate low", "misses at most 0.25 T + 4.0 + 0.75 H"),

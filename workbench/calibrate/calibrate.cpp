@@ -139,6 +139,9 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
             groups.are_named() && check::takes_groups(check::method_name(threshold.origin));
         result.file.predicates[predicate.name] =
             entry_of_predicate(model, predicates[i], evidence[i], all.back());
+        if (is_normal(threshold))
+            result.file.predicates[predicate.name].measured =
+                measured_scores(evidence[i], predicate.upper_bound());
     }
     if (sink.has_errors()) return std::nullopt;
     demonstrations.for_each([&](std::size_t, const episodes::Recorded& demonstration) {

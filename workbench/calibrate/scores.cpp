@@ -18,6 +18,11 @@ void SideScores::add(double reach, bool keep) {
     if (keep) reaches.push_back(reach);
 }
 
+void SideScores::add_normal(double reach, double measured) {
+    worst_measured = has_score ? std::max(worst_measured, measured) : measured;
+    add(reach, false);
+}
+
 void Evidence::Side::add(const SideScores& scores, std::uint32_t group) {
     constexpr std::uint32_t kNowhere = UINT32_MAX;
     if (group >= places.size()) places.resize(group + std::size_t{1}, kNowhere);
@@ -26,9 +31,12 @@ void Evidence::Side::add(const SideScores& scores, std::uint32_t group) {
     if (scores.has_score && places[group] == kNowhere) {
         places[group] = static_cast<std::uint32_t>(worst.size());
         worst.push_back({scores.worst_reach, group});
+        measured.push_back(scores.worst_measured);
     } else if (scores.has_score) {
         Reach& known = worst[places[group]];
         known.reach = std::max(known.reach, scores.worst_reach);
+        double& here = measured[places[group]];
+        here = std::max(here, scores.worst_measured);
     }
     const auto episode = static_cast<std::uint32_t>(episodes.size());
     if (scores.frames > 0) episodes.push_back({group, scores.frames, scores.lost});
@@ -45,6 +53,13 @@ void Evidence::add(const Scores& scores, std::uint32_t group) {
     negatives.add(scores.negatives, group);
     for (const Scores::Labelled& frame : scores.labelled)
         labelled.add({frame.score, group, frame.positive});
+}
+
+std::vector<double> measured_scores(const Evidence& evidence, bool above) {
+    std::vector<double> scores = evidence.positives.measured;
+    for (double& score : scores) score = above ? score : 0.0 - score;
+    std::sort(scores.begin(), scores.end());
+    return scores;
 }
 
 bool is_against(const check::Threshold& threshold, bool misses) {
@@ -166,7 +181,9 @@ void Scorer::add(Index predicate, Label label, Scores& scores) const {
     scores.labelled.push_back({score, positive});
     if (!is_against(p.threshold, positive) || p.threshold.origin == ThresholdOrigin::f1) return;
     const Interval interval = *interval_of(model_, predicate, measured_.evaluator(), pasts_);
-    side.add(p.upper_bound() == positive ? interval.high : -interval.low, keeps_all(p.threshold));
+    const double reach = p.upper_bound() == positive ? interval.high : -interval.low;
+    if (is_normal(p.threshold)) return side.add_normal(reach, static_cast<double>(score));
+    side.add(reach, keeps_all(p.threshold));
 }
 
 }  // namespace etlc::calibrate

@@ -22,9 +22,12 @@ struct SideScores {
     std::uint64_t lost = 0;       ///< those at which a missing sample counts as the error
     bool has_score = false;       ///< at least one of them was measured
     double worst_reach = 0;       ///< its greatest score in any build
+    double worst_measured = 0;    ///< normal: its greatest score as measured here
     std::vector<double> reaches;  ///< class_conditional, risk: all scores
 
     void add(double reach, bool keep);
+    /// Adds a step of a normal episode.
+    void add_normal(double reach, double measured);
 };
 
 /// Scores of a predicate in one demonstration, or of a monitor that is calibrated as a whole in one
@@ -63,7 +66,8 @@ void fields(Archive& archive, Scores::Labelled& frame) {
 
 template <class Archive>
 void fields(Archive& archive, SideScores& side) {
-    archive(side.frames, side.lost, side.has_score, side.worst_reach, side.reaches);
+    archive(side.frames, side.lost, side.has_score, side.worst_reach, side.worst_measured,
+            side.reaches);
 }
 
 template <class Archive>
@@ -103,6 +107,7 @@ struct Evidence {
         std::uint64_t frames = 0;             ///< as in SideScores
         std::uint64_t without_score = 0;      ///< demonstrations
         std::vector<Reach> worst;             ///< one per group with a score
+        std::vector<double> measured;         ///< likewise, as measured here; of normal episodes
         data::Sorted<Reach> reaches;          ///< class_conditional, risk: one per frame
         std::vector<Episode> episodes;        ///< those with a frame
         std::vector<std::uint32_t> places{};  ///< in `worst`, per group
@@ -124,6 +129,9 @@ struct Evidence {
     /// Adds the next demonstration. Numbers of groups begin with 0, without a gap.
     void add(const Scores& scores, std::uint32_t group);
 };
+
+/// Returns the scores of normal episodes as measured here, ascending; `above`: see fit.hpp.
+std::vector<double> measured_scores(const Evidence& evidence, bool above);
 
 /// Returns the predicates with a calibrated threshold, in the order of the model.
 std::vector<Index> calibrated_predicates(const check::Model& model);

@@ -92,13 +92,15 @@ private:
     const std::vector<Index>& negations_;
     const Watched& watched_;
     const episodes::ReadOptions& reading_;
-    episodes::Follower highest_;  ///< the highest low ends in any build
+    episodes::Follower highest_;   ///< the highest low ends in any build
+    episodes::Follower measured_;  ///< this build
     PastIntervals pasts_;
     episodes::Follower truths_;
     episodes::Wanted wanted_;
     episodes::Wanted divided_;  ///< the same with the labels that divide episodes
     std::vector<DurationScorer> durations_;
     std::vector<std::optional<Ends>> values_;  ///< of this step, per measured predicate
+    bool has_normal_ = false;                  ///< some monitor learns from normal episodes
 };
 
 MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plans,
@@ -110,6 +112,7 @@ MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plan
       watched_(watched),
       reading_(reading),
       highest_(plans.monitors),
+      measured_(plans.monitors),
       pasts_(model, plans.monitors),
       truths_(plans.truths, &plans.ground_truth),
       wanted_(episodes::wanted(model, {&plans.monitors, &plans.truths},
@@ -117,6 +120,8 @@ MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plan
       divided_(wanted_),
       values_(model.predicates.size()) {
     for (const Index monitor : timed_monitors(model)) durations_.emplace_back(model, monitor);
+    for (const Index monitor : monitors)
+        has_normal_ |= is_normal(*model.monitors[monitor].calibration);
     wanted_.within = divided_.within = plans.within;
     divided_.predicates.clear();
     std::set_union(wanted_.predicates.begin(), wanted_.predicates.end(), watched.dividing.begin(),
@@ -156,7 +161,9 @@ diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path,
         add_to_durations(*recording);
         return rest();
     };
-    const auto done = episodes::replay(*recording, {&truths_, &highest_}, frame, rest);
+    std::vector<episodes::Follower*> followers{&truths_, &highest_};
+    if (has_normal_) followers.push_back(&measured_);
+    const auto done = episodes::replay(*recording, followers, frame, rest);
     if (!done) return done.failure();
     MonitorEpisode result{recording->recorded(), std::move(scores), {}, {},
                           std::move(track),      is_divided};
@@ -182,7 +189,9 @@ void MonitorScorer::note(std::vector<Scores>& scores) const {
         const check::Threshold& shift = *model_.monitors[monitor].calibration;
         if (is_normal(shift)) {
             ++scores[i].positives.frames;
-            scores[i].positives.add(highest_.verdict(negations_[i]).lower, false);
+            scores[i].positives.add_normal(
+                static_cast<double>(highest_.verdict(negations_[i]).lower),
+                -static_cast<double>(measured_.verdict(monitor).upper));
             continue;
         }
         const etlmon::Verdict& truth = truths_.verdict(monitor);
@@ -315,6 +324,7 @@ std::vector<Index> scored_predicates(const check::Model& model, std::vector<Inde
 
 check::Model unshifted(check::Model model) {
     for (check::Monitor& monitor : model.monitors) monitor.calibration.reset();
+    model.drifts.clear();  // their scores are those of the shifted ones
     return model;
 }
 
@@ -403,8 +413,10 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         const auto sides = fit_all(model, subjects.back(), sink);
         if (!sides) continue;
         warn_of_large_alpha(predicates[i], sink);
-        result.file.monitors[monitor.name] = complete(entry_of(*monitor.calibration, *sides, {}),
-                                                      model, monitor, recorded, labelling);
+        thresholds::Entry& entry = result.file.monitors[monitor.name];
+        entry = complete(entry_of(*monitor.calibration, *sides, {}), model, monitor, recorded,
+                         labelling);
+        if (is_normal(*monitor.calibration)) entry.measured = measured_scores(evidence[i], false);
         check::Threshold& shift = *shifted.monitors[monitors[i]].calibration;
         set(shift, predicates[i], *sides);
         shift.by_group = groups.are_named();

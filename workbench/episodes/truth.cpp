@@ -483,6 +483,7 @@ GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& la
             monitor.restarts = check::Restarts::on_request;
     }
     result.model.truths.clear();
+    result.model.drifts.clear();
     return result;
 }
 

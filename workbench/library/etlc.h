@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* The version of this header. A library accepts programs of its own and of earlier versions. */
-#define ETLC_API_VERSION 5u
+#define ETLC_API_VERSION 6u
 
 /* ---- errors --------------------------------------------------------------------------------- */
 
@@ -242,7 +242,11 @@ ETLC_EXPORT etlc_status etlc_run(etlc_session session, const etlc_column *column
 ETLC_EXPORT etlc_status etlc_finish(etlc_session session, etlc_verdict *verdicts,
                                     size_t verdict_count);
 
-/* Begins a new episode. Adaptive thresholds keep their values. */
+/* Ends an episode that ended regularly: its scores count for the drifts. Call it after the last
+ * step, before etlc_reset(), which alone drops an episode that was cut short. From version 6 on. */
+ETLC_EXPORT etlc_status etlc_end_episode(etlc_session session);
+
+/* Begins a new episode. Adaptive thresholds keep their values, drifts the episodes that ended. */
 ETLC_EXPORT etlc_status etlc_reset(etlc_session session);
 
 /* Restarts a restartable monitor at the next step. */
@@ -275,6 +279,18 @@ ETLC_EXPORT etlc_status etlc_measure(etlc_session session, uint32_t predicate,
  * that of etlc_measured. NaN: it has one. From version 5 on. */
 ETLC_EXPORT etlc_status etlc_inner_threshold(etlc_session session, uint32_t predicate,
                                              float *threshold);
+
+typedef struct etlc_drift {
+  uint32_t struct_size;
+  uint32_t is_alarm; /* episodes no longer score like those of calibration */
+  uint32_t episodes; /* that ended regularly, up to the alarm */
+  float wealth;      /* 1 at first; an alarm where it reaches `limit` */
+  float limit;       /* 1 / level */
+  uint32_t counts[8]; /* episodes by the cell of their score, the usual ones first */
+} etlc_drift;
+
+/* Returns what the drift of that name knows. Save and load it with the session. From version 6 on. */
+ETLC_EXPORT etlc_status etlc_drifted(etlc_session session, const char *name, etlc_drift *drift);
 
 /* Returns the value of a let at the last step. */
 ETLC_EXPORT etlc_status etlc_let(etlc_session session, uint32_t let, etlc_verdict *verdict);

@@ -87,6 +87,22 @@ std::string Summary::of_input(check::Index input, const execute::SampleCounts& c
     return fmt::format("input {}: {}\n", plan_.model->inputs[input].name, text);
 }
 
+std::string text_of_drifts(const plan::Plan& plan, const execute::Evaluator& evaluator,
+                           bool alarms) {
+    std::string text;
+    for (std::size_t i = 0; i < plan.drifts.size(); ++i) {
+        const bool alarm = evaluator.drift(i).alarm(evaluator.drift_cells(i));
+        if (alarms && !alarm) continue;
+        const etlmon::DriftState& state = evaluator.drift(i).state();
+        const check::Drift& drift = plan.model->drifts[plan.drifts[i]];
+        text +=
+            fmt::format("drift {}: {} after {}, wealth {:.3g} of {:.3g}\n", drift.name,
+                        alarm ? "ALARM" : "no alarm", diag::counted(state.episodes(), "episode"),
+                        state.wealth(), drift.cells.limit);
+    }
+    return text;
+}
+
 std::string Summary::text(std::uint64_t steps, const execute::Evaluator& evaluator) const {
     std::string text;
     for (std::size_t i = 0; i < monitors_.size(); ++i) {

@@ -22,6 +22,11 @@ std::string standing(const etlmon::Verdict& verdict);
 /// Returns "step 5 (1.25 s)".
 std::string when(const check::Model& model, std::uint64_t step);
 
+/// Returns a line for each drift: what it knows after the episodes so far. `alarms`: only those
+/// that have raised their alarm.
+std::string text_of_drifts(const plan::Plan& plan, const execute::Evaluator& evaluator,
+                           bool alarms = false);
+
 /// The figures of `etlc run --summary`, and the last lines of `etlc watch`, in constant memory.
 class Summary {
 public:

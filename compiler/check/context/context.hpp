@@ -146,8 +146,8 @@ void for_each_declaration(const ast::Spec& spec, Visit visit) {
 template <class Visit>
 void for_each_name(const ast::Declaration& declaration, const Visit& visit) {
     using enum NameKind;  // in the order of ast::Declaration; a rate and a truth declare no names
-    constexpr NameKind kKinds[] = {unreadable, constant,  encoder,    input, projection,
-                                   target,     predicate, unreadable, let,   monitor};
+    constexpr NameKind kKinds[] = {unreadable, constant,   encoder, input,   projection, target,
+                                   predicate,  unreadable, let,     monitor, drift};
     static_assert(std::size(kKinds) == std::variant_size_v<ast::Declaration>);
     const NameKind kind = kKinds[declaration.index()];
     std::visit(
@@ -218,6 +218,7 @@ void check_truths(Context& context);
 void check_fitted_frames(Context& context);
 void check_fitted_entries(Context& context);
 void check_monitors(Context& context);
+void check_drifts(Context& context);
 void choose_telemetry(Context& context);
 void check_thresholds(Context& context);
 void set_robustness(Context& context);

@@ -20,6 +20,7 @@ constexpr std::array<Words, kNameKinds> kWords{{
     {"predicate", "a predicate"},
     {"let", "a let"},
     {"monitor", "a monitor"},
+    {"drift", "a drift"},
     {"declaration", "a declaration"},
 }};
 

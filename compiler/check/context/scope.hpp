@@ -27,9 +27,10 @@ enum class NameKind : std::uint8_t {
     predicate,
     let,
     monitor,
+    drift,
     unreadable,
 };
-inline constexpr std::size_t kNameKinds = 9;
+inline constexpr std::size_t kNameKinds = 10;
 
 std::string_view word(NameKind kind);               ///< "input"
 std::string_view word_with_article(NameKind kind);  ///< "an input"

@@ -285,6 +285,12 @@ Found contradiction(const Entry& entry, const std::string& place, bool upper_bou
     for (const Checked& side : sides)
         if (Found found = counts(side)) return found;
     if (Found found = episodes_of(entry, place, episodes, groups, may_repeat)) return found;
+    const std::size_t measured = entry.measured.size();
+    if (measured > 0 &&
+        (measured != entry.n || !std::is_sorted(entry.measured.begin(), entry.measured.end())))
+        return Contradiction{
+            fmt::format("'{}.measured' has {}, expected n of them, which is {}, in ascending order",
+                        place, diag::counted(measured, "element"), entry.n)};
     if (entry.duration) return duration_of(entry, place, upper_bound);
     for (const Checked& side : sides)
         if (Found found = threshold(side)) return found;

@@ -44,8 +44,8 @@ public:
         // where they are used.
         const auto& [name, retargetable, constants, file, step_seconds, rounded, rounding, encoders,
                      encoded, inputs, projections, points, targets, fitted, distances, pasts,
-                     predicates, formulas, lets, truths, monitors, dependencies, reservations] =
-            model;
+                     predicates, formulas, lets, truths, monitors, drifts, dependencies,
+                     reservations] = model;
         // Episodes at another rate have different frames.
         if (step_seconds > 0) add("rate", fmt::format("{:.9g} s a step", step_seconds));
     }

@@ -23,6 +23,9 @@ void refuse_what_cannot_change(Context& c) {
             refuse(c, predicate.threshold.span,
                    fmt::format("'{}' has an adaptive threshold", predicate.name),
                    "what it has learnt is about the distance to the original targets");
+    for (const Drift& drift : c.model.drifts)
+        refuse(c, drift.span, fmt::format("'{}' is a drift", drift.name),
+               "the scores of calibration are those of the original targets");
     for (const Monitor& monitor : c.model.monitors) {
         if (monitor.duration)
             refuse(c, monitor.duration->threshold.span,

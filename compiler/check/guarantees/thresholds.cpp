@@ -11,6 +11,7 @@
 #include "check/context/options.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/conformal.hpp"
+#include "check/guarantees/drift.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "check/numbers/decimal.hpp"
 #include "data/files/file.hpp"
@@ -300,6 +301,12 @@ void check_thresholds(Context& c) {
     for (const Index index : predicates) take_threshold(c, index, *file);
     if (c.sink.errors() > errors) return;  // those of monitors depend on these
     for (Monitor* monitor : monitors) take_of_monitor(c, *monitor, *file);
+    if (c.sink.errors() > errors) return;
+    for (Index d = 0; d < c.model.drifts.size(); ++d) {
+        Drift& drift = c.model.drifts[d];
+        const bool has_scores = drift.monitor == kNone || !monitors.empty();
+        if (has_scores && !c.scope.entity(NameKind::drift, d).broken) take_drift(c, drift, *file);
+    }
 }
 
 }  // namespace etlc::check

@@ -17,6 +17,7 @@
 
 #include "ast/operators.hpp"
 #include "check/numbers/range.hpp"
+#include "etlmon/temporal/drift.hpp"
 #include "source/source.hpp"
 
 namespace etlc::check {
@@ -515,6 +516,18 @@ struct Monitor {
     Index true_formula() const { return truth == kNone ? formula : truth; }
 };
 
+/// `drift NAME = of PREDICATE_OR_MONITOR, level = L`, about the scores of one of them.
+struct Drift {
+    std::string name;
+    Index predicate = kNone;
+    Index monitor = kNone;
+    std::string level;           ///< decimal text
+    etlmon::DriftCells cells{};  ///< of the scores of calibration; all 0 before
+    Span span;
+
+    bool is_calibrated() const { return cells.id != 0; }
+};
+
 struct Truth {
     Index predicate = 0;
     Index formula = 0;  ///< over recorded inputs, with past operators only
@@ -564,6 +577,7 @@ struct Model {
     std::vector<Let> lets;
     std::vector<Truth> truths;
     std::vector<Monitor> monitors;
+    std::vector<Drift> drifts;
     /// Returns the point of a distance.
     const Point& point_of(Index distance) const { return points[distances[distance].point]; }
     /// Returns the dimension of the points of a distance.

@@ -30,7 +30,8 @@ void check_spelling(Context& c, const ast::Name& name, std::string_view kind, bo
         return suggest(c, error, allowed_name(name.text, kind, is_namespace), is_namespace);
     }
     // Programs write these names; all others occur only in generated code.
-    const bool is_written = kind == "spec" || kind == "input" || kind == "monitor";
+    const bool is_written =
+        kind == "spec" || kind == "input" || kind == "monitor" || kind == "drift";
     const auto header = macro_elsewhere(name.text);
     if (!header || !is_written) return;
     auto& warning =
@@ -88,7 +89,7 @@ void declare_names(Context& c) {
     check_spelling(c, c.spec.name, "spec", true);
     for (const NameKind kind :
          {NameKind::constant, NameKind::encoder, NameKind::input, NameKind::projection,
-          NameKind::target, NameKind::predicate, NameKind::let, NameKind::monitor})
+          NameKind::target, NameKind::predicate, NameKind::let, NameKind::monitor, NameKind::drift})
         for (const Entity& entity : c.scope.all(kind))
             if (!entity.duplicate) check_spelling(c, {entity.name, entity.span}, word(kind), false);
     if (c.scope.all(NameKind::monitor).empty() && !c.incomplete)
@@ -360,16 +361,16 @@ private:
         e.arguments.pop_back();
     }
 
-    void replace(ast::Calibrated& calibrated) {
-        for (ast::Calibrated::Argument& argument : calibrated.arguments) {
-            auto* const name = std::get_if<ast::Name>(&argument.value);
-            if (name != nullptr && argument.key.text != "against" &&
-                c_.scope.find(name->text) != nullptr)
-                argument.value = ast::Bound{{name->text, name->span, name->text}, "", name->span};
-            auto* const bound = std::get_if<ast::Bound>(&argument.value);
-            if (bound != nullptr)
-                argument.key.text == "within" ? replace(*bound) : replace(bound->number);
-        }
+    void replace(ast::Calibrated& calibrated) { replace(calibrated.arguments); }
+    void replace(ast::Drift& drift) { replace(drift.arguments); }
+    void replace(ast::Calibrated::Argument& argument) {
+        auto* const name = std::get_if<ast::Name>(&argument.value);
+        if (name != nullptr && argument.key.text != "against" &&
+            c_.scope.find(name->text) != nullptr)
+            argument.value = ast::Bound{{name->text, name->span, name->text}, "", name->span};
+        auto* const bound = std::get_if<ast::Bound>(&argument.value);
+        if (bound != nullptr)
+            argument.key.text == "within" ? replace(*bound) : replace(bound->number);
     }
 
     void replace(ast::Rate& rate) {

@@ -183,6 +183,7 @@ private:
         print_wrapped(out_, fmt::format("now.{} = {};", atom, sourced(context_, p, value, delta)));
         out_.line(missed(fmt::format("etlmon::is_nan({})", delta)));
         print_recorded(out_, context_, p, delta);
+        print_seen(out_, context_, p, delta);
         if (is_contrast) out_.close();
     }
 

@@ -160,6 +160,7 @@ bool begins_declaration(const Tokens& tokens, std::size_t i) {
         case EtlLexer::REPEATING: return type(i + 1) == EtlLexer::MONITOR;
         case EtlLexer::PROJECTION:
         case EtlLexer::ENCODER:
+        case EtlLexer::DRIFT:
         case EtlLexer::CONST:
         case EtlLexer::TARGET:
         case EtlLexer::PREDICATE:

@@ -10,6 +10,7 @@
 #include "etlmon/hosted/footprint.hpp"
 #include "etlmon/past/numbers.hpp"
 #include "etlmon/past/points.hpp"
+#include "etlmon/temporal/drift.hpp"
 #include "plan/program/program.hpp"
 #include "plan/program/sample_codes.hpp"
 #include "plan/program/value_type.hpp"
@@ -99,6 +100,10 @@ public:
         const Reading& r = plan_.readings[index];
         for (std::uint32_t operand : r.operands) reading(operand);
         for_each_slot(r, [&](Slot slot) { stream(slot); });
+    }
+
+    void drift(const check::Drift& drift) {
+        if (drift.predicate != kNone) predicate(drift.predicate);
     }
 
     void monitor(const Monitor& monitor) {
@@ -274,6 +279,10 @@ void add_costs(Plan& plan) {
     for (const Let& let : plan.lets) {
         all.stream(let.stream);
         fixed.state_bytes += type.verdict;
+    }
+    for (const Index d : plan.drifts) {
+        all.drift(plan.model->drifts[d]);
+        fixed = fixed + Cost{.state_bytes = sizeof(etlmon::Drift), .code_bytes = kCodePerDrift};
     }
     plan.cost = all.cost() + fixed;
     plan.cost.state_bytes = (plan.cost.state_bytes + kWord - 1) / kWord * kWord;

@@ -94,6 +94,7 @@ inline constexpr std::uint64_t kCodePerWindow = 240;
 inline constexpr std::uint64_t kCodePerRing = 64;
 inline constexpr std::uint64_t kCodePerMean = 1200;       // of which all means share the most
 inline constexpr std::uint64_t kCodePerAdaptation = 144;  // observe_P() on a Cortex-M4 at -Os
+inline constexpr std::uint64_t kCodePerDrift = 900;       // with divisions in software
 inline constexpr std::uint64_t kCodePerTable = 200;
 inline constexpr std::uint64_t kCodePerSamples = 600;
 inline constexpr std::uint64_t kTransitionBytes = sizeof(etlmon::Transition);

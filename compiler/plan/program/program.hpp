@@ -111,6 +111,7 @@ struct Plan {
     std::vector<Reading> readings;
     std::vector<Monitor> monitors;
     std::vector<Let> lets;
+    std::vector<Index> drifts;  ///< of the model, those with scores of calibration
     bool has_sliding = false;
     bool counts_steps = false;  ///< some part uses the number of the step
     std::optional<Recorder> recorder;

@@ -277,6 +277,11 @@ bool prove(const source::File& spec, const Compiled& compiled, const Request& re
     std::vector<std::string> inputs = files_read(*plan.model, spec, {});
     if (!request.prove.header.empty()) inputs.push_back(request.prove.header);
     if (!check_outputs({request.output}, inputs, sink)) return false;
+    for (const check::Index drift : plan.drifts)
+        sink.report(diag::Code::no_proof, plan.model->drifts[drift].span,
+                    "a class with a drift branches on distances, which have no value in a proof")
+            .note("prove the class without it: no verdict depends on a drift");
+    if (sink.has_errors()) return false;
     const auto header = header_text(spec, plan, request, sink);
     if (!header) return false;
     const std::string name_space =

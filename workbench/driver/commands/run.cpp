@@ -73,9 +73,19 @@ private:
         summary_.emplace(plan_);
         changes_.emplace(plan_);
         first_cells_ = is_of_several() ? source::csv_cell(trace) + "," : "";
-        if (!step_through_trace()) return false;
+        if (!step_through_trace() || !end_episode()) return false;
         if (!request_.run.summary) return true;
-        return print_lines(summary_->text(steps_, monitors_.evaluator()));
+        return print_lines(summary_->text(steps_, monitors_.evaluator()) +
+                           watch::text_of_drifts(plan_, monitors_.evaluator()));
+    }
+
+    /// A recording is an episode that ended regularly. Says so once where a drift raises its alarm.
+    bool end_episode() {
+        monitors_.evaluator().end_episode();
+        const std::string now = watch::text_of_drifts(plan_, monitors_.evaluator(), true);
+        const bool is_new = request_.run.changes && now != drifts_;
+        drifts_ = now;
+        return !is_new || print_lines(now);
     }
 
     /// Prints lines about this trace, the first ones below its name.
@@ -236,6 +246,7 @@ private:
     std::string trace_;  ///< this one
     std::optional<watch::Summary> summary_;
     std::optional<watch::Changes> changes_;
+    std::string drifts_;       ///< lines of those that have raised their alarm
     bool is_named_ = true;     ///< lines about it need no name above them any more
     std::string first_cells_;  ///< of each row
     OutputFiles output_;

@@ -103,6 +103,26 @@ etlc_status etlc_inner_threshold(etlc_session session, uint32_t predicate, float
     });
 }
 
+etlc_status etlc_drifted(etlc_session session, const char* name, etlc_drift* drift) {
+    return with_session(session, [&](Session& opened) -> etlc_status {
+        if (name == nullptr) return refuse_null("name");
+        if (const etlc_status failed = check_struct(drift, "drift")) return failed;
+        const std::vector<Index>& drifts = opened.plan().drifts;
+        for (std::size_t i = 0; i < drifts.size(); ++i) {
+            if (opened.model().drifts[drifts[i]].name != name) continue;
+            const etlmon::DriftCells& cells = opened.evaluator().drift_cells(i);
+            const etlmon::Drift& found = opened.evaluator().drift(i);
+            drift->is_alarm = found.alarm(cells) ? 1 : 0;
+            drift->episodes = found.state().episodes();
+            drift->wealth = found.state().wealth();
+            drift->limit = cells.limit;
+            std::copy_n(found.state().counts, etlmon::kDriftCells, drift->counts);
+            return ETLC_OK;
+        }
+        return refuse(ETLC_NO_SUCH, "the spec has no drift {}", data::in_quotes(name));
+    });
+}
+
 etlc_status etlc_let(etlc_session session, uint32_t let, etlc_verdict* verdict) {
     return with_session(session, [&](Session& opened) -> etlc_status {
         if (verdict == nullptr) return refuse_null("verdict");

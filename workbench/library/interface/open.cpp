@@ -120,6 +120,7 @@ constexpr std::uint32_t kSizes[ETLC_API_VERSION + 1] = {0,
                                                         offsetof(etlc_options, embedded),
                                                         offsetof(etlc_options, embedded),
                                                         offsetof(etlc_options, embedded),
+                                                        sizeof(etlc_options),
                                                         sizeof(etlc_options)};
 
 /// Converts the caller's options to those of this version.

@@ -94,6 +94,13 @@ etlc_status etlc_finish(etlc_session session, etlc_verdict* verdicts, size_t ver
     });
 }
 
+etlc_status etlc_end_episode(etlc_session session) {
+    return with_session(session, [](Session& opened) -> etlc_status {
+        opened.evaluator().end_episode();
+        return ETLC_OK;
+    });
+}
+
 etlc_status etlc_reset(etlc_session session) {
     return with_session(session, [](Session& opened) -> etlc_status {
         opened.reset();

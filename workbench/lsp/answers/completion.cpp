@@ -153,10 +153,12 @@ bool fits(const Declared& declared, Role role, const std::string& declaration) {
         case Role::bound: return kind == NameKind::constant;
         case Role::encoder: return kind == NameKind::encoder;
         case Role::predicate: return kind == NameKind::predicate;
+        case Role::watched: return kind == NameKind::predicate || kind == NameKind::monitor;
         case Role::none:
         case Role::calibration:
         case Role::fitting:
         case Role::calibration_argument:
+        case Role::drift_argument:
         case Role::fitting_argument: break;
     }
     return false;
@@ -166,6 +168,7 @@ bool fits(const Declared& declared, Role role, const std::string& declaration) {
 std::vector<std::string> words_of(Role role) {
     if (role == Role::calibration_argument)
         return {"alpha", "beta", "against", "within", "gamma", "lo", "hi"};
+    if (role == Role::drift_argument) return {"level"};
     if (role == Role::fitting_argument) return {"k", "r", "away"};
     if (role == Role::calibration)
         return {"conformal", "normal", "risk", "class_conditional", "f1", "adaptive"};
@@ -417,6 +420,13 @@ Sentences about(const Model& model, const check::Let& let) {
     return {fmt::format("Let: {}.", check::shown(model, let.formula))};
 }
 
+Sentences about(const check::Drift& drift) {
+    return {
+        fmt::format("Drift: alarms when episodes no longer score like those of calibration; "
+                    "without reason ever with probability <= {}.",
+                    drift.level)};
+}
+
 Sentences about(const check::Constant& constant) {
     return {fmt::format("Constant: {}.", constant.text)};
 }
@@ -447,6 +457,7 @@ Sentences facts_of(const Analysis& analysis, const std::string& name, const Plan
         case NameKind::monitor:
             return in(model.monitors) ? about(model, model.monitors[i], checked.complete, planned)
                                       : Sentences{};
+        case NameKind::drift: return in(model.drifts) ? about(model.drifts[i]) : Sentences{};
         case NameKind::unreadable: break;
     }
     return {};

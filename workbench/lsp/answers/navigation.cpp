@@ -32,6 +32,7 @@ int symbol_kind(const Declared& declared) {
         case check::NameKind::input: return kField;
         case check::NameKind::target: return kArray;
         case check::NameKind::predicate: return kBoolean;
+        case check::NameKind::drift:
         case check::NameKind::monitor: return kEvent;
         case check::NameKind::let:
         case check::NameKind::unreadable: break;

@@ -216,6 +216,10 @@ public:
         visit(monitor.formula);
         visit(monitor.calibrated);
     }
+    void visit(const ast::Drift& drift) {
+        use(drift.of);
+        for (const ast::Calibrated::Argument& argument : drift.arguments) visit(argument.value);
+    }
 
 private:
     void file(const std::string& path, Span span) { names_.files.push_back({path, span}); }
