@@ -70,9 +70,11 @@ class Measurement(Ambiguous):
     _ask = "its .distance, .threshold or .nearest"
 
 
-@dataclass(frozen=True)
-class Drift:
+@dataclass(frozen=True, eq=False)
+class Drift(Ambiguous):
     """What a drift knows after the episodes so far.
+
+    Its truth value raises AmbiguousError: ask for its alarm.
 
     Attributes:
         alarm: whether episodes no longer score like those of calibration. It stays. While nothing
@@ -87,6 +89,8 @@ class Drift:
     wealth: float
     limit: float
     counts: tuple[int, ...]
+
+    _ask = "its .alarm"
 
     @property
     def episodes(self) -> int:

@@ -47,7 +47,8 @@ class Truth(unittest.TestCase):
         made = [
             batch, plans, plans.high, together, together.high, batch.measure("is_high"),
             monitor, steps, steps.high, verdicts, verdicts.high, verdicts.high.why,
-            monitor.measure("is_high"), monitor.inputs["x"], place, etlc.Written(Path("f"), "r"),
+            monitor.measure("is_high"), etlc.Drift(False, 1, 100, (0,) * 8),
+            monitor.inputs["x"], place, etlc.Written(Path("f"), "r"),
             etlc.Evaluation({}, "r"), etlc.EtlcWarning("w"), etlc.Checked(),
             etlc.Suggestions({}), etlc.Run(steps, np.zeros((30, 6))),
             etlc.Labelling.__new__(etlc.Labelling), etlc.Watching.__new__(etlc.Watching),
