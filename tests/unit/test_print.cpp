@@ -58,6 +58,7 @@ TEST(Print, CanonicalForm) {
         {"sliding monitor m=G[0,20]a;", "sliding monitor m = G[0, 20] a;"},
         {"monitor m=F a calibrated(conformal,alpha=0.1);",
          "monitor m = F a calibrated(conformal, alpha = 0.1);"},
+        {"drift drift=of level,level=rarely;", "drift drift = of level, level = rarely;"},
     };
     for (const auto& [text, printed] : cases) EXPECT_EQ(canonical(text), printed + "\n");
 }

@@ -237,6 +237,14 @@ std::string word(const Monitor& d) {
     return list(kWords[static_cast<std::size_t>(d.kind)], items);
 }
 
+std::string word(const Drift& d) {
+    std::vector<std::string> items{d.name.text, d.of.text};
+    for (const Calibrated::Argument& a : d.arguments)
+        items.push_back(
+            list(a.key.text, {std::visit([](const auto& v) { return word(v); }, a.value)}));
+    return list("drift", items);
+}
+
 }  // namespace
 
 std::string of(const Expr& e) {
