@@ -21,7 +21,7 @@ declaration
     | ENCODER name ASSIGN load (COMMA setting)* SEMICOLON                  # EncoderDeclaration
     | INPUT name (COMMA name)* COLON type encodedBy? range? hold? missing? stale? SEMICOLON
                                                                           # InputDeclaration
-    | PROJECTION name ASSIGN (fitted | numbers (OFFSET numbers)?) SEMICOLON
+    | PROJECTION name ASSIGN (fitted | numbers (OFFSET numbers)?) (IN name)? SEMICOLON
                                                                           # ProjectionDeclaration
     | TARGET name ASSIGN (fitted | source (COMMA source)* (encodedBy | OF point)?) SEMICOLON
                                                                           # TargetDeclaration
@@ -142,8 +142,15 @@ weights
 
 // As the second point of a distance, a name may be that of a target.
 point
+    : MINUS? (NUMBER TIMES)? located (TIMES located)?
+      ((PLUS | MINUS) (NUMBER TIMES)? located (TIMES located)?)*
+    ;
+
+// Before TIMES, the name of a constant.
+located
     : ( name (LPAREN point RPAREN)?
       | LBRACKET point (COMMA point)* RBRACKET
+      | LPAREN point RPAREN
       ) (AT delay)*
     ;
 

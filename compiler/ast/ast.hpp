@@ -102,11 +102,12 @@ struct Bound {
     Owned<Calibrated> calibrated{};  ///< in place of the number, where it is not null
 };
 
-/// z, P(POINT), [px, py], [z, P(z)], each as it is or was: POINT@3s.
+/// z, P(POINT), [px, py], [z, P(z)], z - 2 * w, each as it is or was: POINT@3s.
 struct Point {
-    Name name;                 ///< the input or projection; empty with brackets
-    std::vector<Point> parts;  ///< of P(POINT) its POINT; with brackets, their elements
-    bool is_vector = false;    ///< written with brackets
+    Name name;                    ///< the input or projection; empty with brackets
+    std::vector<Point> parts;     ///< of P(POINT) its POINT; with brackets or in a sum, all of them
+    bool is_vector = false;       ///< written with brackets
+    std::vector<Number> factors;  ///< in a sum, one for each part: "1", "-2"
     std::vector<Bound> delays;
     Span span;
 
@@ -279,6 +280,7 @@ struct Projection {
     Name name;
     std::variant<Load, MatrixLiteral, VectorLiteral, Fitted> matrix;
     std::optional<Numbers> offset;
+    std::optional<Name> space;  ///< `in actions`
     Span span;
 };
 

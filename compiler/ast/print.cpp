@@ -77,10 +77,30 @@ std::string text_of(const Bound& bound) {
                        unit_word(bound.number, bound.unit));
 }
 
+std::string text_of(const Point& point);
+
+/// "z - 2 * (v + w)"
+std::string text_of_sum(const Point& sum) {
+    std::string text;
+    for (std::size_t i = 0; i < sum.parts.size(); ++i) {
+        std::string_view factor = sum.factors[i].text;
+        const bool negative = factor.starts_with('-');
+        if (negative) factor.remove_prefix(1);
+        text += i == 0 ? (negative ? "-" : "") : (negative ? " - " : " + ");
+        if (factor != "1") text += fmt::format("{} * ", factor);
+        const Point& part = sum.parts[i];
+        const bool nested = !part.factors.empty() && part.delays.empty();
+        text += nested ? fmt::format("({})", text_of(part)) : text_of(part);
+    }
+    return sum.delays.empty() ? text : fmt::format("({})", text);
+}
+
 std::string text_of(const Point& point) {
     std::string text = joined(point.parts, ", ", [](const Point& part) { return text_of(part); });
     if (point.is_vector)
         text = fmt::format("[{}]", text);
+    else if (!point.factors.empty())
+        text = text_of_sum(point);
     else
         text = point.parts.empty() ? point.name.text : fmt::format("{}({})", point.name.text, text);
     for (const Bound& delay : point.delays) text += '@' + text_of(delay);
@@ -252,8 +272,9 @@ std::string text_of(const Input& input) {
 std::string text_of(const Projection& projection) {
     const std::string offset =
         projection.offset ? fmt::format(" offset {}", text_of(*projection.offset)) : "";
-    return fmt::format("projection {} = {}{}", projection.name.text, text_of(projection.matrix),
-                       offset);
+    const std::string space = projection.space ? " in " + projection.space->text : "";
+    return fmt::format("projection {} = {}{}{}", projection.name.text, text_of(projection.matrix),
+                       offset, space);
 }
 
 std::string text_of(const Target& target) {

@@ -114,8 +114,9 @@ private:
             names_.drifts[d] = {member(members_, name), member(members_, name + "_cells")};
         }
         for (check::Index p : plan::built_points(model_, plan_.distances)) {
-            const std::string name = identifier(model_.points[p].text, "point");
-            const std::string ago = model_.points[p].is_delayed() ? "_ago" : "";
+            const check::Point& point = model_.points[p];
+            const std::string name = identifier(point.text, point.is_sum() ? "sum" : "point");
+            const std::string ago = point.is_delayed() ? "_ago" : "";
             names_.point_local[p] = local(measure_, name + ago);
             names_.point_buffer[p] = local(measure_, name + "_values");
         }

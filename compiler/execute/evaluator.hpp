@@ -126,6 +126,7 @@ private:
     void measure_points();
     const float* take_point(check::Index point);
     const float* join(const check::Point& point, float* elements) const;
+    const float* sum(const check::Point& point, float* elements) const;
     const EarlierSamples& earlier_of(check::Index point) const;
     void keep_points();
     void measure_distances();

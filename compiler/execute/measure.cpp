@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "etlmon/distance/between.hpp"
 #include "etlmon/distance/contrast.hpp"
 #include "etlmon/hosted/dynamic.hpp"
 #include "etlmon/hosted/dynamic_enclosed.hpp"
@@ -50,6 +51,7 @@ const float* Evaluator::take_point(Index index) {
     }
     if (point.is_delayed()) return earlier_of(point.inner).at(point.steps);
     if (point.is_joined()) return join(point, elements);
+    if (point.is_sum()) return sum(point, elements);
     if (!point.is_vector()) return inputs_[point.inputs[0]];
     for (std::size_t i = 0; i < point.inputs.size(); ++i) {
         if (inputs_[point.inputs[i]] == nullptr) return nullptr;
@@ -65,6 +67,16 @@ const float* Evaluator::join(const check::Point& point, float* elements) const {
         end = std::copy_n(point_at_[part], model_.points[part].dimension, end);
     }
     return elements;
+}
+
+const float* Evaluator::sum(const check::Point& point, float* elements) const {
+    for (const Index part : point.parts)
+        if (point_at_[part] == nullptr) return nullptr;
+    std::fill_n(elements, point.dimension, 0.0F);
+    for (std::size_t i = 0; i < point.parts.size(); ++i)
+        etlmon::detail::add_term({point.factors[i], point_at_[point.parts[i]]}, point.dimension,
+                                 elements);
+    return etlmon::finite(elements, point.dimension) ? elements : nullptr;
 }
 
 const EarlierSamples& Evaluator::earlier_of(Index point) const {

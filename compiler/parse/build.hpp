@@ -92,6 +92,7 @@ private:
     ast::Aggregation aggregation(Grammar::AggregationContext& context) const;
     ast::Weights weights(Grammar::WeightsContext& context) const;
     ast::Point point(Grammar::PointContext& context) const;
+    ast::Point point(Grammar::LocatedContext& context) const;
 
     // formulas.cpp
     Formula formula(Grammar::FormulaContext& context) const;

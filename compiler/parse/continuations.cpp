@@ -107,7 +107,7 @@ Role role_in(const std::vector<std::size_t>& rules, std::size_t declaration) {
     if (rules.size() < 2 || rules[0] != EtlParser::RuleName) return Role::none;
     switch (rules[1]) {
         case EtlParser::RulePrimary: return Role::operand;
-        case EtlParser::RulePoint: return Role::point;
+        case EtlParser::RuleLocated: return Role::point;
         case EtlParser::RuleWeights: return Role::weights;
         case EtlParser::RuleEncodedBy: return Role::encoder;
         case EtlParser::RuleCalibrated: return Role::calibration;
@@ -193,7 +193,7 @@ void ask(Continuations& found, Tokens tokens, std::uint32_t offset) {
         if (found.role == Role::watched && previous != EtlLexer::OF)
             found.role = Role::none;  // the drift itself
         // Names between the brackets of [px, py] are scalars, and a distance has its target last.
-        const bool is_whole = rules->size() > 2 && (*rules)[2] == EtlParser::RuleDistance;
+        const bool is_whole = rules->size() > 3 && (*rules)[3] == EtlParser::RuleDistance;
         const bool in_list = previous == EtlLexer::LBRACKET || previous == EtlLexer::COMMA;
         if (found.role == Role::point && in_list)
             found.role = is_whole ? Role::target : Role::scalar;

@@ -158,8 +158,9 @@ ast::Range Builder::range(Grammar::RangeContext& context) const {
 ast::Projection Builder::projection(Grammar::ProjectionDeclarationContext& context,
                                     source::Span span) const {
     ast::Projection result;
-    result.name = name(*context.name());
+    result.name = name(*context.name(0));
     result.span = span;
+    if (context.IN() != nullptr) result.space = name(*context.name(1));
     if (auto* const fit = context.fitted()) {
         result.matrix = fitted(*fit);
         return result;

@@ -208,12 +208,54 @@ std::unique_ptr<ast::Distance> Builder::distance(Grammar::DistanceContext& conte
     return result;
 }
 
+/// A single point without a sign or a number is no sum.
 ast::Point Builder::point(Grammar::PointContext& context) const {
+    ast::Point sum;
+    sum.span = span_of(context);
+    bool negative = false;
+    std::optional<ast::Number> factor;
+    const auto& children = context.children;
+    const auto token_at = [&](std::size_t i) -> const Token* {
+        auto* const leaf =
+            i < children.size() ? dynamic_cast<antlr4::tree::TerminalNode*>(children[i]) : nullptr;
+        return leaf == nullptr ? nullptr : leaf->getSymbol();
+    };
+    for (std::size_t i = 0; i < children.size(); ++i) {
+        if (const Token* const token = token_at(i)) {
+            if (token->getType() == Grammar::NUMBER) factor = number(*token);
+            negative = negative || token->getType() == Grammar::MINUS;
+            continue;
+        }
+        auto& operand = *dynamic_cast<Grammar::LocatedContext*>(children[i]);
+        ast::Point part = point(operand);
+        const Token* const next = token_at(i + 1);
+        if (next != nullptr && next->getType() == Grammar::TIMES) {
+            if (factor || !part.is_name())
+                fail(diag::Code::point_form, part.span,
+                     fmt::format("expected one number before a point, found '{} *'", text(operand)),
+                     "a number stands before the point that it multiplies: 2 * z");
+            factor = {part.name.text, part.span, part.name.text};
+            continue;
+        }
+        if (!factor) factor = {"1", part.span, ""};
+        if (negative) factor->text.insert(0, "-");
+        sum.parts.push_back(std::move(part));
+        sum.factors.push_back(*std::exchange(factor, std::nullopt));
+        negative = false;
+    }
+    if (children.size() == 1) return std::move(sum.parts.front());
+    return sum;
+}
+
+ast::Point Builder::point(Grammar::LocatedContext& context) const {
     ast::Point result;
+    const bool nested = context.name() == nullptr && context.LBRACKET() == nullptr;
+    if (nested) result = point(*context.point(0));
     result.span = span_of(context);
     if (context.name() != nullptr) result.name = name(*context.name());
-    result.is_vector = context.name() == nullptr;
-    for (Grammar::PointContext* const part : context.point()) result.parts.push_back(point(*part));
+    result.is_vector = result.is_vector || context.LBRACKET() != nullptr;
+    if (!nested)
+        for (auto* const part : context.point()) result.parts.push_back(point(*part));
     for (Grammar::DelayContext* const ago : context.delay()) result.delays.push_back(delay(*ago));
     return result;
 }

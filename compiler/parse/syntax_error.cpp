@@ -275,7 +275,10 @@ void Strategy::stop(antlr4::Parser* parser, const Token* found) {
         return at >= slice_.begin + n ? tokens_[at - n].get() : nullptr;
     };
     const antlr4::ParserRuleContext* const context = parser->getContext();
-    const auto* const parent = dynamic_cast<const antlr4::ParserRuleContext*>(context->parent);
+    const auto* parent = dynamic_cast<const antlr4::ParserRuleContext*>(context->parent);
+    // A point may be a sum, and what is around it matters.
+    if (context->getRuleIndex() == EtlParser::RuleLocated)
+        parent = dynamic_cast<const antlr4::ParserRuleContext*>(parent->parent);
     const Stuck stuck{found,
                       before(1),
                       before(2),
@@ -368,11 +371,11 @@ std::string operand_words(const Stuck& stuck) {
 
 std::string name_words(const Stuck& stuck) {
     switch (stuck.rule_around()) {
-        case EtlParser::RulePoint:
+        case EtlParser::RuleLocated:
             if (stuck.parent_rule == EtlParser::RuleDistance &&
                 is(stuck.previous, {EtlParser::COMMA}))
                 return "the name of a target, or another point";
-            if (stuck.parent_rule == EtlParser::RulePoint &&
+            if (stuck.parent_rule == EtlParser::RuleLocated &&
                 !is(stuck.previous, {EtlParser::LPAREN}))
                 return "a scalar input or a point";
             return "the name of an input or a projection, or a vector [x, y] of scalar inputs";
@@ -414,7 +417,7 @@ bool another_item_could_follow(const Stuck& stuck) {
     switch (stuck.rule) {
         case EtlParser::RuleDeclaration: return stuck.expects(EtlParser::COLON);
         case EtlParser::RuleCalibrated:
-        case EtlParser::RulePoint:
+        case EtlParser::RuleLocated:
         case EtlParser::RuleLiteral:
         case EtlParser::RuleRow:
         case EtlParser::RuleLoad:
@@ -449,6 +452,7 @@ std::string expected_words(const Stuck& stuck) {
     if (stuck.looked_ahead)
         return stuck.rule == EtlParser::RuleLiteral ? "a number, or a row [...] of numbers"
                                                     : "an operator";
+    if (stuck.rule == EtlParser::RulePoint) return "'*' and a point";  // after a number
     if (expects_operand(stuck)) return operand_words(stuck);
     // A name where a number is accepted is a constant, or the value of an argument.
     const bool in_argument =

@@ -126,6 +126,19 @@ Vector joined(const check::Model& model, const check::Point& point,
     return all;
 }
 
+/// Returns f x + g y; empty where one is missing.
+Vector sum_of(const check::Model& model, const check::Point& point,
+              const std::vector<Samples>& trace, std::size_t step) {
+    Vector sum(point.dimension);
+    for (std::size_t i = 0; i < point.parts.size(); ++i) {
+        const Vector part = point_of(model, point.parts[i], trace, step);
+        if (part.empty()) return {};
+        for (std::size_t n = 0; n < part.size(); ++n)
+            sum[n] += static_cast<double>(point.factors[i]) * part[n];
+    }
+    return sum;
+}
+
 /// Returns P(z) = A (z - m), from the inside out; z@n is z at the step n before, missing where
 /// there is none. Empty where an input is missing.
 Vector point_of(const check::Model& model, Index index, const std::vector<Samples>& trace,
@@ -135,6 +148,7 @@ Vector point_of(const check::Model& model, Index index, const std::vector<Sample
         return step < point.steps ? Vector{}
                                   : point_of(model, point.inner, trace, step - point.steps);
     if (point.is_joined()) return joined(model, point, trace, step);
+    if (point.is_sum()) return sum_of(model, point, trace, step);
     if (!point.is_projected()) return inputs_of(point, trace[step]);
     Vector z = point_of(model, point.inner, trace, step);
     if (z.empty()) return {};

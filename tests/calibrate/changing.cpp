@@ -132,7 +132,7 @@ void visit(check::Model&, check::Encoder& of, Changing& changing) {
 
 void visit(check::Model&, check::Projection& of, Changing& changing) {
     changing.of("Projection");
-    auto& [name, rows, dimension, matrix, offset, origin, path, hash, fitted, span] = of;
+    auto& [name, rows, dimension, matrix, offset, origin, path, hash, fitted, space, span] = of;
     field(changing, "name", name);
     field(changing, "rows", rows);
     field(changing, "dimension", dimension);
@@ -142,12 +142,13 @@ void visit(check::Model&, check::Projection& of, Changing& changing) {
     field(changing, "path", path);
     field(changing, "hash", hash);
     field(changing, "fitted", fitted);
+    field(changing, "space", space);
     field(changing, "span", span);
 }
 
 void visit(check::Model& model, check::Point& of, Changing& changing) {
     changing.of("Point");
-    auto& [kind, inputs, dimension, projection, inner, steps, parts, text] = of;
+    auto& [kind, inputs, dimension, projection, inner, steps, parts, factors, text] = of;
     field(changing, "kind", kind);
     field(changing, "inputs", inputs);
     field(changing, "dimension", dimension);
@@ -155,6 +156,7 @@ void visit(check::Model& model, check::Point& of, Changing& changing) {
         field(changing, "projection", Place{projection, model.projections.size()});
     field(changing, "steps", steps);
     field(changing, "parts", parts);
+    field(changing, "factors", factors);
     field(changing, "text", text);
     // Only to earlier ones.
     if (inner != kNone) field(changing, "inner", Place{inner, inner + 1});

@@ -70,8 +70,9 @@ const std::set<std::string> kUnread{
     "Projection.fitted", "Target.values", "Target.origin", "Target.path", "Target.encoded",
     "Target.fitted", "Distance.weights_fitted", "Distance.weights_path",
     // Part of the text.
-    "Point.kind", "Point.dimension", "Point.inner", "Point.steps", "Point.parts", "Past.kind",
-    "Past.steps", "Expr.number", "Expr.number32", "Predicate.inputs", "Threshold.value64",
+    "Point.kind", "Point.dimension", "Point.inner", "Point.steps", "Point.parts", "Point.factors",
+    "Past.kind", "Past.steps", "Expr.number", "Expr.number32", "Predicate.inputs",
+    "Threshold.value64",
     // Ranges follow from the expression, the inputs and the threshold.
     "Past.range", "Predicate.delta", "Predicate.robustness",
     // The entry itself records the quality of the threshold.
@@ -83,7 +84,7 @@ const std::set<std::string> kUnread{
     "Let.name", "Let.formula", "Let.telemetry", "Let.truth", "Model.constants", "Model.rounded",
     "Model.rounding",
     // Unrelated.
-    "Model.name", "Model.retargetable", "Model.encoded", "Model.dependencies",
+    "Projection.space", "Model.name", "Model.retargetable", "Model.encoded", "Model.dependencies",
     "Model.reservations"};
 
 TEST(Reads, EveryFieldOfTheModelCountsOrIsListed) {

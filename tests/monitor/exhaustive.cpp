@@ -240,6 +240,18 @@ const Formulas kPointsOfOneInput = {
     "max(l2(z, z@1), 2 steps) <= 1",
     "mean(l1(z, z@2), 2 steps) <= 1",
     "min l1(z, goal) < min l1(z, goal)@1",
+    "l1(z - 2 * z@1 + z@2, nothing) <= 2",
+    "l2(z, 2 * z@1 - z@2) <= 3",
+    "l1((z - z@2)@1, -(z@1 - z)) < 3",
+    "l1(0.5 * (z + z@3) - z@1, nothing) <= 1",
+    "min l1(P(z - z@1), goal) <= 5",
+    "l1(P(z) - P(z)@2, own) > 3",
+    "linf([z - z@1, z@2], [z@1, z + z@1]) <= 2",
+    "min l1([z@2, z - z@1]@1, corners) <= 1",
+    "cosine(z - z@1, z@1 - z@2) <= 1",
+    "l1(head(z), tail(z@1)) <= 3",
+    "l1(head(z) - tail(z@1), middle) <= 3",
+    "l1((2 * tail(z) - head(z@1))@1, middle) < 6",
 };
 const Formulas kPointsOfTwoInputs = {
     "l2(z, w@1) <= 1",
@@ -250,6 +262,12 @@ const Formulas kPointsOfTwoInputs = {
     "min l1([z@1, w], corners) <= 1",
     "min l1([w, z]@2, corners) <= 1",
     "mean(l1(z, w), 2 steps) <= 1",
+    "l1(z - w, nothing) <= 2",
+    "l1(z + w@1, 2 * w - z@1) < 3",
+    "l1(P(w) - P(z), own) <= 6",
+    "l1(P(w - z), nothing) <= 6",
+    "l1(head(w) + tail(z@1), middle) <= 4",
+    "min l1([z - w@1, w], corners) <= 1",
 };
 
 std::string spec(const std::string& name, const std::string& kind, const Formulas& formulas) {
@@ -329,7 +347,11 @@ std::string exhaustive_past_spec(const std::string& name, const PastShape& shape
         result += fmt::format(
             "input z : f16[1]{0};\n{1}"
             "projection P = [[2]] offset [1];\n"
+            "projection head = [[1]] in half;\n"
+            "projection tail = [[3]] offset [2] in half;\n"
             "target goal = [[2]];\n"
+            "target nothing = [[0]];\n"
+            "target middle = [[1]] of head(z);\n"
             "target own = [[4]] of P(z);\n"
             "target corners = [[2, 2], [-1, 2]];\n",
             more, shape.inputs > 1 ? "input w : i8[1] scale 1;\n" : "");

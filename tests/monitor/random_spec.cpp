@@ -29,6 +29,7 @@ public:
         result += target("spots", 2);
         result += projections();
         result += target("own", projected_, " of P(v)");
+        result += target("shared", projected_, " of head(v)");
         const int count = random_.between(4, 6);
         for (int n = 0; n < count; ++n) {
             atoms_.push_back(fmt::format("p{}", n));
@@ -111,17 +112,21 @@ private:
         return fmt::format("[{}]", text);
     }
 
-    std::string projection(const char* name, int rows, int columns, double grid) {
+    std::string projection(const char* name, int rows, int columns, double grid,
+                           bool shared = false) {
         const std::string offset =
             random_.chance(0.5) ? fmt::format(" offset {}", matrix(1, columns, 0.25)) : "";
-        return fmt::format("projection {} = {}{};\n", name, matrix(rows, columns, grid), offset);
+        return fmt::format("projection {} = {}{}{};\n", name, matrix(rows, columns, grid), offset,
+                           shared ? " in actions" : "");
     }
 
     /// Few binary digits: a sum of squares of Q(P(v)) must be exact in float32.
     std::string projections() {
         projected_ = random_.between(1, 3);
         return projection("P", projected_, dimension_, 0.25) + projection("Q", 2, projected_, 1) +
-               projection("T", 1, 2, 0.25);
+               projection("T", 1, 2, 0.25) +
+               projection("head", projected_, dimension_, 0.25, true) +
+               projection("tail", projected_, dimension_, 0.25, true);
     }
 
     /// 1, 2 or 4 rows, so that their mean is exact.
@@ -187,6 +192,55 @@ private:
         return random_.chance(0.2) ? name + ago() + ago() : name + ago();
     }
 
+    /// A point in the space of the embeddings, or in that of `head`.
+    std::string in_space(bool actions) {
+        if (!actions) return embedded();
+        return fmt::format("{}({}){}", random_.word({"head", "tail"}), embedded(),
+                           random_.chance(0.3) ? ago() : "");
+    }
+
+    /// Few binary digits, as in a matrix.
+    std::string sum(bool actions) {
+        std::string text = random_.chance(0.2) ? "-" : "";
+        for (int n = random_.between(1, 3); n >= 0; --n) {
+            if (random_.chance(0.4)) text += random_.word({"2 * ", "0.5 * ", "1.5 * "});
+            text += random_.chance(0.15)
+                        ? fmt::format("({} - {}){}", in_space(actions), in_space(actions), ago())
+                        : in_space(actions);
+            if (n > 0) text += random_.word({" - ", " + "});
+        }
+        return text;
+    }
+
+    /// Squares of sums do not fit into float32.
+    std::string metric_of_sum(int columns) {
+        return exact_ ? random_.word({"l1", "linf"}) : metric_of_any(columns);
+    }
+
+    /// A sum of points, and what it is compared with.
+    std::string distance_of_sum() {
+        const bool actions = random_.chance(0.4);
+        const int columns = actions ? projected_ : dimension_;
+        const std::string target = actions ? "shared" : random_.word({"near", "far"});
+        switch (random_.between(0, 4)) {
+            case 0:
+                return fmt::format("{}({}, {})", metric_of_sum(columns), sum(actions),
+                                   in_space(actions));
+            case 1:
+                return fmt::format("{}({}, {})", metric_of_sum(columns), sum(actions),
+                                   sum(actions));
+            case 2:
+                return fmt::format("{} {}(P({}), near)", aggregation("near"),
+                                   metric_of_sum(projected_), sum(false));
+            case 3:
+                return fmt::format("{}([{}, x], [{}, y{}])", metric_of_sum(columns + 1),
+                                   sum(actions), in_space(actions), ago());
+            default:
+                return fmt::format("{} {}({}, {})", aggregation(target), metric_of_sum(columns),
+                                   sum(actions), target);
+        }
+    }
+
     /// Two points of the same space, now or a while ago.
     std::string between_points() {
         const std::string either = random_.chance(0.5) ? ago() : "";
@@ -236,6 +290,7 @@ private:
 
     std::string distance() {
         if (random_.chance(0.25)) return between_points();
+        if (random_.chance(0.25)) return distance_of_sum();
         if (random_.chance(0.15)) return past_distance();
         if (random_.chance(0.3)) return projected_distance();
         if (random_.chance(0.3))

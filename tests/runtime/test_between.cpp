@@ -163,6 +163,24 @@ TEST(PointsPutTogether, ScalarsAllOfThem) {
         }
 }
 
+TEST(PointsAdded, OneAfterTheOther) {
+    const float a[] = {1, 3e38F, 0.1F}, b[] = {0.3F, 3e38F, -7}, c[] = {1e-3F, -3e38F, 0};
+    float to[3]{};
+    ASSERT_EQ(etlmon::summed(to, {{1, a}, {-2.5F, c}, {-0.7F, b}}), nullptr);  // 3e38 + 7.5e38
+    ASSERT_EQ(etlmon::summed(to, {{1, a}, {-0.7F, b}, {0.3F, c}}), static_cast<const float*>(to));
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        volatile float product = -0.7F * b[i];  // rounds once, and is not fused
+        volatile float sum = a[i] + product;
+        product = 0.3F * c[i];
+        sum = sum + product;
+        EXPECT_EQ(to[i], sum);
+    }
+    EXPECT_EQ(etlmon::summed(to, {{1, a}, {1, nullptr}}), nullptr);
+    EXPECT_EQ(etlmon::summed(to, {{1, nullptr}, {1, a}}), nullptr);
+    ASSERT_NE(etlmon::summed(to, {{-1, a}}), nullptr);
+    EXPECT_EQ(bits(to[1]), bits(-3e38F));
+}
+
 TEST(PointsPutTogether, NarrowSamplesAsFloats) {
     float to[4]{};
     const std::uint16_t halves[] = {0x3c00, 0xc000, 0x0001, 0x7bff};

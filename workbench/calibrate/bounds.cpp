@@ -116,12 +116,41 @@ std::vector<double> joined_moves(const check::Model& model, const check::Point& 
     return computed ? all : std::vector<double>{};
 }
 
+/// Bounds them for a sum, a projection by its factors. Builds add equal points to equal sums, but
+/// for denormals.
+std::vector<double> sum_moves(const check::Model& model, const check::Point& point,
+                              std::uint32_t ago, const execute::Evaluator& measured) {
+    std::vector<double> magnitude(point.dimension);
+    std::vector<double> size(point.dimension);
+    std::vector<double> moves(point.dimension);
+    bool computed = false;
+    for (std::size_t i = 0; i < point.parts.size(); ++i) {
+        const double factor = std::abs(static_cast<double>(point.factors[i]));
+        std::vector<double> inner = moves_of(model, point.parts[i], ago, measured);
+        computed = computed || !inner.empty();
+        inner.resize(point.dimension);
+        const float* const z = elements_of(model, point.parts[i], ago, measured);
+        for (std::size_t j = 0; j < point.dimension; ++j) {
+            const double greatest = std::abs(static_cast<double>(z[j])) + inner[j];
+            magnitude[j] += factor * greatest;
+            size[j] += factor + greatest;
+            moves[j] += factor * inner[j];
+        }
+    }
+    const auto terms = static_cast<std::uint32_t>(point.parts.size());
+    for (std::size_t j = 0; j < point.dimension; ++j)
+        moves[j] += 2 * etlmon::projection_bound(terms, computed ? magnitude[j] : 0, size[j]);
+    for (double& move : moves) move *= kSlack;
+    return moves;
+}
+
 /// `ago`: of the point as it was so many steps before.
 std::vector<double> moves_of(const check::Model& model, Index index, std::uint32_t ago,
                              const execute::Evaluator& measured) {
     const check::Point& point = model.points[index];
     if (point.is_delayed()) return moves_of(model, point.inner, ago + point.steps, measured);
     if (point.is_joined()) return joined_moves(model, point, ago, measured);
+    if (point.is_sum()) return sum_moves(model, point, ago, measured);
     if (!point.is_projected()) return {};
     const check::Projection& map = model.projections[point.projection];
     const std::vector<double> inner = moves_of(model, point.inner, ago, measured);

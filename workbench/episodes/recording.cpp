@@ -12,6 +12,7 @@
 #include "check/points/points.hpp"
 #include "data/text/text.hpp"
 #include "data/traces/trace_formats.hpp"
+#include "etlmon/distance/between.hpp"
 #include "recordings/datasets/trace.hpp"
 
 namespace etlc::episodes {
@@ -546,6 +547,7 @@ bool RecentFrames::append(Index index, std::size_t ago, std::vector<float>& valu
     if (point.is_joined())
         return std::all_of(point.parts.begin(), point.parts.end(),
                            [&](Index part) { return append(part, ago, values); });
+    if (point.is_sum()) return append_sum(point, ago, values);
     const std::vector<execute::Sample>* const frame = at(ago);
     if (frame == nullptr) return false;
     for (const Index input : point.inputs) {
@@ -555,6 +557,19 @@ bool RecentFrames::append(Index index, std::size_t ago, std::vector<float>& valu
         values.insert(values.end(), sample.values.begin(), sample.values.end());
     }
     return true;
+}
+
+/// Adds as a monitor does.
+bool RecentFrames::append_sum(const check::Point& point, std::size_t ago,
+                              std::vector<float>& values) const {
+    std::vector<float> sum(point.dimension);
+    for (std::size_t i = 0; i < point.parts.size(); ++i) {
+        std::vector<float> part;
+        if (!append(point.parts[i], ago, part)) return false;
+        etlmon::detail::add_term({point.factors[i], part.data()}, point.dimension, sum.data());
+    }
+    values.insert(values.end(), sum.begin(), sum.end());
+    return etlmon::finite(sum.data(), sum.size());
 }
 
 // ---- monitors beside a recording ----------------------------------------------------------------

@@ -243,6 +243,7 @@ public:
 
 private:
     bool append(Index point, std::size_t ago, std::vector<float>& values) const;
+    bool append_sum(const check::Point& point, std::size_t ago, std::vector<float>& values) const;
 
     const std::vector<execute::Sample>* at(std::size_t ago) const;
 

@@ -434,6 +434,16 @@ std::vector<double> TruthEvaluator::elements(Index index, std::size_t ago) const
                              : check::projected(model_.projections[point.projection], inner);
     }
     std::vector<double> all;
+    if (point.is_sum()) {
+        all.resize(point.dimension);
+        for (std::size_t i = 0; i < point.parts.size(); ++i) {
+            const std::vector<double> part = elements(point.parts[i], ago);
+            if (part.empty()) return {};
+            for (std::size_t n = 0; n < part.size(); ++n)
+                all[n] += static_cast<double>(point.factors[i]) * part[n];
+        }
+        return all;
+    }
     const auto append = [&](const std::vector<double>& part) {
         all.insert(all.end(), part.begin(), part.end());
         return !part.empty();

@@ -12,6 +12,7 @@
 #include "episodes/parallel.hpp"
 #include "episodes/recording.hpp"
 #include "plan/plan.hpp"
+#include "plan/targets/kernels.hpp"
 
 namespace etlc::fit {
 
@@ -225,10 +226,8 @@ std::optional<Index> refused_for(const Filled& filled, Index predicate) {
             if (target.source != kNone) look(model.targets[target.source].fitted);
         }
         look(distance.weights_fitted);
-        for (const Index point : {distance.point, distance.other})
-            for (Index at = point; at != kNone; at = model.points[at].inner)
-                if (model.points[at].is_projected())
-                    look(model.projections[model.points[at].projection].fitted);
+        for (const Index point : plan::projected_points(model, {d}))
+            look(model.projections[model.points[point].projection].fitted);
     });
     return found;
 }

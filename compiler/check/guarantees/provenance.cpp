@@ -121,15 +121,16 @@ private:
 
     void add_projection(Index index) {
         // The hash covers matrix and offset, from any source.
-        const auto& [name, rows, dimension, matrix, offset, origin, path, hash, fitted, span] =
-            model_.projections[index];
+        // The space only says what may be compared.
+        const auto& [name, rows, dimension, matrix, offset, origin, path, hash, fitted, space,
+                     span] = model_.projections[index];
         add("projection " + name,
             fmt::format("{} x {}, {}", rows, dimension, hashed("values", hash)));
     }
 
     std::string add_point(Index point) {
-        // The text has delays, and the names of inputs and projections, which are added.
-        const auto& [kind, inputs, dimension, projection, inner, steps, parts, text] =
+        // The text has delays, factors, and the names of inputs and projections, which are added.
+        const auto& [kind, inputs, dimension, projection, inner, steps, parts, factors, text] =
             model_.points[point];
         for (const Index input : inputs) add_input(input);
         if (projection != kNone) add_projection(projection);

@@ -101,26 +101,30 @@ struct Projection {
     std::string path;             ///< of the matrix file; empty for a literal
     std::string hash;             ///< content hash of shape and values
     Index fitted = kNone;         ///< in Model::fitted
+    std::string space;            ///< its points are those of all projections in it; or empty
     Span span;
 };
 
 /// A point to measure from: an embedding, a vector of scalars [px, py], P(POINT), POINT as it was
-/// `steps` ago, or several points put together, [z, z@5]. What is delayed is none of the last two.
+/// `steps` ago, several points put together, [z, z@5], or a sum, z - 2 * w, of points of one space.
+/// What is delayed is none of the last three.
 struct Point {
-    enum class Kind : std::uint8_t { embedding, scalars, projected, delayed, joined };
+    enum class Kind : std::uint8_t { embedding, scalars, projected, delayed, joined, sum };
     Kind kind = Kind::embedding;
     std::vector<Index> inputs;  ///< all that it is made of, in order
     std::uint32_t dimension = 0;
     Index projection = kNone;  ///< P
     Index inner = kNone;       ///< POINT, which precedes it in Model::points
     std::uint32_t steps = 0;   ///< delayed: at least 1
-    std::vector<Index> parts;  ///< joined: at least two, which precede it in Model::points
-    std::string text;          ///< canonical text: "Q(z)", "[px, py]", "z@90"
+    std::vector<Index> parts;  ///< joined: at least two, which precede it in Model::points; or sum
+    std::vector<float> factors;  ///< sum: one for each part
+    std::string text;            ///< canonical text: "Q(z)", "[px, py]", "z@90", "z - 2 * w"
 
     bool is_vector() const { return kind == Kind::scalars; }
     bool is_projected() const { return kind == Kind::projected; }
     bool is_delayed() const { return kind == Kind::delayed; }
     bool is_joined() const { return kind == Kind::joined; }
+    bool is_sum() const { return kind == Kind::sum; }
 };
 
 /// Rows of a target that were made from images or from frames of a video.

@@ -301,7 +301,7 @@ private:
     void replace(ast::Load& /*load*/) {}
     void replace(ast::Constant& /*constant*/) {}
     void replace(ast::Images& /*images*/) {}
-    void replace(ast::Point& point) { each(point.parts, point.delays); }
+    void replace(ast::Point& point) { each(point.parts, point.factors, point.delays); }
     void replace(ast::Past& past) { each(past.formula, past.time); }
     void replace(ast::MatrixLiteral& matrix) { replace(matrix.rows); }
     void replace(ast::VectorLiteral& vector) { replace(vector.values); }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "check/numbers/range.hpp"
 #include "check/time/time.hpp"
@@ -76,15 +77,40 @@ Index joined(Context& c, const std::vector<Index>& parts) {
     return add(c, std::move(point));
 }
 
-/// Returns the point as it was `steps` ago. A delay goes inside of what is put together, and is
-/// added to another one.
+/// Returns the sum with other parts. A single point is itself.
+Index summed(Context& c, const Point& like, const std::vector<Index>& parts) {
+    if (parts.size() == 1 && like.factors[0] == 1) return parts[0];
+    Point sum;
+    sum.kind = Point::Kind::sum;
+    sum.parts = parts;
+    sum.factors = like.factors;
+    sum.dimension = c.model.points[parts[0]].dimension;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const Point& part = c.model.points[parts[i]];
+        sum.inputs.insert(sum.inputs.end(), part.inputs.begin(), part.inputs.end());
+        const bool negative = std::signbit(sum.factors[i]);
+        const float size = std::abs(sum.factors[i]);
+        sum.text += i == 0 ? (negative ? "-" : "") : (negative ? " - " : " + ");
+        if (size != 1) sum.text += fmt::format("{} * ", size);
+        sum.text += part.is_sum() ? fmt::format("({})", part.text) : part.text;
+    }
+    return add(c, std::move(sum));
+}
+
+/// Returns points put together, or their sum, with other parts.
+Index of_parts(Context& c, const Point& like, const std::vector<Index>& parts) {
+    return like.is_sum() ? summed(c, like, parts) : joined(c, parts);
+}
+
+/// Returns the point as it was `steps` ago. A delay goes inside of what is put together or added,
+/// and is added to another one.
 Index ago(Context& c, Index index, std::uint32_t steps) {
     if (index == kNone || steps == 0) return index;
     const Point inner = c.model.points[index];  // a copy: `points` grows
-    if (inner.is_joined()) {
+    if (!inner.parts.empty()) {
         std::vector<Index> parts;
         for (const Index part : inner.parts) parts.push_back(ago(c, part, steps));
-        return joined(c, parts);
+        return of_parts(c, inner, parts);
     }
     if (inner.is_delayed()) return ago(c, inner.inner, inner.steps + steps);
     Point point;
@@ -167,6 +193,21 @@ Index limited_ago(Context& c, Index index, std::uint32_t steps, Span span) {
     return kNone;
 }
 
+/// Returns z - 2 * w; kNone after an error.
+Index sum_of(Context& c, const ast::Point& written) {
+    Point sum;
+    std::vector<Index> parts;
+    const std::size_t errors = c.sink.errors();
+    for (std::size_t i = 0; i < written.parts.size(); ++i) {
+        parts.push_back(check_point(c, written.parts[i]));
+        sum.factors.push_back(number32(c, written.factors[i]));
+        if (i > 0 && parts[0] != kNone && parts[i] != kNone)
+            check_same_space(c, parts[0], parts[i], written.span);
+    }
+    const bool good = c.sink.errors() == errors && !std::count(parts.begin(), parts.end(), kNone);
+    return good ? summed(c, sum, parts) : kNone;
+}
+
 /// Returns the elements of [a, b@3, z]; nothing after an error.
 std::optional<std::vector<Element>> elements_of(Context& c, const ast::Point& vector) {
     std::vector<Element> elements;
@@ -229,10 +270,21 @@ Index in_brackets(Context& c, const ast::Point& written) {
 std::string words_of(const Point& point) {
     if (point.is_projected()) return point.text;
     if (point.is_vector() || point.is_joined()) return "the vector";
+    if (point.is_sum()) return point.text;
     return fmt::format("'{}'", point.text);
 }
 
-void report_wrong_space(Context& c, const Target& target, Index of, const Point& point, Span span) {
+/// `there`: the space of the point.
+void report_wrong_space(Context& c, const Target& target, Index of, const Point& point,
+                        const Point& there, Span span) {
+    if (of == kNone) {
+        c.report(Code::wrong_space, span,
+                 fmt::format("target '{}' is in the space of the inputs, but {} is in that of {}",
+                             target.name, words_of(point), there.text))
+            .note(fmt::format("if its rows are in the space of {}, write: target {} = ... of {};",
+                              there.text, target.name, there.text));
+        return;
+    }
     const std::string& space = c.model.points[of].text;
     c.report(Code::wrong_space, span,
              fmt::format("target '{}' is in the space of {}, but {} is not", target.name, space,
@@ -262,7 +314,7 @@ std::uint32_t shortest_delay(const Model& model, Index index) {
     const Point& point = model.points[index];
     if (point.is_projected()) return shortest_delay(model, point.inner);
     if (point.is_delayed()) return point.steps + shortest_delay(model, point.inner);
-    std::uint32_t shortest = point.is_joined() ? kMaxBound : 0;
+    std::uint32_t shortest = point.parts.empty() ? 0 : kMaxBound;
     for (const Index part : point.parts) shortest = std::min(shortest, shortest_delay(model, part));
     return shortest;
 }
@@ -278,7 +330,38 @@ Index later(Context& c, Index index, std::uint32_t steps) {
     }
     std::vector<Index> parts;
     for (const Index part : point.parts) parts.push_back(later(c, part, steps));
+    return of_parts(c, point, parts);
+}
+
+/// Returns the point with the first of its parts in place of each sum, no later than the sum.
+Index without_sums(Context& c, Index index) {
+    const Point point = c.model.points[index];  // a copy: `points` grows
+    if (point.is_sum()) return ago(c, space_of(c, point.parts[0]), shortest_delay(c.model, index));
+    if (point.is_projected()) return through(c, point.projection, without_sums(c, point.inner));
+    if (point.is_delayed()) return ago(c, without_sums(c, point.inner), point.steps);
+    if (point.parts.empty()) return index;
+    std::vector<Index> parts;
+    for (const Index part : point.parts) parts.push_back(without_sums(c, part));
     return joined(c, parts);
+}
+
+/// Whether both are declared to be in one space.
+bool is_declared_same(const Model& model, const Point& a, const Point& b) {
+    if (!a.is_projected() || !b.is_projected()) return false;
+    const std::string& space = model.projections[a.projection].space;
+    return !space.empty() && space == model.projections[b.projection].space;
+}
+
+/// Returns the inputs that a point is made of, in the order of its elements; of a sum those of its
+/// first part.
+std::vector<Index> inputs_of(const Model& model, Index index) {
+    const Point& point = model.points[index];
+    if (point.inner != kNone) return inputs_of(model, point.inner);
+    if (point.is_sum()) return inputs_of(model, point.parts[0]);
+    std::vector<Index> all = point.is_joined() ? std::vector<Index>{} : point.inputs;
+    for (const Index part : point.parts)
+        for (const Index input : inputs_of(model, part)) all.push_back(input);
+    return all;
 }
 
 }  // namespace
@@ -298,6 +381,8 @@ Index check_point(Context& c, const ast::Point& written) {
     Index point = kNone;
     if (written.is_vector) {
         point = in_brackets(c, written);
+    } else if (!written.factors.empty()) {
+        point = sum_of(c, written);
     } else if (!written.parts.empty()) {
         point = projected(c, written.name, check_point(c, written.parts[0]), written.span);
     } else {
@@ -312,11 +397,17 @@ Index without_delay(Context& c, Index point) {
     return later(c, point, shortest_delay(c.model, point));
 }
 
+Index space_of(Context& c, Index point) {
+    return without_delay(c, without_sums(c, point));
+}
+
 bool is_same_space(const Model& model, Index a, Index b) {
-    while (model.points[a].is_delayed()) a = model.points[a].inner;
-    while (model.points[b].is_delayed()) b = model.points[b].inner;
+    for (Index* at : {&a, &b})
+        while (model.points[*at].is_delayed() || model.points[*at].is_sum())
+            *at = model.points[*at].is_sum() ? model.points[*at].parts[0] : model.points[*at].inner;
     const Point& left = model.points[a];
     const Point& right = model.points[b];
+    if (is_declared_same(model, left, right)) return true;
     if (left.dimension != right.dimension || left.projection != right.projection) return false;
     if (left.is_projected()) return is_same_space(model, left.inner, right.inner);
     if (!left.is_joined() && !right.is_joined()) return true;
@@ -324,21 +415,83 @@ bool is_same_space(const Model& model, Index a, Index b) {
                       [&](Index one, Index other) { return is_same_space(model, one, other); });
 }
 
+bool is_by(Context& c, const Input& one, Index encoder, const std::string& other, Span span) {
+    if (one.encoder == encoder || one.encoder == kNone) return true;
+    return c.refuse(
+        Code::wrong_space, span,
+        fmt::format("'{}' is by {} and '{}' is by {}; a distance compares embeddings by one "
+                    "encoder",
+                    one.name, c.model.encoders[one.encoder].name, other,
+                    c.model.encoders[encoder].name));
+}
+
+bool encoders_fit(Context& c, Index point, Index other, Span span) {
+    const std::vector<Index> left = inputs_of(c.model, point);
+    const std::vector<Index> right = inputs_of(c.model, other);
+    std::uint64_t at_left = 0;
+    std::uint64_t at_right = 0;
+    for (std::size_t i = 0, j = 0; i < left.size() && j < right.size();) {
+        const Input& one = c.model.inputs[left[i]];
+        const Input& two = c.model.inputs[right[j]];
+        if (at_left == at_right && two.encoder != kNone &&
+            !is_by(c, one, two.encoder, two.name, span))
+            return false;
+        const std::uint64_t end = std::min(at_left + one.dimension, at_right + two.dimension);
+        const bool left_ends = at_left + one.dimension == end;
+        const bool right_ends = at_right + two.dimension == end;
+        if (left_ends) at_left = end;
+        if (right_ends) at_right = end;
+        i += left_ends ? 1 : 0;
+        j += right_ends ? 1 : 0;
+    }
+    return true;
+}
+
+bool check_same_space(Context& c, Index a, Index b, Span span) {
+    const Point& one = c.model.points[a];
+    const Point& other = c.model.points[b];
+    if (one.dimension != other.dimension)
+        return c.refuse(Code::dimension_mismatch, span,
+                        fmt::format("{} has dimension {}, {} has dimension {}", one.text,
+                                    one.dimension, other.text, other.dimension));
+    if (is_same_space(c.model, a, b))
+        return is_declared_same(c.model, one, other) || encoders_fit(c, a, b, span);
+    auto& error = c.report(
+        Code::wrong_space, span,
+        fmt::format("{} and {} are in different spaces; expected two inputs, or two points "
+                    "through the same projections",
+                    one.text, other.text));
+    if (!one.is_vector() && !other.is_vector())
+        error.note(
+            "if both spaces are one, end the declaration of each projection with "
+            "'in NAME', the same name; an input needs a projection of its own");
+    return false;
+}
+
 Index target_in_space(Context& c, Index index, Index measured, Span span) {
-    const Index point = without_delay(c, measured);
+    Index point = space_of(c, measured);
     const Target& target = c.model.targets[index];
     const auto is_there = [&](Index at) {
-        return target.space == kNone ? !c.model.points[at].is_projected() : at == target.space;
+        if (target.space == kNone) return !c.model.points[at].is_projected();
+        const Point& space = c.model.points[target.space];
+        return at == target.space ||
+               (at == point && is_declared_same(c.model, c.model.points[at], space));
     };
+    // Rows are not projected into the space of a sum: its projections may differ. Any part may be
+    // the one that they are declared `of`.
+    const bool is_sum = c.model.points[measured].is_sum();
+    if (is_sum)
+        for (const Index part : std::vector<Index>(c.model.points[measured].parts))
+            if (space_of(c, part) == target.space) point = target.space;
     Index from = point;
-    while (from != kNone && !is_there(from)) from = c.model.points[from].inner;
+    while (from != kNone && !is_there(from)) from = is_sum ? kNone : c.model.points[from].inner;
     const auto of = c.point_of_target.find(index);
     const bool is_elsewhere = target.space == kNone && of != c.point_of_target.end() &&
                               from != kNone && !is_same_space(c.model, from, of->second) &&
                               c.model.points[from].dimension == target.dimension;
     if (from == kNone || is_elsewhere) {
         report_wrong_space(c, target, is_elsewhere ? of->second : target.space,
-                           c.model.points[point], span);
+                           c.model.points[is_sum ? measured : point], c.model.points[point], span);
         return kNone;
     }
     if (c.model.points[from].dimension != target.dimension) {

@@ -20,12 +20,25 @@ Index check_point(Context& context, const ast::Point& point);
 /// Returns the steps of `@TIME`, at least 1; nothing after an error.
 std::optional<std::uint32_t> steps_ago(Context& context, const ast::Bound& time);
 
-/// Returns the point with all its delays shortened alike until the shortest is zero: the space that
-/// it is in.
+/// Returns the point with all its delays shortened alike until the shortest is zero.
 Index without_delay(Context& context, Index point);
 
-/// Whether two points have equal dimensions and went through equal projections.
+/// Returns the space that a point is in, as a point without delay or sums.
+Index space_of(Context& context, Index point);
+
+/// Whether two points have equal dimensions and went through equal projections, or through
+/// projections that are declared to be in one space. A sum is in the space of its parts.
 bool is_same_space(const Model& model, Index a, Index b);
+
+/// Reports points that are not of one space or by different encoders; false after an error.
+bool check_same_space(Context& context, Index a, Index b, Span span);
+
+/// Reports embeddings by two encoders, which have nothing to do with each other; false after an
+/// error. Inputs that begin at the same element are compared: [x, y] may stand for one of two.
+bool encoders_fit(Context& context, Index point, Index other, Span span);
+
+/// Whether an input may be by the encoder that `other` is by; false after an error.
+bool is_by(Context& context, const Input& one, Index encoder, const std::string& other, Span span);
 
 /// Returns the target if its rows are in the space of the point, otherwise a target with the
 /// projected rows; kNone, with an error, if no projection of the point leads there or the

@@ -129,7 +129,7 @@ std::uint32_t longest_delay(const Model& model, Index index) {
 
 Index as_of_now(const Model& model, Index index) {
     const Point& point = model.points[index];
-    if (point.is_joined()) return kNone;
+    if (!point.parts.empty()) return kNone;
     if (point.is_delayed()) return as_of_now(model, point.inner);
     if (!point.is_projected()) return index;
     const Index inner = as_of_now(model, point.inner);
@@ -161,6 +161,30 @@ std::string projection_hash(const Projection& projection) {
 namespace {
 
 using diag::Code;
+
+/// Puts the projection into a space; false, with an error, if those in it have other dimensions.
+bool set_space(Context& c, const ast::Name& space, Projection& projection) {
+    if (const Reference* const meant = c.scope.find(space.text)) {
+        c.report(Code::wrong_kind, space.span,
+                 fmt::format("'{}' is {}; expected a name for the space, which is no other's",
+                             space.text, word_with_article(meant->kind)))
+            .note(c.scope.entity(*meant).span, fmt::format("'{}' is declared here", space.text));
+        return false;
+    }
+    projection.space = space.text;
+    for (const Projection& other : c.model.projections) {
+        const bool fits = other.rows == 0 || other.rows == projection.rows;  // 0: not readable
+        if (other.space != space.text || fits) continue;
+        c.report(
+             Code::dimension_mismatch, space.span,
+             fmt::format("'{}' has dimension {}, '{}' has dimension {}; the points of one space, "
+                         "'{}', have one dimension",
+                         projection.name, projection.rows, other.name, other.rows, space.text))
+            .note(other.span, fmt::format("'{}' is declared here", other.name));
+        return false;
+    }
+    return true;
+}
 
 /// Sets the offset; false, with an error, if it does not fit the matrix.
 bool set_offset(Context& c, const ast::Projection::Numbers& written, Projection& projection) {
@@ -222,8 +246,9 @@ void check_projections(Context& c) {
             projection.name = declaration.name.text;
             projection.span = declaration.name.span;
             const auto* const fitted = std::get_if<ast::Fitted>(&declaration.matrix);
-            const bool good = fitted != nullptr ? set_fitted(c, *fitted, projection)
-                                                : set_numbers(c, declaration, projection);
+            bool good = fitted != nullptr ? set_fitted(c, *fitted, projection)
+                                          : set_numbers(c, declaration, projection);
+            if (declaration.space) good = good && set_space(c, *declaration.space, projection);
             if (!good) c.scope.entity(NameKind::projection, index).broken = true;
             c.model.projections.push_back(std::move(projection));
         });

@@ -49,8 +49,9 @@ private:
     Index between_points() {
         distance_.other = check_point(c_, written_.other);
         if (distance_.point == kNone || distance_.other == kNone) return kNone;
-        const bool fits = has_no_aggregation() && points_fit() &&
-                          encoders_fit(distance_.point, distance_.other) && set_weights();
+        const bool fits = has_no_aggregation() &&
+                          check_same_space(c_, distance_.point, distance_.other, both_points()) &&
+                          set_weights();
         return fits ? add() : kNone;
     }
 
@@ -62,62 +63,15 @@ private:
                                      written_.metric.text, word(written_.aggregation->kind)));
     }
 
-    bool points_fit() {
-        const Point& one = c_.model.points[distance_.point];
-        const Point& other = c_.model.points[distance_.other];
-        if (one.dimension != other.dimension)
-            return c_.refuse(Code::dimension_mismatch, both_points(),
-                             fmt::format("{} has dimension {}, {} has dimension {}", one.text,
-                                         one.dimension, other.text, other.dimension));
-        if (is_same_space(c_.model, distance_.point, distance_.other)) return true;
-        return c_.refuse(Code::wrong_space, both_points(),
-                         fmt::format("{} and {} are in different spaces; expected two inputs, or "
-                                     "two points through the same projections",
-                                     one.text, other.text));
-    }
-
-    /// Embeddings by two encoders have nothing to do with each other. Inputs that begin at the same
-    /// element are compared: [x, y] may stand for one of two.
-    bool encoders_fit(Index point, Index other) {
-        const std::vector<Index>& left = c_.model.points[point].inputs;
-        const std::vector<Index>& right = c_.model.points[other].inputs;
-        std::uint64_t at_left = 0;
-        std::uint64_t at_right = 0;
-        for (std::size_t i = 0, j = 0; i < left.size() && j < right.size();) {
-            const Input& one = c_.model.inputs[left[i]];
-            const Input& two = c_.model.inputs[right[j]];
-            if (at_left == at_right && two.encoder != kNone && !is_by(one, two.encoder, two.name))
-                return false;
-            const std::uint64_t end = std::min(at_left + one.dimension, at_right + two.dimension);
-            const bool left_ends = at_left + one.dimension == end;
-            const bool right_ends = at_right + two.dimension == end;
-            if (left_ends) at_left = end;
-            if (right_ends) at_right = end;
-            i += left_ends ? 1 : 0;
-            j += right_ends ? 1 : 0;
-        }
-        return true;
-    }
-
-    /// Whether an input may be by the encoder that `other` is by.
-    bool is_by(const Input& one, Index encoder, const std::string& other) {
-        if (one.encoder == encoder || one.encoder == kNone) return true;
-        return c_.refuse(
-            Code::wrong_space, both_points(),
-            fmt::format("'{}' is by {} and '{}' is by {}; a distance compares embeddings by one "
-                        "encoder",
-                        one.name, c_.model.encoders[one.encoder].name, other,
-                        c_.model.encoders[encoder].name));
-    }
-
     bool encoders_of_rows_fit() {
         const std::vector<Index>& inputs = c_.model.points[distance_.point].inputs;
         const auto rows = c_.encoder_of_target.find(distance_.target);
         if (rows != c_.encoder_of_target.end() && inputs.size() == 1 &&
-            !is_by(c_.model.inputs[inputs[0]], rows->second, target().name))
+            !is_by(c_, c_.model.inputs[inputs[0]], rows->second, target().name, both_points()))
             return false;
         const auto of = c_.point_of_target.find(distance_.target);
-        return of == c_.point_of_target.end() || encoders_fit(distance_.point, of->second);
+        return of == c_.point_of_target.end() ||
+               encoders_fit(c_, distance_.point, of->second, both_points());
     }
 
     Span both_points() const { return source::join(written_.point.span, written_.other.span); }

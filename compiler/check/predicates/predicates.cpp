@@ -314,7 +314,7 @@ bool set_encoder(Context& c, const ast::Target& declaration, Index target) {
 bool set_space(Context& c, const ast::Point& written, Target& target) {
     const Index index = check_point(c, written);
     if (index == kNone) return false;
-    const Index space = without_delay(c, index);
+    const Index space = space_of(c, index);
     c.point_of_target[static_cast<Index>(c.model.targets.size())] = space;
     const Point& point = c.model.points[space];
     if (point.is_projected()) target.space = space;
@@ -336,7 +336,7 @@ bool set_fitted(Context& c, const ast::Fitted& written, Target& target) {
         target.values = entry->matrix;
         target.hash = entry->hash;
     }
-    const Index space = without_delay(c, fitted.point);
+    const Index space = space_of(c, fitted.point);
     c.point_of_target[index] = space;
     if (c.model.points[space].is_projected()) target.space = space;
     return true;

@@ -1,5 +1,5 @@
 // Prints what distances are measured from where that is no sample of the step: projected points,
-// points of earlier steps, and points put together.
+// points of earlier steps, points put together, and sums.
 
 #include <fmt/ranges.h>
 
@@ -93,6 +93,18 @@ void print_delayed(Printer& out, const Context& context, Index index) {
     print_pointer(out, context, index, fmt::format("etlmon::widened({}, {}{})", at, scale, buffer));
 }
 
+/// Prints z - 2 * w.
+void print_sum(Printer& out, const Context& context, Index index) {
+    const check::Point& point = context.model.points[index];
+    const std::string& buffer = context.names.point_buffer.at(index);
+    std::string terms;
+    for (std::size_t i = 0; i < point.parts.size(); ++i)
+        terms += fmt::format("{}{{{}, {}}}", i > 0 ? ", " : "", float_literal(point.factors[i]),
+                             elements_of(context, point.parts[i]));
+    out.line("float {}[{}];", buffer, point.dimension);
+    print_pointer(out, context, index, fmt::format("etlmon::summed({}, {{{}}})", buffer, terms));
+}
+
 /// Prints [px, py] as a pointer, and several points as one.
 void print_gathered(Printer& out, const Context& context, Index index) {
     const check::Point& point = context.model.points[index];
@@ -119,6 +131,7 @@ void print_point(Printer& out, const Context& context, Index index) {
     print_comment(out, "//", point.text + shared, 4);
     if (point.is_projected()) return print_projected(out, context, index);
     if (point.is_delayed()) return print_delayed(out, context, index);
+    if (point.is_sum()) return print_sum(out, context, index);
     print_gathered(out, context, index);
 }
 

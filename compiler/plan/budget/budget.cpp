@@ -45,7 +45,10 @@ Cost point_cost(const check::Model& model, const check::Point& point) {
     if (!point.is_projected()) {
         const bool in_place =
             point.is_delayed() && earlier_element_bytes(model, point.inner) == sizeof(float);
-        return {.stack_bytes = in_place ? 0 : point.dimension * kWord, .code_bytes = kCodePerRing};
+        const std::uint64_t terms = point.factors.size();
+        return {.stack_bytes = in_place ? 0 : point.dimension * kWord,
+                .code_bytes = kCodePerRing * std::max<std::uint64_t>(terms, 1),
+                .distance_operations = terms * point.dimension};
     }
     const check::Projection& map = model.projections[point.projection];
     const std::uint64_t centred = map.offset.empty() ? 0 : map.dimension;

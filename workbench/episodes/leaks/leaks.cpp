@@ -376,15 +376,16 @@ std::vector<float> gathered(const check::Model& model, const Distance& distance,
     return point;
 }
 
-/// Returns false for points put together: frames are parts of rows, not rows.
+/// Returns false for points put together, of which frames are parts, and for sums.
 bool has_frames(const check::Model& model, const Distance& distance) {
     return point_of(model, distance) != check::kNone;
 }
 
-/// Returns the points put together that a distance measures, perhaps behind projections.
-const check::Point& joined_of(const check::Model& model, const Distance& distance) {
+/// Returns the points put together that a distance measures, or their sum, perhaps behind
+/// projections.
+const check::Point& parts_of(const check::Model& model, const Distance& distance) {
     Index at = distance.point;
-    while (!model.points[at].is_joined()) at = model.points[at].inner;
+    while (model.points[at].parts.empty()) at = model.points[at].inner;
     return model.points[at];
 }
 
@@ -461,9 +462,10 @@ void Leaks::watch_near(Index predicate, Index index) {
 /// Watches the parts of points put together that are frames, perhaps projected.
 void Leaks::watch_parts(Index predicate, Index index) {
     const Distance& distance = model_.distances[index];
-    if (declared_target(model_, distance).space != check::kNone) return;
+    const check::Point& joined = parts_of(model_, distance);
+    if (joined.is_sum() || declared_target(model_, distance).space != check::kNone) return;
     std::uint32_t offset = 0;
-    for (const Index part : joined_of(model_, distance).parts) {
+    for (const Index part : joined.parts) {
         const Index point = check::as_of_now(model_, part);
         const bool embedding = model_.inputs[model_.points[part].inputs[0]].is_embedding();
         if (embedding && point != check::kNone)

@@ -124,6 +124,7 @@ public:
     void visit(const ast::Point& point) {
         if (!point.name.text.empty()) visit(point.name);
         visit(point.parts);
+        visit(point.factors);
         visit(point.delays);
     }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The distance between two points of a step, and what points are put together from. Takes: arrays
-// of floats, null where the point is missing. Gives: the distance by the kernel for one row, which
-// is the second point. Keeps true: unmeasured if one of them is missing, or zero under cosine or
-// angular; generated code and `etlc run` agree bit for bit on one machine. Errors: rounding_bound()
-// in hosted/error_bounds.hpp; four times that for cosine and angular, whose second point is scaled
-// to length 1 in float32.
+// The distance between two points of a step, and what points are put together or added from. Takes:
+// arrays of floats, null where the point is missing. Gives: the distance by the kernel for one row,
+// which is the second point. Keeps true: unmeasured if one of them is missing, or zero under cosine
+// or angular; generated code and `etlc run` agree bit for bit on one machine, in sums under any
+// flags. Errors: rounding_bound() in hosted/error_bounds.hpp; four times that for cosine and
+// angular, whose second point is scaled to length 1 in float32; projection_bound() for sums.
 #pragma once
 
 #include "etlmon/distance/rescaled.hpp"
@@ -100,6 +100,31 @@ ETLMON_INLINE const float* joined(float (&to)[Dim], Part<Dims>... parts) noexcep
   };
   (append(parts.elements, Dims), ...);
   return to;
+}
+
+/// A part of a sum of points, null if it is missing.
+struct Term {
+  float factor;
+  const float* elements;
+};
+
+namespace detail {
+/// Adds the term. The product rounds once, and so does the sum.
+ETLMON_INLINE void add_term(const Term& term, uint32_t dim, float* sum) noexcept {
+  for (uint32_t i = 0; i < dim; ++i)
+    sum[i] = rounded(sum[i] + rounded(term.factor * term.elements[i]));
+}
+}  // namespace detail
+
+/// Adds the terms in their order; null if one of them is missing or an element exceeds FLT_MAX.
+template <uint32_t Dim, uint32_t Terms>
+ETLMON_INLINE const float* summed(float (&to)[Dim], const Term (&terms)[Terms]) noexcept {
+  for (const Term& term : terms) {
+    if (term.elements == nullptr) return nullptr;
+  }
+  for (float& element : to) element = 0.0f;
+  for (const Term& term : terms) detail::add_term(term, Dim, to);
+  return finite(to, Dim) ? to : nullptr;
 }
 
 }  // namespace ETLMON_BUILD
