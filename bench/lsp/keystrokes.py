@@ -2,7 +2,7 @@
 (1000).
 
 A script types a formula letter by letter, and waits for the diagnostics after each; then it
-requests hovers, completions and the formatted text. Prints milliseconds; processor time is the
+requests hovers, definitions and completions. Prints milliseconds; processor time is the
 server's own, which other programs hardly affect.
 """
 import os
@@ -80,12 +80,6 @@ def main():
             text.ask(method, words, 2)
             waits.append(time.perf_counter() - start)
         row(method, waits)
-    waits = []
-    for _ in range(10):
-        start = time.perf_counter()
-        text.format()
-        waits.append(time.perf_counter() - start)
-    row("formatting", waits)
     client.end()
 
 
