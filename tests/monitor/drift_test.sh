@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # drift_test.sh ETLC CXX FLAG...: the drifts of the generated class know after each episode what
-# `etlc run` prints, bit for bit: of a predicate with <=, of one with >= that no monitor reads and
+# `etlc run` prints: of a predicate with <=, of one with >= that no monitor reads and
 # whose scores tie, and of a monitor that is calibrated as a whole. Samples are missing. Episodes
 # that are cut short leave nothing, and a reboot changes nothing.
 . "$(dirname "$0")/../box.bash"
