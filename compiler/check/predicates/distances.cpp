@@ -64,7 +64,8 @@ private:
     }
 
     bool encoders_of_rows_fit() {
-        const std::vector<Index>& inputs = c_.model.points[distance_.point].inputs;
+        const Index space = space_of(c_, distance_.point);
+        const std::vector<Index>& inputs = c_.model.points[space].inputs;
         const auto rows = c_.encoder_of_target.find(distance_.target);
         if (rows != c_.encoder_of_target.end() && inputs.size() == 1 &&
             !is_by(c_, c_.model.inputs[inputs[0]], rows->second, target().name, both_points()))
