@@ -107,7 +107,7 @@ struct Projection {
 
 /// A point to measure from: an embedding, a vector of scalars [px, py], P(POINT), POINT as it was
 /// `steps` ago, several points put together, [z, z@5], or a sum, z - 2 * w, of points of one space.
-/// What is delayed is none of the last three.
+/// A delayed point is none of the last three.
 struct Point {
     enum class Kind : std::uint8_t { embedding, scalars, projected, delayed, joined, sum };
     Kind kind = Kind::embedding;

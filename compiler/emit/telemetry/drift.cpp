@@ -43,7 +43,7 @@ void print_drift_interface(Printer& out, const Context& context) {
               "failed, and its silence does not prove that nothing changed. An alarm stays. Save "
               "drift_D() and give it to set_drift_D() after a reboot, which returns false and "
               "changes nothing if that is no state of this calibration; "
-              "set_drift_D(initial_drift_D()) begins anew.");
+              "set_drift_D(initial_drift_D()) begins again.");
     out.open("void end_episode() noexcept {");
     for (const auto& [d, names] : context.names.drifts)
         out.line("{}.end({});", names.member, names.cells);
