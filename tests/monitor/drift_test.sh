@@ -30,7 +30,8 @@ BEGIN { seed = from + 7
     for (t = 0; t < 20; t++) {
       x = (e >= worse ? 0.1 : 0) + 1 - t / 20 + 0.3 * (r() - 0.5)
       gone = r() < 0.05
-      print (gone ? "," : x "," 0.3 * (r() - 0.5)) "," (r() < 0.05 ? "" : 3 + int(3 * r() * r())) > f }
+      y = gone ? "," : x "," 0.3 * (r() - 0.5)
+      print y "," (r() < 0.05 ? "" : 3 + int(3 * r() * r())) > f }
     close(f) } }
 END
 mkdir known others later

@@ -125,7 +125,8 @@ def begins_where_it_is_wrong(page):
     with the picture of that step. What may still change is not called violated."""
     assert page.value("document.querySelector('main section').id") == "episodes"
     step, said, true = page.value("""(() => {
-        const lane = view.timelines.lanes.find((of) => of.name === (view.row.wrong[0] ?? view.row.firstError[1]));
+        const name = view.row.wrong[0] ?? view.row.firstError[1];
+        const lane = view.timelines.lanes.find((of) => of.name === name);
         return [view.step, lane.said[view.step], lane.truth[view.step]];
     })()""")
     headline = page.value("document.getElementById('headline').textContent")

@@ -289,7 +289,8 @@ typedef struct etlc_drift {
   uint32_t counts[8]; /* episodes by the cell of their score, the usual ones first */
 } etlc_drift;
 
-/* Returns what the drift of that name knows. Save and load it with the session. From version 6 on. */
+/* Returns what the drift of that name knows. Save and load it with the session. From version 6
+ * on. */
 ETLC_EXPORT etlc_status etlc_drifted(etlc_session session, const char *name, etlc_drift *drift);
 
 /* Returns the value of a let at the last step. */

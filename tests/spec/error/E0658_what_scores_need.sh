@@ -15,7 +15,8 @@ for e in 1 2 3 4 5 6 7 8; do printf 'z[0],z[1]\n0.%d,0\n' $e > known/$e.csv; don
 "$ETLC" t.etl --targets-as f16 -o t.hpp
 "$ETLC" t.etl --retargetable -o t.hpp
 "$ETLC" prove t.etl
-(echo episode,outcome,group; for e in 1 2 3 4 5 6 7 8; do echo $e.csv,success,day$e; done) > known/labels.csv
+(echo episode,outcome,group
+for e in 1 2 3 4 5 6 7 8; do echo $e.csv,success,day$e; done) > known/labels.csv
 "$ETLC" calibrate t.etl --data known > report.txt
 "$ETLC" t.etl --check
 sed -i 's/"measured": \[[^,]*, /"measured": [/' t.thresholds.json
