@@ -88,7 +88,7 @@ void add_errors(const Tracks& tracks, std::vector<std::uint64_t>& steps) {
                 bool before = false;
                 for (std::size_t step = 0; step < is.values.size(); ++step) {
                     const auto [a, b] =
-                        std::minmax(said.values[step] % kFinal, is.values[step] % kFinal);
+                        std::minmax({said.values[step] % kFinal, is.values[step] % kFinal});
                     const bool is_wrong = a == kNo && b == kYes;
                     if (is_wrong && !before) begins.push_back(step);
                     before = is_wrong;
