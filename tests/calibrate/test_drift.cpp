@@ -113,9 +113,9 @@ TEST(Drift, CellsHaveAllGapsAndAtLeastOneEach) {
         std::vector<float> scores(n);
         std::iota(scores.begin(), scores.end(), 0.0F);
         const DriftCells cells = cells_of(scores, 0.01);
-        EXPECT_EQ(std::accumulate(cells.gaps, cells.gaps + kDriftCells, 0U), n + 1);
-        EXPECT_GE(*std::min_element(cells.gaps, cells.gaps + kDriftCells), 1U);
-        EXPECT_TRUE(std::is_sorted(cells.ends, cells.ends + kDriftCells - 1));
+        EXPECT_EQ(std::accumulate(std::begin(cells.gaps), std::end(cells.gaps), 0U), n + 1);
+        EXPECT_GE(*std::min_element(std::begin(cells.gaps), std::end(cells.gaps)), 1U);
+        EXPECT_TRUE(std::is_sorted(std::begin(cells.ends), std::end(cells.ends)));
         EXPECT_EQ(cells.limit, 100);
         EXPECT_NE(cells.id, 0U);
     }
