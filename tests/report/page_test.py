@@ -74,6 +74,9 @@ def make_episodes(folder):
     gone = episode(random, 0)
     gone["z"][:] = np.nan
     np.savez(folder / "episodes" / "missing_throughout.npz", **gone)
+    arrival = episode(random, 0)
+    arrival["x"][:] = 3  # it is said to arrive, and never does
+    np.savez(folder / "episodes" / "wrong_arrival.npz", **arrival)
     x, z = samples(random, LONG)
     np.savez(folder / "long.npz", x=x, z=z)
 
@@ -138,6 +141,18 @@ def begins_where_it_is_wrong(page):
     assert not any(text == "violated" and "final" not in of for text, of in words), words
 
 
+def begins_where_its_monitor_is_wrong(page):
+    """Where a monitor ends wrong, the page begins where it begins to stay so."""
+    page.value("selectEpisode(episodes.find((of) => of.path.endsWith('wrong_arrival.npz')))")
+    step = int(np.argmax(samples(np.random.default_rng(0), STEPS)[0] < 1))
+    assert page.value("view.row.wrong[0]") == "arrives"
+    assert shown_step(page) == step, (shown_step(page), step)
+    headline = page.value("document.getElementById('headline').textContent")
+    assert headline.endswith("arrives is called satisfied; in truth it is not yet satisfied."), (
+        headline)
+    assert page.value("document.getElementById('frame').dataset.step") == str(step)
+
+
 def look(browser, path, width, height, judged):
     page = browser.page(path, width, height)
     page.wait("view.episode !== null")
@@ -145,12 +160,16 @@ def look(browser, path, width, height, judged):
     assert page.value("document.documentElement.scrollWidth <= window.innerWidth"), "too wide"
 
     names = page.value("Array.from(document.querySelectorAll('#rows .name'), r => r.textContent)")
-    assert names[:2] == ["missing_throughout.npz", "worst.npz"], names  # no verdict, wrong ones
+    # Wrong verdicts, no verdict, wrong frames.
+    assert names[:3] == ["wrong_arrival.npz", "missing_throughout.npz", "worst.npz"], names
     assert f"{HOSTILE}.npz" in names, names
-    page.click("#rows .row:nth-child(2)")
-    page.wait("view.row === list.shown[1]")
+    page.click("#rows .row:nth-child(3)")
+    page.wait("view.row === list.shown[2]")
     assert page.value("document.getElementById('episode-name').textContent").endswith("worst.npz")
     begins_where_it_is_wrong(page)
+    begins_where_its_monitor_is_wrong(page)
+    page.click("#rows .row:nth-child(3)")
+    page.wait("view.row === list.shown[2]")
 
     page.key("Home")
     follows(page, 0)

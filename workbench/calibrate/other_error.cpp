@@ -396,8 +396,8 @@ std::string note_on_other_errors(bool by_group, bool has_cost) {
     const char* const each = by_group ? "group" : "episode";
     return fmt::format(
         "    The other error {1} counted in each {0} with the thresholds that the other {0}s give; "
-        "in brackets {2} 95 % interval over {0}s for these thresholds. A new calibration moves "
-        "them, so expect more.\n",
+        "in brackets {2} 95 % interval over {0}s for these thresholds; a new calibration "
+        "gives others, whose error may lie outside.\n",
         each, has_cost ? "and the cost are" : "is", has_cost ? "their" : "its");
 }
 

@@ -211,7 +211,6 @@ EpisodeCounts counts_by_truth(const Judgement& judgement, std::size_t monitor,
 /// A prediction for each episode: an alarm says that it failed. Where no episode has an outcome,
 /// all are taken for successes.
 EpisodeCounts counts_by_outcome(const Judgement& judgement, std::size_t monitor);
-bool has_outcomes(const Judgement& judgement);
 /// The mean of a rate on the episodes and on their variants; of that which is defined.
 Statistic statistic(const EpisodeCounts& counts, Rate rate);
 /// Returns the second less the first, over the same resamples.

@@ -258,6 +258,8 @@ EpisodeCounts counts_by_truth(const Judgement& judgement, std::size_t monitor,
             })};
 }
 
+namespace {
+
 bool has_outcomes(const Judgement& judgement) {
     bool found = false;
     judgement.for_each(judgement.episodes, [&](std::size_t, const episodes::Recorded& episode) {
@@ -265,6 +267,8 @@ bool has_outcomes(const Judgement& judgement) {
     });
     return found;
 }
+
+}  // namespace
 
 EpisodeCounts counts_by_outcome(const Judgement& judgement, std::size_t monitor) {
     using Kind = episodes::Outcome::Kind;

@@ -161,8 +161,8 @@ std::string text_of_ranking(const RankedInTime& all, std::optional<bool> monitor
         if (&one - all.ranked.data() < static_cast<std::ptrdiff_t>(kShown) || &one == &own)
             text += row(one, all);
     if (all.nested)
-        text +=
-            fmt::format("  {:20}  chosen on the other folds, judged on each\n", shown(all.nested));
+        text += fmt::format("  {:20}  the best on the other folds, judged on each in turn\n",
+                            shown(all.nested));
     if (all.clock) {
         text += fmt::format("  {:20}  the number of the step alone\n", shown(all.clock));
         const episodes::Figure& best = all.ranked.front().score;
@@ -232,11 +232,9 @@ std::string report(const SuggestedInTime& suggested) {
             "and right, of what is truly satisfied and of what is truly violated, on average.\n";
     if (is_any([](const RankedInTime& one) { return one.by == RankedBy::outcome; }))
         text +=
-            "\nbalanced accuracy: the share of successes without an alarm and of failures with "
-            "one, on\n"
-            "average. Where no episode has an outcome, all count as successes.\n"
-            "Deadlines are those that one in ten new successes misses at most, by the times of "
-            "others.\n";
+            "\nbalanced accuracy: the mean of two shares, of successes without an alarm and of "
+            "failures\nwith one. Where no episode has an outcome, all count as successes.\n"
+            "At most one in ten new successes misses a deadline; each comes from other folds.\n";
     std::optional<bool> monitors_gain;
     for (const RankedInTime& one : suggested.all)
         if (one.of_monitor && !one.of_deadlines)
