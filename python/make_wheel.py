@@ -2,7 +2,8 @@
 """Makes the wheel: the package, libetlc, the command, and the libraries that these load.
 
 make_wheel.py PYPROJECT LIBRARY COMMAND PROGRAM... FOLDER: the wheel goes into FOLDER.
-Needs setuptools and wheel, and patchelf, which makes each file look for libraries beside it.
+Needs setuptools and wheel, patchelf, which makes each file look for libraries beside it, and
+binutils, whose objdump tells which machines the wheel is for.
 """
 
 import os
@@ -50,6 +51,22 @@ def stage(folder, library, command, programs):
         subprocess.run(["patchelf", "--set-rpath", run_path, place], check=True)
 
 
+# A C++ library, and the C library of the oldest distribution that has it (as auditwheel has them).
+CXX = {28: 31, 29: 34, 30: 35, 31: 37, 32: 38, 33: 40}
+
+
+def platform(folder):
+    """Returns the tag (PEP 600) of the machines that these files run on, by their symbols."""
+    files = [file for file in folder.rglob("*") if file.is_file()]
+    symbols = output_of("objdump", "-T", *files)
+    c = max(int(minor) for minor in re.findall(r"\bGLIBC_2\.(\d+)", symbols))
+    cxx = max(int(patch) for patch in re.findall(r"\bGLIBCXX_3\.4\.(\d+)", symbols))
+    if cxx > max(CXX):
+        sys.exit(f"GLIBCXX_3.4.{cxx} is needed: which C library comes with it?")
+    oldest = max(c, CXX[max(cxx, min(CXX))])
+    return f"manylinux_2_{oldest}_{os.uname().machine}"
+
+
 def main(pyproject, library, command, *programs, folder):
     here = Path(__file__).parent
     with tempfile.TemporaryDirectory() as box:
@@ -62,9 +79,10 @@ def main(pyproject, library, command, *programs, folder):
         dist = Path(folder)
         for old in dist.glob("etlc-*.whl"):
             old.unlink()
-        environment = {**os.environ, "SOURCE_DATE_EPOCH": "315619200"}  # the same bytes each time
+        environment = {"SOURCE_DATE_EPOCH": "315619200", **os.environ}  # the same bytes each time
         subprocess.run(
-            [sys.executable, "setup.py", "--quiet", "bdist_wheel", "--dist-dir", dist.absolute()],
+            [sys.executable, "setup.py", "--quiet", "bdist_wheel", "--dist-dir", dist.absolute(),
+             "--plat-name", platform(source / "etlc" / "_native")],
             check=True, cwd=source, env=environment,
         )  # fmt: skip
         print(*dist.glob("etlc-*.whl"))

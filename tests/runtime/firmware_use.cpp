@@ -8,7 +8,7 @@
 #include "etlmon/version.hpp"
 #include "etlmon/views.hpp"
 
-#if ETLMON_VERSION_MAJOR != 0 || ETLMON_VERSION_MINOR != 2
+#if ETLMON_VERSION_MAJOR != 0 || ETLMON_VERSION_MINOR != 3
 #error "this test was written for another version"
 #endif
 

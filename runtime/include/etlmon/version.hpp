@@ -7,5 +7,5 @@
 #pragma once
 
 #define ETLMON_VERSION_MAJOR 0
-#define ETLMON_VERSION_MINOR 2
+#define ETLMON_VERSION_MINOR 3
 #define ETLMON_VERSION_PATCH 0
