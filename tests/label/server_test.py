@@ -154,6 +154,27 @@ def proposals(folder):
     table.unlink()
 
 
+def late_encoders(folder):
+    """What an encoder sees late, or ceases to see late, is proposed where the labels have it."""
+    late = folder / "late"
+    late.mkdir()
+    starts = [20, 31, 17, 40, 25, 0]
+    for number, start in enumerate(starts):
+        seen = np.zeros(90)
+        seen[start + 7 if start else 0:start + 33] = 1  # it holds from start to start + 30
+        np.savez(late / f"ep{number}.npz", x=seen + 0.01 * number)
+    (late / "labels.csv").write_text("episode,predicate,start,end\n" + "".join(
+        f"ep{number},lit,{starts[number]},{starts[number] + 30}\n" for number in range(3)))
+    (folder / "late.etl").write_text("spec late;\ninput x : f32;\n"
+                                     "predicate lit = x >= calibrated(f1);\nmonitor m = F lit;\n")
+    done = subprocess.run([ETLC, "label", "late.etl", "--data", "late", "--proposals"], cwd=folder,
+                          capture_output=True, text=True, check=True)
+    found = {one["name"]: one["predicates"]["lit"] for one in json.loads(done.stdout)["proposals"]}
+    # The last one begins with the episode: nobody knows how long before it.
+    assert found == {f"ep{number}": [[starts[number], starts[number] + 30, 1]]
+                     for number in range(3, 6)}, found
+
+
 def slow_connections(service):
     """Connections that send a byte now and then keep no page waiting."""
     slow = []
@@ -319,6 +340,7 @@ def main():
         without_a_server(folder)
         ends_together(folder)
         proposals(folder)
+        late_encoders(folder)
 
 
 main()

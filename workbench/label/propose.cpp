@@ -70,6 +70,25 @@ diag::Result<std::vector<Measured>> measure(const check::Model& model, const Des
     return measured;
 }
 
+/// Returns the intervals of a label in an episode.
+std::vector<Interval> runs_of(const Labels& labels, Label wanted) {
+    std::vector<Interval> runs;
+    for (std::size_t step = 0; step < labels.size(); ++step) {
+        if (labels[step] != wanted) continue;
+        if (runs.empty() || runs.back().end != step) runs.push_back({step, step, wanted});
+        runs.back().end = step + 1;
+    }
+    return runs;
+}
+
+/// Returns the middle of these numbers; 0 where there are too few to tell a habit from chance.
+std::int64_t median(std::vector<std::int64_t> numbers) {
+    if (numbers.size() < kEnoughLabelled) return 0;
+    const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
+    std::nth_element(numbers.begin(), middle, numbers.end());
+    return *middle;
+}
+
 /// Judges frames of a predicate by a threshold, and says which judgements are in doubt.
 class Judge {
 public:
@@ -84,12 +103,41 @@ public:
             return std::nullopt;
         judge.learn_doubt(episodes);
         judge.learn_runs(episodes);
+        judge.learn_delays(episodes);
         return judge;
     }
 
-    /// Returns the intervals of an episode. A run that is less than half as long as any labelled
-    /// one takes the judgement before it, or after it at the beginning.
+    /// Returns the intervals of an episode, less the delays of the encoder.
     std::vector<Interval> intervals(const std::vector<float>& scores) const {
+        std::vector<Interval> found = judged_intervals(scores);
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            Interval& one = found[k];
+            if (one.label != Label::yes) continue;
+            const std::uint64_t from = k == 0 ? 0 : found[k - 1].end;
+            const std::uint64_t to = k + 1 == found.size() ? scores.size() : found[k + 1].start;
+            const std::uint64_t start = one.start == 0 ? 0 : earlier(one.start, starts_late_);
+            const std::uint64_t end =
+                one.end == scores.size() ? one.end : earlier(one.end, ends_late_);
+            if (std::max(start, from) < std::min(end, to))
+                one = {std::max(start, from), std::min(end, to), Label::yes};
+        }
+        return found;
+    }
+
+    /// Returns the share of the frames that are in doubt.
+    double doubt(const std::vector<float>& scores) const {
+        const auto count = std::count_if(scores.begin(), scores.end(), [&](float score) {
+            return std::isnan(score) || margin(score) <= doubtful_;
+        });
+        return scores.empty() ? 0 : static_cast<double>(count) / static_cast<double>(scores.size());
+    }
+
+private:
+    explicit Judge(const check::Predicate& predicate) : predicate_(&predicate) {}
+
+    /// Returns the intervals by the frames alone. A run that is less than half as long as any
+    /// labelled one takes the judgement before it, or after it at the beginning.
+    std::vector<Interval> judged_intervals(const std::vector<float>& scores) const {
         std::vector<Interval> runs;
         for (std::size_t step = 0; step < scores.size(); ++step) {
             const Label label = judged(scores[step]);
@@ -113,17 +161,6 @@ public:
         std::erase_if(kept, [](const Interval& run) { return run.label == Label::no; });
         return kept;
     }
-
-    /// Returns the share of the frames that are in doubt.
-    double doubt(const std::vector<float>& scores) const {
-        const auto count = std::count_if(scores.begin(), scores.end(), [&](float score) {
-            return std::isnan(score) || margin(score) <= doubtful_;
-        });
-        return scores.empty() ? 0 : static_cast<double>(count) / static_cast<double>(scores.size());
-    }
-
-private:
-    explicit Judge(const check::Predicate& predicate) : predicate_(&predicate) {}
 
     Label judged(float score) const {
         if (std::isnan(score)) return Label::unknown;
@@ -179,6 +216,40 @@ private:
         if (shortest_run_ == kNoRun) shortest_run_ = 0;
     }
 
+    /// Finds how many steps after the labels the frames begin and cease to hold: an encoder sees a
+    /// lamp that has just been lit, or a hand that has gone, some frames late.
+    void learn_delays(const std::vector<const Measured*>& episodes) {
+        std::vector<std::int64_t> starts, ends;
+        for (const Measured* one : episodes) {
+            if (one->labels.empty()) continue;
+            const std::vector<Interval> judged = judged_intervals(one->scores);
+            for (const Interval& labelled : runs_of(one->labels, Label::yes)) {
+                const auto overlap = [&](const Interval& of) {
+                    return std::min(of.end, labelled.end) -
+                           std::min({std::max(of.start, labelled.start), of.end, labelled.end});
+                };
+                const auto nearest = std::max_element(
+                    judged.begin(), judged.end(),
+                    [&](const auto& a, const auto& b) { return overlap(a) < overlap(b); });
+                if (nearest == judged.end() || overlap(*nearest) == 0) continue;
+                const auto after = [](std::uint64_t is, std::uint64_t should_be) {
+                    return static_cast<std::int64_t>(is) - static_cast<std::int64_t>(should_be);
+                };
+                if (labelled.start > 0 && nearest->start > 0)
+                    starts.push_back(after(nearest->start, labelled.start));
+                if (labelled.end < one->labels.size() && nearest->end < one->labels.size())
+                    ends.push_back(after(nearest->end, labelled.end));
+            }
+        }
+        starts_late_ = median(std::move(starts));
+        ends_late_ = median(std::move(ends));
+    }
+
+    static std::uint64_t earlier(std::uint64_t step, std::int64_t delay) {
+        return static_cast<std::uint64_t>(
+            std::max<std::int64_t>(static_cast<std::int64_t>(step) - delay, 0));
+    }
+
     template <class Take>
     static void for_each_labelled(const std::vector<const Measured*>& episodes, const Take& take) {
         for (const Measured* one : episodes)
@@ -193,6 +264,8 @@ private:
     float epsilon_ = 0;
     double doubtful_ = 0;  ///< margin
     std::uint64_t shortest_run_ = kNoRun;
+    std::int64_t starts_late_ = 0;  ///< steps, by the frames alone
+    std::int64_t ends_late_ = 0;
 };
 
 int code_of(Label label) {

@@ -1,7 +1,7 @@
 // Labels for the episodes that nobody has labelled, from those that somebody has.
 // Takes: a spec whose fitted entries are those of the labelled episodes, and the desk. Gives: for
-// each other episode what the spec's predicates say of it, at their F1-optimal thresholds, and how
-// doubtful that is.
+// each other episode what the spec's predicates say of it, at their F1-optimal thresholds and less
+// the delay with which they say it, and how doubtful that is.
 #pragma once
 
 #include <cstddef>
