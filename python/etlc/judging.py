@@ -23,6 +23,7 @@ def evaluate(
     settings: Mapping[str, object] | None = None,
     names: Mapping[str, str] | None = None,
     groups: str | None = None,
+    split: str | None = None,
     labels: FilePaths | None = None,
     label_by: str | None = None,
     allow_overlap: str | None = None,
@@ -53,8 +54,8 @@ def evaluate(
             "phases_reversed", "reversed", "frozen".
         json, csv: also write the figures into these files.
         shard, part: read one shard of the episodes, and write a part for `merge`.
-        settings, names, groups, labels, label_by, allow_overlap, jobs, warnings_are_errors: as in
-            `calibrate`.
+        settings, names, groups, split, labels, label_by, allow_overlap, jobs,
+            warnings_are_errors: as in `calibrate`.
         values, targets_as, max_state, max_code, max_work: as in `compile`.
 
     Raises:
@@ -75,6 +76,7 @@ def crossvalidate(
     settings: Mapping[str, object] | None = None,
     names: Mapping[str, str] | None = None,
     groups: str | None = None,
+    split: str | None = None,
     labels: FilePaths | None = None,
     label_by: str | None = None,
     allow_overlap: str | None = None,
@@ -98,9 +100,9 @@ def crossvalidate(
         specs, data: as in `evaluate`.
         folds: their number; by default 5.
         by: "order" judges later episodes by what earlier ones trained; by default "hash".
-        thresholds, fitted, embedded, settings, names, groups, labels, label_by, allow_overlap,
-            by_episode, variants, json, csv, values, targets_as, max_state, max_code, max_work,
-            jobs, warnings_are_errors: as in `evaluate`.
+        thresholds, fitted, embedded, settings, names, groups, split, labels, label_by,
+            allow_overlap, by_episode, variants, json, csv, values, targets_as, max_state, max_code,
+            max_work, jobs, warnings_are_errors: as in `evaluate`.
 
     Raises:
         SpecError: the command failed; the message gives the reason.
@@ -121,6 +123,7 @@ def report(
     settings: Mapping[str, object] | None = None,
     names: Mapping[str, str] | None = None,
     groups: str | None = None,
+    split: str | None = None,
     labels: FilePaths | None = None,
     label_by: str | None = None,
     allow_overlap: str | None = None,
@@ -146,9 +149,9 @@ def report(
         camera: the camera of a data set.
         size: the size of the page in MB.
         no_truths: show the verdicts without comparing them with truths.
-        thresholds, fitted, embedded, settings, names, groups, labels, label_by, allow_overlap,
-            values, targets_as, max_state, max_code, max_work, jobs, warnings_are_errors: as in
-            `evaluate`.
+        thresholds, fitted, embedded, settings, names, groups, split, labels, label_by,
+            allow_overlap, values, targets_as, max_state, max_code, max_work, jobs,
+            warnings_are_errors: as in `evaluate`.
 
     Raises:
         SpecError: the command failed; the message gives the reason.

@@ -120,6 +120,7 @@ def label(
     settings: Mapping[str, object] | None = None,
     names: Mapping[str, str] | None = None,
     groups: str | None = None,
+    split: str | None = None,
     jobs: int | None = None,
     warnings_are_errors: bool = False,
 ) -> Labelling:
@@ -133,7 +134,7 @@ def label(
             "camera/{episode}/*.png".
         camera: the camera of a data set.
         port: that of the page; by default any free one.
-        embedded, settings, names, groups, jobs, warnings_are_errors: as in `calibrate`.
+        embedded, settings, names, groups, split, jobs, warnings_are_errors: as in `calibrate`.
 
     Returns:
         The page, until it is stopped; open its `address` in a browser.
@@ -156,14 +157,15 @@ def propose(
     settings: Mapping[str, object] | None = None,
     names: Mapping[str, str] | None = None,
     groups: str | None = None,
+    split: str | None = None,
     jobs: int | None = None,
     warnings_are_errors: bool = False,
 ) -> Suggestions:
     """Proposes labels for the episodes without (`etlc label --proposals`).
 
     Args:
-        spec, data, labels, camera, embedded, settings, names, groups, jobs, warnings_are_errors:
-            as in `label`.
+        spec, data, labels, camera, embedded, settings, names, groups, split, jobs,
+            warnings_are_errors: as in `label`.
 
     Raises:
         SpecError: the command failed; the message gives the reason.

@@ -24,6 +24,7 @@ def calibrate(
     settings: Mapping[str, object] | None = None,
     names: Mapping[str, str] | None = None,
     groups: str | None = None,
+    split: str | None = None,
     labels: FilePaths | None = None,
     label_by: str | None = None,
     allow_overlap: str | None = None,
@@ -45,6 +46,7 @@ def calibrate(
         settings: other values for constants: {"limit": 0.25, "deadline": "2s"}.
         names: names of inputs in the files: {"z": "obs/z"}.
         groups: a pattern for the groups of .h5 files that are episodes: "data/*".
+        split: only a part of the episodes, by shares: "0:0.25", or "0:0.25:order".
         labels: tables of labels (.csv); by default labels.csv beside the episodes, if it exists.
         label_by: "folder" labels each episode, or gives its outcome, by the name of its folder;
             "outcome" takes the outcome from `next.success`, or an attribute `success` in .h5.
@@ -77,6 +79,7 @@ def fit(
     settings: Mapping[str, object] | None = None,
     names: Mapping[str, str] | None = None,
     groups: str | None = None,
+    split: str | None = None,
     labels: FilePaths | None = None,
     label_by: str | None = None,
     allow_overlap: str | None = None,
@@ -89,7 +92,7 @@ def fit(
         spec: the path of the spec.
         data: episodes: files (.csv, .npz, .h5), folders, data sets or patterns.
         output: the file of the fit; by default SPEC.fitted.npz beside the spec.
-        embedded, settings, names, groups, labels, label_by, allow_overlap, jobs,
+        embedded, settings, names, groups, split, labels, label_by, allow_overlap, jobs,
             warnings_are_errors: as in `calibrate`.
 
     Raises:
@@ -112,6 +115,7 @@ def suggest(
     settings: Mapping[str, object] | None = None,
     names: Mapping[str, str] | None = None,
     groups: str | None = None,
+    split: str | None = None,
     labels: FilePaths | None = None,
     label_by: str | None = None,
     allow_overlap: str | None = None,
@@ -124,7 +128,7 @@ def suggest(
         spec: the path of the spec.
         data: episodes: files (.csv, .npz, .h5), folders, data sets or patterns.
         predicates: names; by default all predicates with labels.
-        embedded, settings, names, groups, labels, label_by, allow_overlap, jobs,
+        embedded, settings, names, groups, split, labels, label_by, allow_overlap, jobs,
             warnings_are_errors: as in `calibrate`.
 
     Returns:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import os
+import zlib
 from glob import glob
 from pathlib import Path
 
@@ -17,6 +17,8 @@ _ENDINGS = (".csv", ".npz", ".h5", ".hdf5")
 
 def split(data: FilePaths, *shares: float, by: str = "hash") -> list[list[str]]:
     """Divides episodes into parts, such as those to fit on, to calibrate on and to evaluate.
+
+    They are the parts of `--split 0:0.25`, `--split 0.25:0.5` and `--split 0.5:1` of the commands.
 
     Args:
         data: files (.csv, .npz, .h5), folders, data sets or patterns. An .h5 file is one episode.
@@ -36,7 +38,7 @@ def split(data: FilePaths, *shares: float, by: str = "hash") -> list[list[str]]:
         raise InputError(f"the shares are {shares}, expected two or more, in all 1")
     episodes = _episodes_of(data)
     if by == "hash":
-        episodes.sort(key=_digest)
+        episodes.sort(key=_sum_of)
     ends = [round(sum(shares[: k + 1]) * len(episodes)) for k in range(len(shares))]
     parts = [episodes[begin:end] for begin, end in zip([0, *ends], ends)]
     if not all(parts):
@@ -67,9 +69,8 @@ def _episodes_in(argument: FilePath) -> list[str]:
     return episodes
 
 
-def _digest(episode: str) -> bytes:
-    """Returns the hash of a file, or of the number of an episode of a data set."""
+def _sum_of(episode: str) -> int:
+    """Returns the CRC-32 of a file, or of the number of an episode of a data set."""
     path = Path(episode)
-    if path.exists():
-        return hashlib.sha256(path.read_bytes()).digest()
-    return hashlib.sha256(episode.rpartition(":")[2].encode()).digest()
+    content = path.read_bytes() if path.exists() else episode.rpartition(":")[2].encode()
+    return zlib.crc32(content)

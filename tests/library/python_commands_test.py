@@ -25,10 +25,10 @@ import etlc
 from etlc._keywords import keyword_of, words_of
 from etlc._options import OPTIONS
 
-#: Commands that serve a program, and have no function.
-WITHOUT = {"lsp"}
+#: Commands without a function: they serve a program, or people who sign for firmware.
+WITHOUT = {"lsp", "dossier"}
 #: A loop in Python takes several traces.
-SEVERAL = ("--data", "--episodes")
+SEVERAL = ("--data", "--episodes", "--split")
 #: The functions of each command, with the options that each of them does not take, or sets itself.
 FUNCTIONS = {
     "compile": {
@@ -424,6 +424,22 @@ class Commands(unittest.TestCase):
         in_order = etlc.split(self.path / "split", 0.25, 0.25, 0.5, by="order")
         self.assertEqual(in_order, [names[:5], names[5:10], names[10:]])
         dealt = etlc.split(self.path / "split", 0.25, 0.25, 0.5)
+        spec = self.path / "split.etl"
+        spec.write_text("spec s;\ninput z : f32[2];\ntarget origin = [[0, 0]];\n"
+                        "monitor m = F l2(z, origin) < 1;\n")
+
+        def kept(part, code=0):
+            command = [etlc._process.command_path(), "run", spec, "--data", self.path / "split"]
+            ran = subprocess.run([*command, "--split", part], capture_output=True, text=True)
+            self.assertEqual(ran.returncode, code, ran.stderr)
+            return list(dict.fromkeys(line.split(",")[0] for line in ran.stdout.splitlines()[1:]))
+
+        parts = ("0:0.25", "0.25:0.5", "0.5:1")
+        self.assertEqual([kept(part + ":order") for part in parts], in_order)
+        self.assertEqual([kept(part) for part in parts], [sorted(part) for part in dealt])
+        for wrong in ("0.5", "0.5:0.5", "0.5:0.2", "-1:1", "0:2", "0:1:name", "0:x", "nan:1", ""):
+            kept(wrong, code=2)
+        kept("0:0.01", code=1)  # nobody is in it
         self.assertEqual([len(part) for part in dealt], [5, 5, 10])
         self.assertEqual(sorted(sum(dealt, [])), names)
         self.assertNotEqual(dealt, in_order)

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "prove/coverage.hpp"
 #include "prove/prove.hpp"
 #include "proving.hpp"
 #include "random_spec.hpp"
@@ -185,6 +186,27 @@ TEST(Lengths, RestartsComeAfterTheMachine) {
     const auto proof = proof_of(spec->plan, 16);
     ASSERT_TRUE(proof && !proof->fault);
     EXPECT_FALSE(proof->repeats);
+}
+
+TEST(Coverage, AddsInstancesOfTemplates) {
+    const std::string json = R"({"files": [
+      {"file": "runtime/value.hpp", "lines": [{"line_number": 3, "count": 9, "branches": []}]},
+      {"file": "header/class.hpp", "lines": [
+        {"line_number": 7, "count": 2, "branches": [{"count": 2, "throw": false},
+          {"count": 0, "throw": false}, {"count": 0, "throw": true}]},
+        {"line_number": 5, "count": 0, "branches": []},
+        {"line_number": 7, "count": 3, "branches": [{"count": 0, "throw": false},
+          {"count": 3, "throw": false}]}]}]})";
+    const auto lines = prove::coverage_of(json, "class.hpp");
+    ASSERT_TRUE(lines);
+    ASSERT_EQ(lines->size(), 2U);
+    EXPECT_EQ(lines->front().number, 5U);
+    EXPECT_EQ(lines->front().count, 0U);
+    EXPECT_EQ(lines->back().number, 7U);
+    EXPECT_EQ(lines->back().count, 5U);
+    EXPECT_EQ(lines->back().ways, (std::vector<std::uint64_t>{2, 3}));
+    EXPECT_FALSE(prove::coverage_of("gcov: not found", "class.hpp"));
+    EXPECT_FALSE(prove::coverage_of(json, "other.hpp"));
 }
 
 }  // namespace

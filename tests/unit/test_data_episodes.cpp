@@ -39,7 +39,7 @@ protected:
     /// Returns the episodes, relative to the folder.
     std::vector<std::string> find(std::vector<std::string> arguments, diag::Sink& sink) const {
         for (std::string& argument : arguments) argument = (folder_ / argument).string();
-        std::vector<std::string> found = find_episodes(arguments, "", sink);
+        std::vector<std::string> found = find_episodes(arguments, {}, sink);
         for (std::string& path : found) path = fs::path(path).lexically_relative(folder_).string();
         return found;
     }

@@ -107,13 +107,13 @@ TEST_F(Hdf5Trace, OfAGroup) {
 
 TEST_F(Hdf5Trace, GroupsOfAFileAreEpisodes) {
     diag::Sink sink;
-    const std::vector<std::string> found = find_episodes({kFile}, "data/demo_*[0-9]", sink);
+    const std::vector<std::string> found = find_episodes({kFile}, {"data/demo_*[0-9]", {}}, sink);
     EXPECT_EQ(found, (std::vector<std::string>{kFile + ":data/demo_1", kFile + ":data/demo_10",
                                                kFile + ":data/demo_2"}));
-    EXPECT_EQ(find_episodes({kFile}, "", sink), std::vector<std::string>{kFile});
+    EXPECT_EQ(find_episodes({kFile}, {"", {}}, sink), std::vector<std::string>{kFile});
     EXPECT_FALSE(sink.has_errors());
-    EXPECT_TRUE(find_episodes({kFile}, "nothing/*", sink).empty());
-    EXPECT_TRUE(find_episodes({kFile}, "data/*", sink).empty());
+    EXPECT_TRUE(find_episodes({kFile}, {"nothing/*", {}}, sink).empty());
+    EXPECT_TRUE(find_episodes({kFile}, {"data/*", {}}, sink).empty());
     ASSERT_EQ(sink.errors(), 2U);
     EXPECT_EQ(sink.sorted()[0].message, "none of its groups matches 'nothing/*'");
     EXPECT_EQ(

@@ -131,6 +131,11 @@ int prove_class(Call& call) {
     return on_plan<prove>(call);
 }
 
+int make_dossier(Call& call) {
+    if (call.explains) call.values = check::Values::sourced;
+    return on_plan<dossier>(call);
+}
+
 int evaluate_specs(Call& call) {
     return with_specs(call, [&](const auto& files, auto& sinks) {
         std::vector<SpecToJudge> specs;
@@ -149,7 +154,8 @@ int merge(Call& call);
 constexpr int (*kFunctions[])(Call& call) = {
     compile_spec,      run_trace,      on_spec<embed>, on_spec<fit>, on_spec<calibrate>,
     evaluate_specs,    evaluate_specs, serve_editors,  merge,        on_plan<explain>,
-    on_plan<incident>, make_report,    make_labels,    watch_source, prove_class};
+    on_plan<incident>, make_report,    make_labels,    watch_source, prove_class,
+    make_dossier};
 static_assert(std::size(kFunctions) == kCommandCount);
 
 int execute(Command command, int argc, char** argv, episodes::Sharing* merged = nullptr) {

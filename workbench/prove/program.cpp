@@ -405,8 +405,13 @@ diag::Result<Program> Program::make(const plan::Plan& plan, const Request& reque
     const auto object = shell(
         pattern,
         fmt::format(fmt::runtime(kCompile), "-Iruntime -O0 -fno-pie -c object.cpp -o object.o"));
-    const auto whole = shell(pattern, fmt::format(fmt::runtime(kCompile),
-                                                  "-Istand_in -Iruntime -O1 main.cpp -o program"));
+    // A function that is always inlined would have its branches once for each caller.
+    const char* const way = request.counts_lines ? "-O0 --coverage -fno-exceptions "
+                                                   "-Dalways_inline=unused -DETLPROVE_COUNTS"
+                                                 : "-O1";
+    const auto whole = shell(
+        pattern, fmt::format(fmt::runtime(kCompile),
+                             fmt::format("-Istand_in -Iruntime {} main.cpp -o program", way)));
     if (!object || !whole) return failure("cannot run the shell, /bin/sh");
     for (data::Child* const compiler : {object.get(), whole.get()})
         if (const auto output = complaint(*compiler)) return failure(*output);
@@ -414,6 +419,12 @@ diag::Result<Program> Program::make(const plan::Plan& plan, const Request& reque
     if (!parts.empty())
         return failure("the class may have variables besides its members: its object has " + parts);
     return program;
+}
+
+std::string Program::coverage() const {
+    const auto counts =
+        shell(folder_, "${GCOV:-gcov} --branch-probabilities --json-format --stdout *.gcda 2>&1");
+    return counts ? read_all(*counts) : "";
 }
 
 std::unique_ptr<data::Child> Program::start(const std::set<float>& numbers,

@@ -33,6 +33,8 @@ public:
     ~Program();
 
     std::unique_ptr<data::Child> start(const std::set<float>& numbers, std::uint32_t steps) const;
+    /// Returns what gcov says of all that has run so far, as JSON.
+    std::string coverage() const;
     /// Returns the first line of what the compiler says of its version.
     const std::string& compiler() const { return compiler_; }
 

@@ -326,6 +326,7 @@ diag::Result<Proof> prove_with(const std::set<float>& numbers, const std::vector
     std::uint32_t done = 0;
     try {
         Comparison(plan, numbers, truths, proof, *child, done).run();
+        child->exit_status();  // it has written its coverage, if it counts
         return proof;
     } catch (const Exhausted&) {
         return no_proof("the diagrams of the definition are too large" + how_far(done));
@@ -351,6 +352,20 @@ diag::Result<Proof> prove_steps(std::set<float>& numbers, const std::vector<Trut
 
 /// The most steps of a proof that goes on until the class repeats.
 constexpr std::uint32_t kMostStepsToGoOn = 256;
+
+/// Makes the proof for the steps of the request; else for as many as all lengths need, if it can.
+diag::Result<Proof> prove_all(const Request& request, const std::vector<Truths>& truths,
+                              const plan::Plan& plan, const Program& program, Proof proof) {
+    std::set<float> numbers = numbers_of(proof.atoms);
+    auto found = prove_steps(numbers, truths, plan, program, proof);
+    if (!found || found->fault || found->repeats || request.steps > 0) return found;
+    if (found->steps_needed <= proof.steps || found->steps_needed > kMostStepsToGoOn) return found;
+    proof.steps = found->steps_needed;
+    auto longer = prove_steps(numbers, truths, plan, program, proof);
+    if (longer && (longer->fault || longer->repeats)) return longer;
+    if (longer) found->why_not_longer = longer->why_not_longer;
+    return found;
+}
 
 }  // namespace
 
@@ -388,14 +403,8 @@ diag::Result<Proof> prove(const plan::Plan& plan, const Request& request) {
     const auto program = Program::make(plan, request, proof.atoms, truths);
     if (!program) return program.failure();
     proof.compiler = program->compiler();
-    std::set<float> numbers = numbers_of(proof.atoms);
-    auto found = prove_steps(numbers, truths, plan, *program, proof);
-    if (!found || found->fault || found->repeats || request.steps > 0) return found;
-    if (found->steps_needed <= proof.steps || found->steps_needed > kMostStepsToGoOn) return found;
-    proof.steps = found->steps_needed;
-    auto longer = prove_steps(numbers, truths, plan, *program, proof);
-    if (longer && (longer->fault || longer->repeats)) return longer;
-    if (longer) found->why_not_longer = longer->why_not_longer;
+    auto found = prove_all(request, truths, plan, *program, std::move(proof));
+    if (found && request.counts_lines) found->coverage = program->coverage();
     return found;
 }
 

@@ -25,6 +25,7 @@ struct Request {
     /// which several monitors restart.
     std::uint64_t most_ways = 4000000;
     std::uint64_t most_together = 30000;
+    bool counts_lines = false;  ///< for Proof::coverage
 };
 
 /// Twice the longest horizon and the longest buffer, at least 64.
@@ -61,6 +62,7 @@ struct Proof {
     std::optional<Repeats> repeats;  ///< then the proof without restarts holds for all lengths
     std::string why_not_longer;      ///< else why it does not
     std::uint32_t steps_needed = 0;  ///< after which it may; 0: nothing is known
+    std::string coverage;            ///< JSON of $GCOV, or gcov; empty: there is none
     std::optional<Fault> fault;
 };
 

@@ -1,10 +1,14 @@
 #include "recordings/episodes.hpp"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <numeric>
 #include <set>
 #include <system_error>
 
@@ -101,10 +105,60 @@ diag::Result<std::vector<std::string>> expand(const std::string& argument, diag:
     return diag::Failure{Code::unreadable_trace, with_dataset_meant(*why, argument)};
 }
 
+/// Returns the CRC-32 of an episode's file; of its number or group where the file has several.
+std::uint32_t sum_of(const std::string& episode) {
+    std::string piece;
+    uLong sum = crc32(0, nullptr, 0);
+    const auto add = [&] {
+        sum = crc32(sum, reinterpret_cast<const Bytef*>(piece.data()),
+                    static_cast<uInt>(piece.size()));
+    };
+    if (trace_file(episode) != episode) {
+        piece = episode.substr(episode.rfind(':') + 1);
+        add();
+        return static_cast<std::uint32_t>(sum);
+    }
+    std::ifstream file(episode, std::ios::binary);
+    while (file) {
+        piece.resize(1U << 16U);
+        file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+        piece.resize(static_cast<std::size_t>(file.gcount()));
+        add();
+    }
+    return static_cast<std::uint32_t>(sum);
+}
+
+/// Keeps the episodes of a part, in their order.
+void keep(const Part& part, std::vector<std::string>& episodes, diag::Sink& sink) {
+    if (part.from == 0 && part.to == 1) return;
+    std::vector<std::size_t> order(episodes.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    if (!part.in_order) {
+        std::vector<std::uint32_t> sums;
+        for (const std::string& episode : episodes) sums.push_back(sum_of(episode));
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::size_t a, std::size_t b) { return sums[a] < sums[b]; });
+    }
+    const auto place = [&](double share) {
+        return order.begin() + static_cast<std::ptrdiff_t>(
+                                   std::nearbyint(share * static_cast<double>(order.size())));
+    };
+    std::vector<std::size_t> kept(place(part.from), place(part.to));
+    std::sort(kept.begin(), kept.end());
+    std::vector<std::string> result;
+    for (const std::size_t k : kept) result.push_back(std::move(episodes[k]));
+    if (result.empty() && !episodes.empty())
+        sink.report(in_file(
+            {Code::unreadable_trace, fmt::format("no episode is in this part of {}", order.size())},
+            fmt::format("--split {}:{}", part.from, part.to)));
+    episodes = std::move(result);
+}
+
 }  // namespace
 
 std::vector<std::string> find_episodes(const std::vector<std::string>& arguments,
-                                       const std::string& groups, diag::Sink& sink) {
+                                       const Chosen& chosen, diag::Sink& sink) {
+    const std::string& groups = chosen.groups;
     std::vector<std::string> episodes;
     std::set<std::string> seen;
     std::string table;  // a pattern of the shell may match it too
@@ -140,6 +194,7 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
     if (episodes.empty() && !table.empty() && !sink.has_errors())
         sink.report(
             in_file({Code::unreadable_trace, "is a table of labels, and no episode"}, table));
+    if (!sink.has_errors()) keep(chosen.part, episodes, sink);
     return episodes;
 }
 

@@ -20,14 +20,28 @@ namespace etlc::recordings {
 /// A file of this name is a table of labels of the episodes beside it, never an episode.
 inline constexpr std::string_view kLabelsFile = "labels.csv";
 
+/// A part of the episodes: those from one share of them to another.
+struct Part {
+    double from = 0;
+    double to = 1;
+    bool in_order =
+        false;  ///< else they are dealt by the CRC-32 of their files, and of nothing else
+};
+
+/// Which of the episodes in its arguments a call takes.
+struct Chosen {
+    std::string groups;  ///< pattern of the groups of .h5 files that are episodes; empty: the files
+    Part part;
+};
+
 /// Returns the episodes of all arguments. An argument is a file; a data set, which stands for its
 /// episodes, FOLDER:NUMBER (FOLDER:FIRST:END for a range), with warnings about incomplete ones; a
 /// folder, which stands for the traces in it; or a pattern of the shell ("runs/*/ep?.npz"). The
-/// episodes of each argument are sorted by path, bytewise; repeated paths are dropped. `groups`:
-/// each group of an .h5 file that matches ("data/*") is an episode, FILE:GROUP for open_trace;
-/// empty: the file is one. Reports an argument without episodes, E0801.
+/// episodes of each argument are sorted by path, bytewise; repeated paths are dropped. Each group
+/// of an .h5 file that matches ("data/*") is an episode, FILE:GROUP for open_trace. Reports an
+/// argument or a part without episodes, E0801.
 std::vector<std::string> find_episodes(const std::vector<std::string>& arguments,
-                                       const std::string& groups, diag::Sink& sink);
+                                       const Chosen& chosen, diag::Sink& sink);
 
 /// An input whose samples distinguish episodes.
 struct HashedInput {

@@ -113,7 +113,7 @@ bool calibrate(const source::File& file, const Request& request, diag::Sink& sin
     calibration.folds = request.folds;
     if (!check_names({&*model}, calibration.reading.names, sink)) return false;
     calibration.episodes =
-        find_shared_episodes(calibration.sharing, request.data, request.groups, sink);
+        find_shared_episodes(calibration.sharing, request.data, request.chosen, sink);
     if (sink.has_errors()) return false;
     if (!read_labels({&*model}, request, calibration.episodes, calibration.reading, sink))
         return false;

@@ -66,6 +66,20 @@ std::optional<std::string> page_of_trace(const source::File& spec, const Compile
 bool prove(const source::File& spec, const Compiled& compiled, const Request& request,
            diag::Sink& sink);
 
+struct Certified {
+    std::string header;    ///< that was proved
+    std::string text;      ///< the certificate
+    std::string coverage;  ///< prove::Proof::coverage
+};
+/// Proves the class. Nothing after an error: there is no proof, or the class is wrong, for which it
+/// writes the input.
+std::optional<Certified> certify(const source::File& spec, const plan::Plan& plan,
+                                 const Request& request, bool counts_lines, diag::Sink& sink);
+
+/// `etlc dossier`: collects in a folder what an engineer needs who signs for the class.
+bool dossier(const source::File& spec, const Compiled& compiled, const Request& request,
+             diag::Sink& sink);
+
 /// `etlc embed`: writes the file of embeddings, and an episode for each recording (of its shard).
 bool embed(const source::File& file, const Request& request, diag::Sink& sink);
 /// `etlc embed --pipe`: becomes the encoder, unless the embeddings of the spec are another's.
@@ -143,7 +157,7 @@ std::optional<episodes::Sharing> sharing_of(const Request& request);
 /// Finds the episodes of the call, or takes them from the parts that are merged.
 std::vector<std::string> find_shared_episodes(episodes::Sharing* sharing,
                                               const std::vector<std::string>& data,
-                                              const std::string& groups, diag::Sink& sink);
+                                              const recordings::Chosen& chosen, diag::Sink& sink);
 
 /// Records hashes of the spec and its dependencies in the part; where parts are merged, compares
 /// them and reports a difference.

@@ -83,7 +83,7 @@ bool check_inputs(const check::Model& model, const Request& request, diag::Sink&
 }
 
 embed::Search search_of(const check::Model& model, const Request& request) {
-    embed::Search search{request.data, request.groups, 0, request.embed.cameras, {}};
+    embed::Search search{request.data, request.chosen.groups, 0, request.embed.cameras, {}};
     if (model.step_seconds > 0) search.rate = 1 / model.step_seconds;
     for (const check::Input& input : model.inputs)
         if (input.encoder != kNone) search.inputs.push_back(input.name);

@@ -144,7 +144,7 @@ bool evaluate(const std::vector<SpecToJudge>& specs, const Request& request) {
     asked.variants = request.evaluate.variants;
     if (request.folds > 0) asked.reading.cache = std::make_shared<episodes::TraceCache>();
     if (!check_names(models, asked.reading.names, sink)) return false;
-    asked.episodes = find_shared_episodes(asked.sharing, request.data, request.groups, sink);
+    asked.episodes = find_shared_episodes(asked.sharing, request.data, request.chosen, sink);
     if (sink.has_errors()) return false;
     if (!read_labels(models, request, asked.episodes, asked.reading, sink)) return false;
     const auto outputs = is_shard(asked.sharing) ? std::vector<std::string>{request.shard.part}

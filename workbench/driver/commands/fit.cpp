@@ -85,7 +85,7 @@ bool fit(const source::File& file, const Request& request, diag::Sink& sink) {
     asked.version = library::kVersion;
     const std::string output =
         request.output.empty() ? fitted::default_path(file.path()) : request.output;
-    asked.episodes = recordings::find_episodes(request.data, request.groups, sink);
+    asked.episodes = recordings::find_episodes(request.data, request.chosen, sink);
     if (sink.has_errors()) return false;
     if (!read_labels({&*model}, request, asked.episodes, asked.reading, sink)) return false;
     if (request.fit.suggest) return suggest(file, *model, options, request, asked, sink);

@@ -83,9 +83,9 @@ std::optional<episodes::Sharing> sharing_of(const Request& whole) {
 
 std::vector<std::string> find_shared_episodes(episodes::Sharing* sharing,
                                               const std::vector<std::string>& data,
-                                              const std::string& groups, diag::Sink& sink) {
+                                              const recordings::Chosen& chosen, diag::Sink& sink) {
     if (sharing != nullptr && sharing->merges()) return sharing->part().episodes;
-    auto found = recordings::find_episodes(data, groups, sink);
+    auto found = recordings::find_episodes(data, chosen, sink);
     if (sharing != nullptr) sharing->part().episodes = found;
     return found;
 }

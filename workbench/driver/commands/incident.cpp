@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "check/guarantees/guarantees.hpp"
 #include "check/model/fingerprint.hpp"
 #include "data/files/file.hpp"
 #include "driver/commands/commands.hpp"

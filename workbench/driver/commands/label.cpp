@@ -74,7 +74,7 @@ std::vector<std::string> call_for_proposals(const Request& request) {
 bool label(const source::File& file, const Request& request, diag::Sink& sink) {
     const auto model = check_unlabelled(file, request, nullptr, sink);
     if (!model || sink.refused() || !check_names({&*model}, request.names, sink)) return false;
-    label::DeskRequest wanted{recordings::find_episodes(request.data, request.groups, sink),
+    label::DeskRequest wanted{recordings::find_episodes(request.data, request.chosen, sink),
                               request.names,
                               request.labels.tables.empty() ? "" : request.labels.tables.front()};
     if (sink.has_errors()) return false;

@@ -1,4 +1,5 @@
-// `etlc prove`: proves a generated class, or shows an input on which it is wrong.
+// `etlc prove`: proves a generated class, or shows an input on which it is wrong. `etlc dossier`
+// keeps the certificate.
 #include "prove/prove.hpp"
 
 #include <fmt/format.h>
@@ -250,7 +251,7 @@ std::string said(const plan::Plan& plan, const prove::Fault& fault) {
                        fault.witness.first_reaches ? "less" : "at least that");
 }
 
-bool write_counterexample(const source::File& spec, const plan::Plan& plan, const Request& request,
+void write_counterexample(const source::File& spec, const plan::Plan& plan, const Request& request,
                           const prove::Proof& proof, diag::Sink& sink) {
     const std::string stem = request.prove.counterexample.empty()
                                  ? fs::path(spec.path()).stem().string() + ".counterexample"
@@ -258,43 +259,53 @@ bool write_counterexample(const source::File& spec, const plan::Plan& plan, cons
     auto& found = sink.report(diag::Code::wrong_class,
                               plan.model->monitors[plan.monitors[proof.fault->monitor].index].span,
                               said(plan, *proof.fault));
-    if (proof.fault->witness.values.empty()) return false;
+    if (proof.fault->witness.values.empty()) return;
     found.note(fmt::format("the definition's verdicts: etlc run {0}.etl --trace {0}.csv{1}{2}",
                            stem, plan.values == check::Values::boolean ? " --values boolean" : "",
                            proof.fault->finishes > 0 ? " --finish" : ""));
-    if (!check_outputs({stem + ".csv", stem + ".etl"}, files_read(*plan.model, spec, {}), sink))
-        return false;
     OutputFiles files(sink);
-    return files.add(stem + ".csv", trace_of(plan, proof)) &&
-           files.add(stem + ".etl", measured_spec(plan)) && files.commit() && false;
+    if (check_outputs({stem + ".csv", stem + ".etl"}, files_read(*plan.model, spec, {}), sink) &&
+        files.add(stem + ".csv", trace_of(plan, proof)) &&
+        files.add(stem + ".etl", measured_spec(plan)))
+        files.commit();
 }
 
 }  // namespace
 
-bool prove(const source::File& spec, const Compiled& compiled, const Request& request,
-           diag::Sink& sink) {
-    const plan::Plan& plan = compiled.plan;
-    std::vector<std::string> inputs = files_read(*plan.model, spec, {});
-    if (!request.prove.header.empty()) inputs.push_back(request.prove.header);
-    if (!check_outputs({request.output}, inputs, sink)) return false;
+std::optional<Certified> certify(const source::File& spec, const plan::Plan& plan,
+                                 const Request& request, bool counts_lines, diag::Sink& sink) {
     for (const check::Index drift : plan.drifts)
         sink.report(diag::Code::no_proof, plan.model->drifts[drift].span,
                     "a class with a drift branches on distances, which have no value in a proof")
             .note("prove the class without it: no verdict depends on a drift");
-    if (sink.has_errors()) return false;
-    const auto header = header_text(spec, plan, request, sink);
-    if (!header) return false;
+    if (sink.has_errors()) return std::nullopt;
+    auto header = header_text(spec, plan, request, sink);
+    if (!header) return std::nullopt;
     const std::string name_space =
         request.name_space.empty() ? plan.model->name : request.name_space;
-    const auto proof = prove::prove(plan, {*header, name_space, request.prove.steps});
+    prove::Request asked{*header, name_space, request.prove.steps};
+    asked.counts_lines = counts_lines;
+    const auto proof = prove::prove(plan, asked);
     if (!proof) {
         sink.report(data::in_file(proof.failure(), spec.path()));
-        return false;
+        return std::nullopt;
     }
-    if (proof->fault) return write_counterexample(spec, plan, request, *proof, sink);
+    if (proof->fault) {
+        write_counterexample(spec, plan, request, *proof, sink);
+        return std::nullopt;
+    }
+    std::string text = certificate(spec, plan, request, *header, *proof);
+    return Certified{std::move(*header), std::move(text), proof->coverage};
+}
+
+bool prove(const source::File& spec, const Compiled& compiled, const Request& request,
+           diag::Sink& sink) {
+    std::vector<std::string> inputs = files_read(*compiled.plan.model, spec, {});
+    if (!request.prove.header.empty()) inputs.push_back(request.prove.header);
+    if (!check_outputs({request.output}, inputs, sink)) return false;
+    const auto certified = certify(spec, compiled.plan, request, false, sink);
     OutputFiles files(sink);
-    return files.add(request.output, certificate(spec, plan, request, *header, *proof)) &&
-           files.commit();
+    return certified && files.add(request.output, certified->text) && files.commit();
 }
 
 }  // namespace etlc::driver

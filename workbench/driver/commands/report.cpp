@@ -48,7 +48,7 @@ bool report(const source::File& spec, const Compiled& compiled, const Request& r
     wanted.megabytes = request.report.megabytes;
     wanted.limits = request.limits;
     if (!check_names({&model}, wanted.reading.names, sink)) return false;
-    wanted.episodes = recordings::find_episodes(request.data, request.groups, sink);
+    wanted.episodes = recordings::find_episodes(request.data, request.chosen, sink);
     if (sink.has_errors()) return false;
     if (!request.report.without_truths &&
         !read_labels({&model}, request, wanted.episodes, wanted.reading, sink))

@@ -39,7 +39,7 @@ struct Request : CompileOptions {
     std::string output;  ///< -o; "-" is standard output, empty the usual place of the command
 
     std::vector<std::string> data;  ///< episodes or recordings: files, folders and patterns
-    std::string groups;             ///< pattern of the groups of .h5 files that are episodes
+    recordings::Chosen chosen;      ///< which of the episodes in `data`
     std::string trace;
     recordings::NamesInFile names;  ///< names of inputs and labels in the files
     episodes::LabelSources labels;  ///< besides those in the files

@@ -49,7 +49,7 @@ public:
         if (!check_names({plan_.model}, request_.names, sink_)) return false;
         std::vector<std::string> traces{request_.trace};
         if (is_of_several())
-            traces = recordings::find_episodes(request_.data, request_.groups, sink_);
+            traces = recordings::find_episodes(request_.data, request_.chosen, sink_);
         if (sink_.has_errors()) return false;
         if (!check_outputs({request_.output, request_.run.html, request_.run.svg},
                            files_read(*plan_.model, spec_, traces), sink_))

@@ -54,7 +54,11 @@ constexpr Row kCommands[] = {
     {Command::prove, "prove", "SPEC.etl",
      "Proves that the temporal part of a generated class gives the verdicts of the definition, for "
      "all\ninputs of a number of steps, or shows an input on which it does not. It needs a C++ "
-     "compiler, $CXX or c++."}};
+     "compiler, $CXX or c++."},
+    {Command::dossier, "dossier", "SPEC.etl -o FOLDER",
+     "Collects what an engineer needs who signs for a generated class: the class, the certificate "
+     "of etlc prove\nand what it has executed, the budget, what the thresholds are worth, coding "
+     "rules, limitations."}};
 static_assert(std::size(kCommands) == kCommandCount);
 
 }  // namespace

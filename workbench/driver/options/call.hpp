@@ -31,8 +31,9 @@ enum class Command : std::uint8_t {
     label,
     watch,
     prove,
+    dossier,
 };
-inline constexpr std::size_t kCommandCount = 15;
+inline constexpr std::size_t kCommandCount = 16;
 
 /// The default of etlc crossvalidate.
 inline constexpr std::uint32_t kUsualFolds = 5;

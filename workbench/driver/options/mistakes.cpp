@@ -77,6 +77,23 @@ std::string read_shard(Call& call, const std::vector<std::string>& words) {
                        words.front());
 }
 
+std::string read_split(Call& call, const std::vector<std::string>& words) {
+    recordings::Part& part = call.chosen.part;
+    std::string_view rest = words.front();
+    part.in_order = rest.ends_with(":order");
+    if (part.in_order) rest.remove_suffix(std::string_view(":order").size());
+    const char* const end = rest.data() + rest.size();
+    const auto [colon, bad_from] = std::from_chars(rest.data(), end, part.from);
+    const bool has_colon = bad_from == std::errc() && colon != end && *colon == ':';
+    const auto [last, bad_to] = std::from_chars(has_colon ? colon + 1 : end, end, part.to);
+    if (has_colon && bad_to == std::errc() && last == end && 0 <= part.from &&
+        part.from < part.to && part.to <= 1)
+        return "";
+    return fmt::format(
+        "--split: {} is no part; expected FROM:TO or FROM:TO:order, with 0 <= FROM < TO <= 1",
+        data::in_quotes(words.front()));
+}
+
 std::string read_recorder(Call& call, const std::vector<std::string>& words) {
     std::string unused;
     call.recorder = library::parse_recorder(words.front(), unused);

@@ -18,6 +18,8 @@ std::string read_names(Call& call, const std::vector<std::string>& words);
 std::string read_cameras(Call& call, const std::vector<std::string>& words);
 /// --shard 3/64, or -/64 in a rank of an MPI job
 std::string read_shard(Call& call, const std::vector<std::string>& words);
+/// --split FROM:TO[:order]
+std::string read_split(Call& call, const std::vector<std::string>& words);
 /// --recorder BEFORE,AFTER,INCIDENTS, after mistake_in_recorder()
 std::string read_recorder(Call& call, const std::vector<std::string>& words);
 /// --variants cut,reversed

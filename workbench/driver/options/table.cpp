@@ -175,10 +175,14 @@ std::vector<Option> make_options() {
         {embed, "--camera", several(form("[INPUT=]NAME", read_cameras)),
          "the camera of a data set, or the array of images: observation.images.top; for one input "
          "only, z=observation.images.top"},
-        {Commands(kFindEpisodes) | run, "--episodes", text("PATTERN", in(&Call::groups)),
+        {Commands(kFindEpisodes) | run, "--episodes",
+         text("PATTERN", in(&Call::chosen, &recordings::Chosen::groups)),
          "groups of .h5 files that are episodes: 'data/*'"},
-        {embed, "--episodes", text("PATTERN", in(&Call::groups)),
+        {embed, "--episodes", text("PATTERN", in(&Call::chosen, &recordings::Chosen::groups)),
          "groups of .h5 files that are recordings: 'data/*'"},
+        {Commands(kFindEpisodes) | run, "--split", form("FROM:TO[:order]", read_split),
+         "only a part of the episodes, by shares: --split 0:0.25, --split 0.25:0.5 and --split "
+         "0.5:1 share none; dealt by their content, or kept in order"},
         {kReadEpisodes, "--allow-overlap",
          checked(text("REASON", in(&Call::allow_overlap)), mistake_in_reason),
          "reason to accept episodes that share most of their content or contain targets; it is "
@@ -435,7 +439,8 @@ std::vector<Option> make_own_options() {
          "write the steps around each alarm into this folder, as etlc incident reads them"},
 
         // etlc prove
-        {prove, "--steps", number<std::uint32_t>(in(&Call::prove, &Call::Prove::steps), 1, 10000),
+        {Commands(prove) | dossier, "--steps",
+         number<std::uint32_t>(in(&Call::prove, &Call::Prove::steps), 1, 10000),
          "length of the longest inputs (default: twice the longest horizon and the longest "
          "buffer, at least 64)"},
         {prove, "--header", file(in(&Call::prove, &Call::Prove::header)),
@@ -446,6 +451,10 @@ std::vector<Option> make_own_options() {
          "STEM.csv and STEM.etl (default: SPEC.counterexample in this folder)"},
         {prove, "-o,--output", file(in(&Call::output), "-"),
          "where to write the certificate; - is standard output"},
+
+        // etlc dossier
+        {dossier, "-o,--output", text("FOLDER", in(&Call::output)),
+         "the folder to write; files in it that are not of a dossier stay", kRequired},
 
         {lsp, "--stdio", flag(in(&Call::on_standard_streams)),
          "accepted for clients that pass it; standard input and output are always used"},

@@ -164,7 +164,7 @@ inline Takes form(std::string value, decltype(Takes::set) set) {
 inline constexpr Commands kExecute = Commands(Command::run) | Command::explain;
 inline constexpr Commands kEvaluate = Commands(Command::evaluate) | Command::crossvalidate;
 /// The commands that generate a class.
-inline constexpr Commands kClass = Commands(Command::compile) | Command::prove;
+inline constexpr Commands kClass = Commands(Command::compile) | Command::prove | Command::dossier;
 /// The commands that plan monitors.
 inline constexpr Commands kPlan =
     kExecute | kEvaluate | kClass | Command::incident | Command::report | Command::watch;

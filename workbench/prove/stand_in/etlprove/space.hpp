@@ -21,6 +21,10 @@
 
 #include "etlprove/diagrams.hpp"
 
+#ifdef ETLPROVE_COUNTS
+extern "C" void __gcov_dump(void);
+#endif
+
 namespace etlprove {
 
 /// Ends of the program besides success, as its exit status.
@@ -31,6 +35,9 @@ constexpr uint32_t kMostNodes = 40u << 20;
 
 [[noreturn]] inline void stop(int status) {
     fflush(stdout);
+#ifdef ETLPROVE_COUNTS
+    __gcov_dump();
+#endif
     _Exit(status);
 }
 

@@ -1,0 +1,163 @@
+// `etlc dossier`: collects in a folder what an engineer needs who signs for a generated class. All
+// of it is said elsewhere: by the header, `etlc prove`, gcov, `--emit report` and the pages.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "data/files/file.hpp"
+#include "data/files/hash.hpp"
+#include "driver/commands/commands.hpp"
+#include "driver/process/process.hpp"
+#include "emit/emit.hpp"
+#include "library/version.hpp"
+#include "prove/coverage.hpp"
+
+/// Sections of docs/generated_code.md and docs/firmware.md.
+extern const char* const kDossierPages;
+
+namespace etlc::driver {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Returns why nothing is proved. Without that a dossier is still of use; with a wrong class it is
+/// not.
+std::optional<std::string> why_not_proved(const diag::Sink& findings) {
+    std::string why;
+    for (const diag::Diagnostic& found : findings.sorted()) {
+        if (found.code != diag::Code::no_proof) return std::nullopt;
+        why += found.message + "\n";
+    }
+    return why;
+}
+
+/// The lines of the class that ran in the proof, and the branches that were taken.
+struct Covered {
+    std::string annotated;  ///< the header, each line with its count
+    std::string summary;
+};
+
+Covered covered(const std::string& header, const std::vector<prove::Line>& lines) {
+    Covered result;
+    std::size_t ran = 0, ways = 0, taken = 0, number = 0;
+    auto line = lines.begin();
+    for (std::size_t begin = 0; begin < header.size();) {
+        const std::size_t end = std::min(header.find('\n', begin), header.size());
+        const bool has_code = line != lines.end() && line->number == number + 1;
+        std::string count, missed;
+        if (has_code) {
+            count = line->count > 0 ? fmt::format("{}", line->count) : "#####";
+            ran += line->count > 0 ? 1 : 0;
+            const auto never = static_cast<std::size_t>(
+                std::count(line->ways.begin(), line->ways.end(), std::uint64_t{0}));
+            ways += line->ways.size();
+            taken += line->ways.size() - never;
+            if (never > 0) missed = fmt::format("{}/{}", never, line->ways.size());
+            ++line;
+        }
+        result.annotated += fmt::format("{:>10} {:>5} {:>5}: {}\n", count, missed, ++number,
+                                        std::string_view(header).substr(begin, end - begin));
+        begin = end + 1;
+    }
+    result.summary =
+        fmt::format("The proof ran {} of {} lines of the class, and took {} of {} branches.", ran,
+                    lines.size(), taken, ways);
+    return result;
+}
+
+/// Returns the comment at the head of a header.
+std::string head_of(const std::string& header) {
+    std::string text;
+    for (std::size_t begin = 0; header.compare(begin, 2, "//") == 0;) {
+        const std::size_t end = header.find('\n', begin) + 1;
+        text += header.substr(std::min(begin + 3, end - 1), end - std::min(begin + 3, end - 1));
+        begin = end;
+    }
+    return text;
+}
+
+struct File {
+    std::string name;
+    std::string what;
+    std::string text;  ///< empty: another call writes it
+};
+
+std::string index_of(const std::string& spec, const std::string& head, const std::string& covered,
+                     const std::vector<File>& files) {
+    std::string text = fmt::format(
+        "# {0}: what there is to know about the class\n\nMade by etlc {1}. "
+        "XXH64 tells files apart; it is no defence against forgery.\n\n| file | XXH64 | |\n"
+        "| --- | --- | --- |\n",
+        spec, library::kVersion);
+    for (const File& file : files)
+        text += fmt::format("| {} | {} | {} |\n", file.name,
+                            data::hash_text(data::xxh64(file.text)), file.what);
+    text += fmt::format(
+        "\n## What the class was made from, and what its thresholds are worth\n```\n{}```\n"
+        "A guarantee holds for new episodes that are exchangeable with those of the calibration:\n"
+        "same robot, camera, light, task and encoder. It is about whole episodes, over the draw "
+        "of\nboth; it says nothing about a single one, nor after a change of any of these.\n\n"
+        "## What was executed\n{}\n",
+        head, covered);
+    return text + kDossierPages;
+}
+
+}  // namespace
+
+bool dossier(const source::File& spec, const Compiled& compiled, const Request& request,
+             diag::Sink& sink) {
+    const fs::path folder = request.output;
+    const std::string stem = fs::path(spec.path()).stem().string();
+    diag::Sink findings;
+    auto certified = certify(spec, compiled.plan, request, true, findings);
+    const auto why = certified ? std::string() : why_not_proved(findings);
+    if (!why) {
+        sink.add(findings, "");
+        return false;
+    }
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) {
+        sink.report(
+            data::in_file({diag::Code::unwritable_output, error.message()}, folder.string()));
+        return false;
+    }
+    Request header = request;
+    header.output = (folder / (stem + ".hpp")).string();
+    if (!emit(spec, header, sink)) return false;
+
+    const emit::Options options{request.name_space, library::kVersion, "", stem + ".targets.bin"};
+    const std::string text = emit::header(compiled.plan, options);
+    std::vector<File> files{
+        {stem + ".etl", "the spec", std::string(spec.text())},
+        {stem + ".hpp", "the class", text},
+        {"budget.txt", "`etlc --emit report`: state, code, work, horizon",
+         emit::report(compiled.plan, options)},
+        {"certificate.txt", "`etlc prove`", certified ? certified->text : "not proved: " + *why}};
+    std::string ran = "Nothing: there is no proof.";
+    if (certified) {
+        const auto lines = prove::coverage_of(certified->coverage, "class.hpp");
+        ran = "It is not known: $GCOV, or gcov, does not say, as clang's does not.";
+        if (lines) {
+            Covered of = covered(text, *lines);
+            ran = of.summary +
+                  "\n`coverage.txt` has the class with the count of each line (`#####`: none), and "
+                  "of its branches those never taken.\nDistances and thresholds are not part of "
+                  "the proof: they are values without a number there.";
+            files.push_back({"coverage.txt", "the class in the proof, by gcov", of.annotated});
+        }
+    }
+    OutputFiles outputs(sink);
+    const std::string index = index_of(stem, head_of(text), ran, files);
+    for (const File& file : files)
+        if (file.name != stem + ".hpp" && !outputs.add((folder / file.name).string(), file.text))
+            return false;
+    return outputs.add((folder / "dossier.md").string(), index) && outputs.commit();
+}
+
+}  // namespace etlc::driver
