@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
+import os
+from pathlib import Path
 from typing import Any, Callable, Mapping, Union
 
 import numpy as np
 
 from ._arguments import is_mapping
-from .errors import InputError
+from .errors import EtlcWarning, InputError, warn
 from .monitor import Monitor
 from .names import no_such
 from .verdicts import Verdict, Verdicts
@@ -31,6 +34,9 @@ class Guard:
         names: what an input is called in the observations: {"z": "observation.state"}.
         encode: makes the spec's only embedding of an observation, or a dict of inputs: an encoder,
             or the features of the policy itself.
+        record: a folder for files of incidents, `incident0` and so on. An alarm writes one at once,
+            without steps after it; a file that cannot be written is a warning. The monitor needs a
+            recorder.
 
     Attributes:
         monitor: the monitors.
@@ -38,6 +44,7 @@ class Guard:
 
     Raises:
         InputError: an argument is invalid.
+        NotKeptError: `record`, and the monitor was opened without a recorder.
 
     Example:
         >>> guard = etlc.Guard(etlc.Monitor("task.etl", history=600), on_alarm="hand_over")
@@ -53,9 +60,11 @@ class Guard:
         on_unknown: Answers = "continue",
         names: Mapping[str, str] | None = None,
         encode: Callable[[Any], Any] | None = None,
+        record: str | os.PathLike[str] | None = None,
     ) -> None:
         self.monitor = monitor
         self.verdicts: Verdicts | None = None
+        self._record = None if record is None else Path(record)
         self._on_alarm = self._answers("on_alarm", on_alarm)
         self._on_fulfilled = self._answers("on_fulfilled", on_fulfilled)
         self._on_unknown = self._answers("on_unknown", on_unknown)
@@ -66,6 +75,9 @@ class Guard:
                 raise InputError(no_such("input", name, tuple(self._names)))
         self._names.update(names or {})
         self._embeddings = [one.name for one in monitor.inputs.values() if one.shape]
+        if self._record is not None:
+            monitor.forget_incidents()
+            self._record.mkdir(parents=True, exist_ok=True)
 
     def _answers(self, option: str, given: Answers) -> dict[str, str]:
         """Returns the answer for each monitor."""
@@ -91,8 +103,13 @@ class Guard:
 
         Raises:
             InputError: the observation lacks an input, or has one of another shape.
+
+        Warns:
+            EtlcWarning: an incident could not be written.
         """
         self.verdicts = self.monitor.step(**self._samples(observation))
+        if self._record is not None and self.verdicts.alarms:
+            self._write(self._record)
         return max(map(self._answer, self.verdicts), key=ANSWERS.index)
 
     def _answer(self, verdict: Verdict) -> str:
@@ -115,6 +132,17 @@ class Guard:
         """
         alarms = [] if self.verdicts is None else self.verdicts.alarms
         return {one.name: one.why.text for one in alarms}
+
+    def _write(self, folder: Path) -> None:
+        """Writes the incidents that the last step has begun."""
+        self.monitor.close_incidents()
+        names = (folder / f"incident{n}" for n in itertools.count())
+        try:
+            for incident in self.monitor.incidents:
+                next(path for path in names if not path.exists()).write_bytes(incident)
+        except OSError as error:  # the program must have its answer
+            warn(EtlcWarning(f"an incident could not be written: {error}"))
+        self.monitor.forget_incidents()
 
     def _samples(self, observation: Any) -> dict[str, Any]:
         given = dict(observation) if is_mapping(observation) else {}

@@ -7,6 +7,7 @@ python_test.py FOLDER: FOLDER is that of the tests of specs.
 import inspect
 import json
 import re
+import shutil
 import struct
 import sys
 import tempfile
@@ -807,6 +808,34 @@ monitor docked = F min l2(z, bay) <= 0.3;
         ):
             with self.assertRaisesRegex((etlc.InputError, KeyError), why):
                 call()
+
+    def test_guard_writes_incidents(self):
+        text = """spec a; input x : f32; predicate p = x > 0;
+                  monitor good = G p; sliding monitor now = p;"""
+        box = tempfile.TemporaryDirectory()
+        self.addCleanup(box.cleanup)
+        folder = Path(box.name)
+        monitor = etlc.Monitor(text=text, recorder=(2, 3, 4))
+        guard = etlc.Guard(monitor, record=folder / "a" / "b")
+        names = []
+        for x in (1, 1, -1, 1, -1):
+            guard.step(x)
+            names.append(sorted(path.name for path in folder.glob("a/b/*")))
+        self.assertEqual(names, [[], [], ["incident0"], ["incident0"], ["incident0", "incident1"]])
+        again = etlc.Guard(monitor, record=folder / "a" / "b")
+        again.reset()
+        self.assertEqual([again.step(x) for x in (1, -1)], ["continue", "stop"])
+        (folder / "a.etl").write_text(text)
+        for n, alarm in enumerate(("good, now at step 2", "now at step 4", "now at step 1")):
+            self.assertIn(alarm, etlc.incident(folder / "a.etl", folder / f"a/b/incident{n}"))
+        self.assertEqual(monitor.incidents, ())
+        shutil.rmtree(folder / "a")
+        again.reset()
+        with self.assertWarnsRegex(etlc.EtlcWarning, "could not be written.*incident0"):
+            self.assertEqual(again.step(-1), "stop")  # an answer in any case
+        with self.assertRaises(etlc.NotKeptError):
+            etlc.Guard(etlc.Monitor(text=text), record=folder / "c")
+        self.assertFalse((folder / "c").exists())
 
     def test_no_module_looks_like_a_function(self):
         self.assertEqual({name for name in dir(etlc) if not name.startswith("_")},
