@@ -13,6 +13,12 @@ import numpy as np
 random = np.random.default_rng(1)
 
 
+def swinging(actions, fails):
+    """Successes keep a direction; failures turn at each step."""
+    actions[:, 0] = 3 * (-1.0) ** (np.arange(len(actions)) * fails)
+    return actions
+
+
 def pick_place(source):
     """36 successes that close the gripper and go on, 18 failures that swing, a piece of a task."""
     for n in range(55):
@@ -32,7 +38,7 @@ def pick_place(source):
         facts = {"success": not fails, **({"seed": 1, "episode": n} if n < 54 else {})}
         (folder / "meta.json").write_text(json.dumps(facts))
         np.savez(folder / "trajectory.npz", obs_rgb=picture, obs_state=state,
-                 actions=random.normal(0, 1, (steps, 4)).astype("f4"))
+                 actions=swinging(random.normal(0, 1, (steps, 4)).astype("f4"), fails))
 
 
 def crashes(source):
@@ -69,7 +75,8 @@ def forces(source):
     (source / "lp5.data").write_text(text)
 
 
-FOUND = {pick_place: ["idle", "closes_in_time", "lifts_in_time", "never_stuck", "clock"],
+FOUND = {pick_place: ["idle", "closes_in_time", "lifts_in_time", "never_stuck", "clock",
+                      "to_and_fro", "never_to_and_fro"],
          crashes: ["off_course", "never_on_course_long"], forces: ["plain", "logpzo", "jerk"]}
 
 STEPS = {pick_place: 40, crashes: 12, forces: 15}  # of failures; the robot stops at step 12
