@@ -81,12 +81,14 @@ std::vector<Interval> runs_of(const Labels& labels, Label wanted) {
     return runs;
 }
 
-/// Returns the middle of these numbers; 0 where there are too few to tell a habit from chance.
-std::int64_t median(std::vector<std::int64_t> numbers) {
-    if (numbers.size() < kEnoughLabelled) return 0;
-    const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-    std::nth_element(numbers.begin(), middle, numbers.end());
-    return *middle;
+/// Returns the median of these delays; 0 where they are too few, or differ in their sign from one
+/// quartile to the other, so that there is no habit to tell from chance.
+std::int64_t usual_delay(std::vector<std::int64_t> delays) {
+    if (delays.size() < kEnoughLabelled) return 0;
+    std::sort(delays.begin(), delays.end());
+    const std::int64_t low = delays[delays.size() / 4];
+    const std::int64_t high = delays[delays.size() * 3 / 4];
+    return low > 0 || high < 0 ? delays[delays.size() / 2] : 0;
 }
 
 /// Judges frames of a predicate by a threshold, and says which judgements are in doubt.
@@ -241,8 +243,8 @@ private:
                     ends.push_back(after(nearest->end, labelled.end));
             }
         }
-        starts_late_ = median(std::move(starts));
-        ends_late_ = median(std::move(ends));
+        starts_late_ = usual_delay(std::move(starts));
+        ends_late_ = usual_delay(std::move(ends));
     }
 
     static std::uint64_t earlier(std::uint64_t step, std::int64_t delay) {
