@@ -23,7 +23,9 @@ cmake/install_packages.sh build fleet recordings release
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
 export SOURCE_DATE_EPOCH LC_ALL=C TZ=UTC
 umask 022
-box=$(mktemp -d)
+box=$PWD/build/making-$version
+rm -rf "$box"
+mkdir -p "$box"
 trap 'rm -rf "$box"' EXIT
 made=$box/made source=$box/etlc-$version
 mkdir "$made"
@@ -40,7 +42,7 @@ echo "Building etlc $version"
         -DCMAKE_CXX_FLAGS="-ffile-prefix-map=$source=."
     build release all wheel
     cd build/release
-    cpack -G DEB -B "$box/deb" >cpack.log || { cat cpack.log; exit 1; }
+    cpack -G DEB -B "$box/deb" >cpack.log 2>&1 || { cat cpack.log; exit 1; }
 )
 cp "$source"/build/release/dist/etlc-*.whl "$box"/deb/*.deb "$made"
 cmake/sbom.py "$version" "$made" >"$made/sbom.spdx.json"

@@ -43,7 +43,7 @@ def debian(name):
 def in_wheel(wheel):
     """Returns the names of the packages whose libraries the wheel contains."""
     names = (Path(name) for name in zipfile.ZipFile(wheel).namelist())
-    libraries = {name.name for name in names if "_native/lib" in str(name)} - {"libetlc.so.1"}
+    libraries = {name.name for name in names if name.parts[-2:-1] == ("lib",)} - {"libetlc.so.1"}
     owners = {library: installed(f"*/{library}", "-S") for library in libraries}
     lost = sorted(library for library, found in owners.items() if not found)
     if lost:
