@@ -31,7 +31,7 @@ std::optional<std::string> why_not_proved(const diag::Sink& findings) {
     std::string why;
     for (const diag::Diagnostic& found : findings.sorted()) {
         if (found.code != diag::Code::no_proof) return std::nullopt;
-        why += found.message + "\n";
+        if (why.find(found.message) == std::string::npos) why += found.message + "\n";
     }
     return why;
 }
