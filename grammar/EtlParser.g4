@@ -69,9 +69,10 @@ prefixed
     | op=HELD duration prefixed                                                  # HeldPrefix
     ;
 
-// One comparison is right; more, and thresholds, are accepted here only to be explained.
+// One comparison is right; more, and thresholds, are accepted here only to be explained. A text is
+// the name of a subtask.
 comparison
-    : sum (comparisonOperator (sum | calibrated))*
+    : sum (comparisonOperator (sum | calibrated | STRING))*
     ;
 
 sum

@@ -113,6 +113,7 @@ private:
     Formula prefix(const Token& op, Grammar::PrefixedContext& operand,
                    const ParserRuleContext& whole) const;
     Formula compared(Grammar::SumContext& left, Grammar::ComparisonContext& context) const;
+    Formula of_subtask(Grammar::SumContext& left, Grammar::ComparisonContext& context) const;
     ast::Interval interval(Grammar::IntervalContext& context) const;
     ast::Bound bound(Grammar::BoundContext& context) const;
     std::string unit(Grammar::UnitContext& context) const;

@@ -138,6 +138,8 @@ Builder::Formula Builder::compared(Grammar::SumContext& left,
         fail(diag::Code::comparison_form,
              span_of(dynamic_cast<ParserRuleContext&>(*context.children[3])),
              "comparisons do not chain", "write two of them: 'x > 0 && x < 1'");
+    if (dynamic_cast<antlr4::tree::TerminalNode*>(context.children[2]) != nullptr)
+        return of_subtask(left, context);
     auto* const written = dynamic_cast<Grammar::SumContext*>(context.children[2]);
     if (written == nullptr)
         fail(diag::Code::comparison_form,
@@ -154,6 +156,27 @@ Builder::Formula Builder::compared(Grammar::SumContext& left,
     result.root->operator_span = span_of(op);
     if (result.height > kMaxHeight) too_high(span_of(op));
     return result;
+}
+
+/// `subtask == "reach"` is the name of an input that recordings have; `!=` negates it.
+Builder::Formula Builder::of_subtask(Grammar::SumContext& left,
+                                     Grammar::ComparisonContext& context) const {
+    auto& op = dynamic_cast<Grammar::ComparisonOperatorContext&>(*context.children[1]);
+    const bool negated = op.NOT_EQUAL() != nullptr;
+    Grammar::UnsignedContext* const factor = only_factor(left);
+    const bool is_name = factor != nullptr && factor->delay().empty() &&
+                         dynamic_cast<Grammar::NamePrimaryContext*>(factor->primary()) != nullptr;
+    if (!is_name || (!negated && op.EQUAL() == nullptr))
+        fail(diag::Code::comparison_form, span_of(context),
+             "only the subtask of a recording is compared with a text, by '==' or '!='",
+             "write it as in 'truth grasp = subtask == \"pick up the cup\";'");
+    Formula result{node(Kind::name, span_of(context)), 1};
+    result.root->name = fmt::format("{} == {}", text(left), text(symbol(context.children[2])));
+    if (!negated) return result;
+    Formula outer{node(Kind::negation, span_of(context)), 2};
+    outer.root->operator_span = span_of(op);
+    outer.root->operands.push_back(std::move(result.root));
+    return outer;
 }
 
 Builder::Formula Builder::formula(Grammar::UnsignedContext& context) const {

@@ -33,7 +33,7 @@ class Guard:
             tell.
         names: what an input is called in the observations: {"z": "observation.state"}.
         encode: makes the spec's only embedding of an observation, or a dict of inputs: an encoder,
-            or the features of the policy itself.
+            or the features of the policy itself; an `Encoder` refuses another policy.
         record: a folder for files of incidents, `incident0` and so on. An alarm writes one at once,
             without steps after it; a file that cannot be written is a warning. The monitor needs a
             recorder.

@@ -49,7 +49,8 @@ def calibrate(
         split: only a part of the episodes, by shares: "0:0.25", or "0:0.25:order".
         labels: tables of labels (.csv); by default labels.csv beside the episodes, if it exists.
         label_by: "folder" labels each episode, or gives its outcome, by the name of its folder;
-            "outcome" takes the outcome from `next.success`, or an attribute `success` in .h5.
+            "outcome" takes the outcome from `next.success`, or an attribute `success` in .h5;
+            "subtask" labels the rows of LeRobot data sets by the names of their subtasks.
         allow_overlap: the reason why episodes may share most of their content.
         folds: also report the thresholds without each of this many folds.
         shard: (1, 3) reads the first of three shards of the episodes, and writes a part.

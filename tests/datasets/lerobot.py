@@ -1,5 +1,6 @@
 """Writes data sets in LeRobot's format for tests: `write(folder, release, lengths)`. Cameras are
 videos; `stored` has the images of cameras kept in the rows: for each camera, a file's bytes each.
+`more` has other columns of the rows, `of_episodes` of meta/episodes, each (type, values).
 """
 import json
 import os
@@ -69,7 +70,7 @@ def rows_of(lengths, stored=None):
     return columns, truth
 
 
-def info_of(version, lengths, stored=()):
+def info_of(version, lengths, stored=(), more=()):
     features = {"observation.state": {"dtype": "float32", "shape": [STATE]},
                 "action": {"dtype": "float32", "shape": [ACTION]},
                 "next.success": {"dtype": "bool", "shape": [1]},
@@ -80,6 +81,8 @@ def info_of(version, lengths, stored=()):
     for camera in CAMERAS:
         features[camera] = {"dtype": "image" if camera in stored else "video",
                             "shape": [*SIDES, 3]}
+    for name in more:
+        features[name] = {"dtype": "float32", "shape": [1], "names": None}
     rows, videos = PATHS[version]
     if len(stored) == len(CAMERAS):
         videos = None
@@ -136,11 +139,12 @@ def episode_table(lengths, stored=()):
     return table
 
 
-def write_30(folder, lengths, columns, how):
+def write_30(folder, lengths, columns, how, of_episodes):
     os.makedirs(f"{folder}/meta/episodes/chunk-000")
     os.makedirs(f"{folder}/data/chunk-000")
     parquet.write(f"{folder}/meta/episodes/chunk-000/file-000.parquet",
-                  episode_table(lengths, columns), nested=("stats/action/mean",), **how)
+                  episode_table(lengths, columns) | of_episodes,
+                  nested=("stats/action/mean",), **how)
     parquet.write(f"{folder}/meta/tasks.parquet",
                   {"task_index": (parquet.INT64, [0, 1]),
                    "__index_level_0__": (parquet.TEXT, list(TASKS))}, **how)
@@ -154,12 +158,16 @@ def write_30(folder, lengths, columns, how):
             video(f"{folder}/videos/{camera}/chunk-000/file-000.mp4", sum(lengths), number)
 
 
-def write(folder, release, lengths, stored=None, **how):
+def write(folder, release, lengths, stored=None, more=None, of_episodes=None, **how):
     """Returns the states, actions and labels of each episode."""
     os.makedirs(f"{folder}/meta")
     columns, truth = rows_of(lengths, stored)
-    write_json(f"{folder}/meta/info.json", info_of(release, lengths, stored or ()))
-    (write_21 if release == "v2.1" else write_30)(folder, lengths, columns, how)
+    columns |= more or {}
+    write_json(f"{folder}/meta/info.json", info_of(release, lengths, stored or (), more or ()))
+    if release == "v2.1":
+        write_21(folder, lengths, columns, how)
+    else:
+        write_30(folder, lengths, columns, how, of_episodes or {})
     return truth
 
 

@@ -180,6 +180,42 @@ def structs_are_read():
         assert read("t.parquet", names, "key", 11)[1] == wanted[99:108], (optional, needed, pages)
 
 
+def lists_of_structs_are_read():
+    """A field by its path, a list a row, with nulls at every level; nested lists are not read."""
+    fields = {"style": parquet.TEXT, "time": parquet.DOUBLE, "camera": parquet.NULL,
+              "tools": parquet.TEXTS}
+    rows = [None if i % 11 == 0 else
+            [None if (i + j) % 5 == 4 else
+             {"style": None if j == 2 else f"s{j}", "time": None if j == 1 else i + j / 8,
+              "camera": None, "tools": None} for j in range(i % 4)] for i in range(ROWS)]
+
+    def found(row, field):
+        return row if not row else [None if item is None else item[field] for item in row]
+
+    for element, dictionary, version, pages in itertools.product(
+            ("element", "item"), (False, True), (1, 2),
+            ({}, {"page_rows": 20, "group_rows": 90}, {"page_rows": 7, "cut_anywhere": True})):
+        made = {"a": (parquet.Structs(fields, element), rows),
+                "key": (parquet.INT64, [i // 9 for i in range(ROWS)])}
+        parquet.write("t.parquet", made, dictionary=dictionary, version=version, **pages)
+        names = ["a.time", "key", "a.style", "a.camera", "a.list"]
+        shapes, cells = read("t.parquet", names)
+        assert shapes == ["number list", "number", "text list", "number list", "absent"], shapes
+        wanted = [[found(row, "time"), i // 9,
+                   row and [style or "" for style in found(row, "style")], found(row, "camera")]
+                  for i, row in enumerate(rows)]
+        for one, cell in zip(wanted, cells, strict=True):
+            assert [x is None for x in one] == [x is None for x in cell], (one, cell)
+            assert all(x is None or same(x, y) for x, y in zip(one, cell)), (one, cell)
+        some = read("t.parquet", names, "key", 11)[1]
+        assert all(same(x, y) or x is None for one, cell in zip(wanted[99:108], some, strict=True)
+                   for x, y in zip(one, cell))
+        assert refusal("t.parquet", "a.tools") == (
+            "column 'a.tools' has lists or fields nested in it, expected a number or a text")
+        assert refusal("t.parquet", "a") == ("column 'a' has 4 fields nested in it, expected a "
+                                             "number, a text or a list of them")
+
+
 def structs_that_are_not_read_are_named():
     fields = {"bytes": parquet.TEXT, "path": parquet.TEXT}
     rows = [{"bytes": b"\xff", "path": "a"}]
@@ -257,13 +293,17 @@ def damage_is_named():
         with open("t.parquet", "wb") as file:
             file.write(bytes_)
         assert words in refusal("t.parquet", "q"), (words, refusal("t.parquet", "q"))
-    for _ in range(300):  # any other damage is reported too
-        broken = bytearray(whole)
+    entries = [[{"style": f"s{j}", "time": j / 8} for j in range(i % 4)] for i in range(100)]
+    kind = parquet.Structs({"style": parquet.TEXT, "time": parquet.DOUBLE})
+    structs = parquet.Writer(codec=parquet.NONE).write({"q": (kind, entries)})
+    for i in range(500):  # any other damage is reported too
+        broken = bytearray(structs if i % 5 > 2 else whole)
         for _ in range(random.randrange(1, 4)):
             broken[random.randrange(len(broken))] = random.randrange(256)
         with open("t.parquet", "wb") as file:
             file.write(broken)
-        assert records("t.parquet", "", "0", "q")[-1][0] in (b"E", b"F")
+        names = ["q.style", "q.time"] if i % 5 > 2 else ["q"]
+        assert records("t.parquet", "", "0", *names)[-1][0] in (b"E", b"F")
 
 
 with tempfile.TemporaryDirectory() as box:
@@ -273,6 +313,7 @@ with tempfile.TemporaryDirectory() as box:
     pages_of_nulls_are_read()
     rows_may_span_pages()
     structs_are_read()
+    lists_of_structs_are_read()
     structs_that_are_not_read_are_named()
     images_may_be_large()
     signs_are_kept()

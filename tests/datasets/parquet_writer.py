@@ -1,6 +1,7 @@
 """Writes Parquet files for tests. It follows the format's own page (apache/parquet-format) and
 shares no code with the reader. `write(path, columns, **how)`: each column is (type, values); values
-of a list column are lists, None is a null. A type may be a Struct; its values are dicts."""
+of a list column are lists, None is a null. A type may be a Struct, with dicts as values, or
+Structs, with lists of dicts."""
 import struct
 import zlib
 
@@ -34,16 +35,54 @@ class Struct:
         self.needed, self.repeated = needed, repeated
 
 
+NULL, TEXTS = "null", "texts"  # of fields of Structs; values of both are None
+
+
+class Structs:
+    """A list of structs, whose fields may all be null. `element`: its name in the schema."""
+
+    def __init__(self, fields, element="element"):
+        self.fields, self.element = fields, element
+
+    def leaves(self, name):
+        """Below TEXTS another list is declared."""
+        for field, of in self.fields.items():
+            path = [name, "list", self.element, field]
+            if of == TEXTS:
+                yield Leaf([*path, "list", self.element], TEXT, 7, True, field, 2)
+            else:
+                yield Leaf(path, INT32 if of == NULL else of, 4, True, field)
+
+    def schema(self, name):
+        made = [{3: I32(1), 4: name, 5: I32(1), 6: I32(3)}, {3: I32(2), 4: "list", 5: I32(1)},
+                {3: I32(1), 4: self.element, 5: I32(len(self.fields))}]
+        for field, of in self.fields.items():
+            leaf = {1: I32(INT32 if of == NULL else TEXT if of == TEXTS else of), 3: I32(1),
+                    4: field}
+            if of == NULL:
+                leaf[10] = {11: {}}
+            if of in (TEXT, TEXTS):
+                leaf[6] = I32(0)
+            if of == TEXTS:
+                made += [{3: I32(1), 4: field, 5: I32(1), 6: I32(3)},
+                         {3: I32(2), 4: "list", 5: I32(1)}]
+                leaf[4] = self.element
+            made.append(leaf)
+        return made
+
+
 class Leaf:
     """The place of values in the schema. `most`: the definition level of a present value; `field`:
-    of the struct, else None."""
+    of the struct, else None; `repeats`: the greatest repetition level."""
 
-    def __init__(self, path, kind, most, is_list=False, field=None):
+    def __init__(self, path, kind, most, is_list=False, field=None, repeats=1):
         self.path, self.kind, self.most = path, kind, most
-        self.is_list, self.field = is_list, field
+        self.is_list, self.field, self.repeats = is_list, field, repeats
 
 
 def leaves_of(name, kind, is_list):
+    if isinstance(kind, Structs):
+        return list(kind.leaves(name))
     if isinstance(kind, Struct):
         return [Leaf([name, field], of, int(kind.optional) + (field not in kind.needed),
                      field=field) for field, of in kind.fields.items()]
@@ -127,6 +166,14 @@ def levels(rows, leaf):
     """Returns the repetition levels, the definition levels, and the present values of rows."""
     repetitions, definitions, there = [], [], []
     for row in rows:
+        if leaf.field is not None and leaf.is_list:
+            for i, item in enumerate(row or [None]):
+                value = item and item[leaf.field]
+                repetitions.append(min(i, 1))
+                definitions.append(0 if row is None else 1 if not row else 2 if item is None else
+                                   3 if value is None else 4)
+                there += [] if value is None else [value]
+            continue
         if leaf.field is not None:
             value = None if row is None else row[leaf.field]
             repetitions.append(0)
@@ -192,7 +239,7 @@ class Writer:
                       packed(self.codec, raw))
         data_at, count = len(self.out), 0
         for repetitions, definitions, there in self.pages(rows, leaf):
-            parts = [hybrid(repetitions, 1) if leaf.is_list else b"",
+            parts = [hybrid(repetitions, leaf.repeats) if leaf.is_list else b"",
                      hybrid(definitions, leaf.most.bit_length()) if leaf.most else b""]
             encoding, values = PLAIN, b""
             if dictionary is not None:
@@ -253,6 +300,9 @@ class Writer:
             leaves += [(leaf, values) for leaf in leaves_of(name, kind, is_list)]
             if isinstance(kind, Struct):
                 schema += self.struct_schema(name, kind, values, name in nested)
+                continue
+            if isinstance(kind, Structs):
+                schema += kind.schema(name)
                 continue
             leaf = {1: I32(kind), 3: I32(1), 4: "element" if is_list else name}
             if kind == TEXT and not any(isinstance(value, bytes) for value in values):

@@ -232,3 +232,10 @@ seed("fuzz_parquet", "struct.parquet", parquet.Writer(codec=parquet.NONE, page_r
     "k": COLUMNS["k"],
     "c.a": (IMAGES, [None if i == 3 else {"bytes": None if i == 5 else b"\xff" * i,
                                           "path": f"p{i}", "n": i / 2} for i in range(20)])}))
+ENTRIES = parquet.Structs({"style": parquet.TEXT, "time": parquet.FLOAT, "camera": parquet.NULL,
+                           "tools": parquet.TEXTS})
+seed("fuzz_parquet", "structs.parquet", parquet.Writer(codec=parquet.NONE, page_rows=8).write({
+    "k": COLUMNS["k"],
+    "q": (ENTRIES, [None if i == 3 else [{"style": f"s{j}", "time": j / 2, "camera": None,
+                                         "tools": None} for j in range(i % 4)]
+                    for i in range(20)])}))

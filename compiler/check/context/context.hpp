@@ -90,6 +90,8 @@ struct Context {
     /// The duration of the monitor whose formula is being checked; null elsewhere.
     std::optional<Duration>* duration = nullptr;
 
+    bool is_in_truth = false;  ///< the formula of a truth is being checked
+
     /// The point that a target is declared or fitted `of`, without its delay, for those that have
     /// one.
     std::map<Index, Index> point_of_target{};

@@ -9,6 +9,7 @@
 #include "check/formulas/horizons.hpp"
 #include "check/predicates/predicates.hpp"
 #include "check/time/time.hpp"
+#include "data/text/subtask_name.hpp"
 
 namespace etlc::check {
 
@@ -102,6 +103,12 @@ private:
     }
 
     Index named(const ast::Formula& written) {
+        if (data::subtask_name(written.name) && !c_.is_in_truth) {
+            c_.report(Code::wrong_kind, written.span,
+                      "only recordings know their subtask, so only a truth may compare it")
+                .note("declare 'predicate NAME = ...;' and 'truth NAME = " + written.name + ";'");
+            return kNone;
+        }
         const ast::Name name{written.name, written.span};
         const Reference* found =
             find(c_, name, {NameKind::predicate, NameKind::let, NameKind::input},

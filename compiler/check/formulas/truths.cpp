@@ -72,7 +72,9 @@ private:
     };
 
     void add(const ast::Truth& declaration) {
+        c_.is_in_truth = true;
         const Index formula = check_formula(c_, *declaration.formula);
+        c_.is_in_truth = false;
         const auto of = subject(declaration.subject);
         if (!of) return;
         const auto [first, is_new] =

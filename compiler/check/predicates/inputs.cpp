@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <vector>
 
 #include "check/context/context.hpp"
 #include "check/numbers/decimal.hpp"
 #include "check/time/time.hpp"
+#include "data/text/subtask_name.hpp"
 
 namespace etlc::check {
 
@@ -207,6 +209,28 @@ private:
     bool broken_ = false;
 };
 
+/// Adds the bool inputs by which truths ask for subtasks: recordings have them.
+void add_subtasks(Context& c) {
+    std::vector<const ast::Formula*> pending;
+    for_each_declaration<ast::Truth>(
+        c.spec, [&](const ast::Truth& truth, Index) { pending.push_back(truth.formula.get()); });
+    while (!pending.empty()) {
+        const ast::Formula& next = *pending.back();
+        pending.pop_back();
+        for (const ast::FormulaPtr& operand : next.operands) pending.push_back(operand.get());
+        for (const ast::ExprPtr* side : {&next.left, &next.right})
+            if (*side && (*side)->past && (*side)->past->formula)
+                pending.push_back((*side)->past->formula.get());
+        if (!data::subtask_name(next.name) || c.scope.find(next.name) != nullptr) continue;
+        c.scope.declare(NameKind::input, {next.name, next.span});
+        Input added;
+        added.name = next.name;
+        added.span = next.span;
+        added.type = InputType::boolean;
+        c.model.inputs.push_back(std::move(added));
+    }
+}
+
 }  // namespace
 
 void check_inputs(Context& c) {
@@ -221,6 +245,7 @@ void check_inputs(Context& c) {
             c.model.inputs.push_back(input);
         }
     });
+    add_subtasks(c);
 }
 
 }  // namespace etlc::check

@@ -62,8 +62,9 @@ Takes settings() {
 
 Takes label_by() {
     using episodes::LabelBy;
-    Takes takes = choice<LabelBy>({{"folder", LabelBy::folder}, {"outcome", LabelBy::outcome}},
-                                  in(&Call::labels, &episodes::LabelSources::by));
+    Takes takes = choice<LabelBy>(
+        {{"folder", LabelBy::folder}, {"outcome", LabelBy::outcome}, {"subtask", LabelBy::subtask}},
+        in(&Call::labels, &episodes::LabelSources::by));
     takes.usual.clear();
     return takes;
 }
@@ -197,7 +198,8 @@ std::vector<Option> make_options() {
          "holds in these, and in no other; folders success and failure give their outcome; "
          "outcome: "
          "an episode succeeded where its next.success, or its .h5 group's attribute success, says "
-         "so, and failed where that is false"},
+         "so, and failed where that is false; "
+         "subtask: a predicate holds in the rows of a LeRobot data set whose subtask has its name"},
         {kReadRecordings, "--map", several(form("NAME=OTHER", read_names)),
          "name of an input in the files: --map z=obs/z"},
     };

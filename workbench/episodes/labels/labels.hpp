@@ -106,11 +106,12 @@ bool is_episode_in(const std::string& folder, const std::string& name);
 
 // ---- labels -------------------------------------------------------------------------------------
 
-/// Labels of whole episodes besides those of tables.
+/// Labels besides those of tables.
 enum class LabelBy : std::uint8_t {
     nothing,
     folder,   ///< folders are named after predicates or outcomes
     outcome,  ///< episodes say whether they succeeded
+    subtask,  ///< rows of data sets are of subtasks that are named after predicates
 };
 
 /// Where the labels of a call are.

@@ -7,9 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "data/text/subtask_name.hpp"
 #include "data/text/text.hpp"
 #include "data/traces/trace_formats.hpp"
 #include "recordings/datasets/dataset.hpp"
+#include "recordings/datasets/subtasks.hpp"
 #include "recordings/datasets/trace.hpp"
 #include "recordings/frames/frames.hpp"
 #include "recordings/parquet/table.hpp"
@@ -97,6 +99,25 @@ private:
     std::uint64_t step_ = 0;
 };
 
+/// Whether each row shows a subtask.
+class SubtaskRows final : public Rows {
+public:
+    SubtaskRows(Subtasks subtasks, std::string_view name)
+        : subtasks_(std::move(subtasks)), name_(name) {}
+
+    diag::Result<const double*> next() override {
+        const auto shows = subtasks_.shows(row_++, name_);
+        value_ = shows ? static_cast<double>(*shows) : std::numeric_limits<double>::quiet_NaN();
+        return &value_;
+    }
+
+private:
+    Subtasks subtasks_;
+    std::string name_;
+    std::size_t row_ = 0;
+    double value_ = 0;
+};
+
 /// Refuses a column that is missing, or does not hold numbers.
 std::optional<Failure> refused(const Dataset& set, const Channel& channel,
                                const ElementName& wanted, const Table::Column& column) {
@@ -181,8 +202,9 @@ diag::Result<std::unique_ptr<Trace>> open_dataset_trace(const std::string& path,
     if (!table) return in_rows(episode, table.failure());
     std::vector<bool> there;
     for (std::size_t c = 0; c < channels.size(); ++c) {
+        if (there.emplace_back(false); subtask_name(channels[c].name)) continue;
         const Table::Column& column = (*table)->columns()[c];
-        there.push_back(column.exists || !channels[c].optional);
+        there[c] = column.exists || !channels[c].optional;
         if (!there[c]) continue;
         if (auto failure = refused(*found->set, channels[c], wanted[c], column)) return *failure;
     }
@@ -190,6 +212,16 @@ diag::Result<std::unique_ptr<Trace>> open_dataset_trace(const std::string& path,
     std::vector<Feed> feeds;
     for (std::size_t c = 0; c < channels.size(); ++c) {
         feeds.push_back({channels[c], episode.length, nullptr});
+        if (const auto asked = subtask_name(channels[c].name)) {
+            auto subtasks = read_subtasks(path, asked->word);
+            if (!subtasks) return subtasks.failure();
+            if (!subtasks->source.empty())
+                feeds[c].rows = std::make_unique<SubtaskRows>(std::move(*subtasks), asked->text);
+            else if (!channels[c].optional)
+                return Failure{Code::no_such_channel,
+                               fmt::format("has no {}; {} compares it with a text",
+                                           in_quotes(asked->word), channels[c].name)};
+        }
         if (there[c])
             feeds[c].rows = std::make_unique<CellRows>(joint, c, wanted[c], channels[c].width);
     }

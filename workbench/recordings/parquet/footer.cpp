@@ -124,34 +124,44 @@ private:
                 "has lists nested in lists, expected a number, a text or a list of "
                 "them";
         columns.push_back(column);
-        if (!elements_[begin].physical && !is_collection(elements_[begin]))
-            add_fields_of(begin, column, columns);
+        if (elements_[begin].physical) return;
+        if (!is_collection(elements_[begin]))
+            add_fields_of(begin, 1, column, columns);
+        else if (is_list_of_structs(begin))
+            add_fields_of(begin, 3, column, columns);
     }
 
-    /// Adds a column for every field of the struct at `place`.
-    void add_fields_of(std::size_t place, const Column& whole, std::vector<Column>& columns) {
-        const Element& parent = elements_[place];
-        const std::size_t end = std::exchange(at_, place + 1);
+    /// A list of structs is three groups, whatever their names: LIST, repeated, struct.
+    bool is_list_of_structs(std::size_t place) const {
+        if (place + 2 >= at_) return false;
+        const Element& repeated = elements_[place + 1];
+        const Element& element = elements_[place + 2];
+        return repeated.repetition == kRepeated && !repeated.physical && repeated.children == 1 &&
+               !element.physical && !is_collection(element);
+    }
+
+    /// Adds a column for every field of the struct at the end of the `depth` groups at `place`.
+    void add_fields_of(std::size_t place, std::size_t depth, const Column& whole,
+                       std::vector<Column>& columns) {
+        Column parent;
+        std::size_t around = 0;
+        for (std::size_t i = 0; i < depth; ++i) enter(parent, around, elements_[place + i]);
+        const std::size_t end = std::exchange(at_, place + depth);
         leaves_ = whole.leaf;
         while (at_ < end) {
             const Element& element = elements_[at_];
-            Column column;
+            Column column = parent;
             column.leaf = leaves_;
             column.name = whole.name + "." + element.name;
-            column.most_defined = parent.repetition == kRequired ? 0 : 1;
-            std::size_t repeated = parent.repetition == kRepeated ? 1 : 0;
+            std::size_t repeated = around;
             walk(column, repeated, 1);
-            if (!element.physical || repeated > 0)
+            if (!element.physical || repeated > (depth == 1 ? 0U : 1U))
                 column.why_not = "has lists or fields nested in it, expected a number or a text";
             columns.push_back(std::move(column));
         }
     }
 
-    /// Reads the current field and all below it.
-    void walk(Column& column, std::size_t& repeated, int depth) {
-        constexpr int kMostNested = 32;
-        if (depth > kMostNested) refuse("nests its fields too deep");
-        const Element& element = next();
+    static void enter(Column& column, std::size_t& repeated, const Element& element) {
         if (element.repetition == kRepeated) {
             column.null_list_level = column.most_defined;
             column.is_list = true;
@@ -159,6 +169,14 @@ private:
         }
         if (element.repetition != kRequired) ++column.most_defined;
         if (element.repetition == kRepeated) column.element_level = column.most_defined;
+    }
+
+    /// Reads the current field and all below it.
+    void walk(Column& column, std::size_t& repeated, int depth) {
+        constexpr int kMostNested = 32;
+        if (depth > kMostNested) refuse("nests its fields too deep");
+        const Element& element = next();
+        enter(column, repeated, element);
         if (!element.physical) {
             for (std::int64_t i = 0; i < element.children; ++i) walk(column, repeated, depth + 1);
             return;
