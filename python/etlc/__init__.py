@@ -38,7 +38,7 @@ from .errors import (
 from .encoding import Encoder
 from .description import REFERENCE_FRAMES, Drift, Input, Measurement, Measurements
 from .guard import Guard
-from .judging import crossvalidate, evaluate, prove, report
+from .judging import annotate, crossvalidate, evaluate, prove, report
 from .labelling import Labelling, Watching, label, propose, watch
 from .learning import calibrate, embed, fit, merge, suggest
 from .monitor import Monitor
@@ -87,6 +87,7 @@ __all__ = [
     "Verdicts",
     "Watching",
     "Written",
+    "annotate",
     "calibrate",
     "check",
     "compile",

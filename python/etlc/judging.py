@@ -1,4 +1,4 @@
-"""The commands that judge monitors: `evaluate`, `crossvalidate`, `report`, `prove`."""
+"""The commands that judge monitors: `evaluate`, `crossvalidate`, `report`, `prove`, `annotate`."""
 
 from __future__ import annotations
 
@@ -207,6 +207,62 @@ def prove(
     if output is None:
         return Proof(ran.report, ran.diagnostics)
     return Proof(path_of("output", output).read_text(encoding="utf-8"), ran.diagnostics)
+
+
+@checks_names
+def annotate(
+    spec: FilePath,
+    data: FilePath,
+    output: FilePath | None = None,
+    *,
+    in_place: bool = False,
+    success: str | None = None,
+    undecided: str | None = None,
+    subtasks: str | Iterable[str] | None = None,
+    between: str | None = None,
+    progress: str | None = None,
+    list: FilePath | None = None,
+    made: FilePath | None = None,
+    thresholds: FilePath | None = None,
+    fitted: FilePath | None = None,
+    embedded: FilePath | None = None,
+    settings: Mapping[str, object] | None = None,
+    names: Mapping[str, str] | None = None,
+    values: str | None = None,
+    targets_as: str | None = None,
+    max_state: int | None = None,
+    max_code: int | None = None,
+    max_work: int | None = None,
+    warnings_are_errors: bool = False,
+) -> Written:
+    """Writes what monitors say of a LeRobot data set into a copy of it.
+
+    Args:
+        spec: the path of the spec.
+        data: the folder of the data set.
+        output: the annotated copy, a new folder; `in_place` replaces the set itself.
+        success: the monitor that `next.success` is from.
+        undecided: "false" writes false for episodes that this monitor does not decide.
+        subtasks: predicates and lets that become subtasks of `language_persistent`.
+        between: the subtask after one has ended and before another begins; by default "none".
+        progress: the monitor of phases, F (a && F (b && ...)), that `sarm_progress.parquet` is
+            from, a number from 0 to 1 for each row.
+        list: a CSV file of all episodes, the worst first, which needs no output.
+        made: the folder of the episodes that `embed` made of the data set.
+        names, thresholds, fitted, embedded, settings, values, targets_as, max_state, max_code,
+            max_work, warnings_are_errors: as in `evaluate`.
+
+    Returns:
+        The output with the printed report; its path is that of the copy, of the data set where it
+        was replaced, or of the list.
+
+    Raises:
+        SpecError: the command failed; the message gives the reason.
+        InputError: an argument is invalid.
+    """
+    ran = run(words_of("annotate", locals()))
+    path = output or (data if in_place or list is None else list)
+    return Written(path_of("output", path), ran.report, ran.diagnostics)
 
 
 def _judged(command: str, given: dict[str, Any]) -> Evaluation:

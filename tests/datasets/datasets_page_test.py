@@ -35,7 +35,7 @@ def main():
     os.environ["PATH"] = os.path.dirname(ETLC) + ":/usr/bin:" + os.environ["PATH"]
     truth = lerobot.write("pick", "v2.1", (12, 9, 10))
     assert [command.split()[1] for command in COMMANDS] == ["calibrate", "run", "embed", "run",
-                                                            "embed"], COMMANDS
+                                                            "annotate", "embed"], COMMANDS
     assert "2 demonstrations" in call(COMMANDS[0]) or "n = 2" in call(COMMANDS[0])
     assert "back: " in call(COMMANDS[1])
     assert "task 'place it in the bin': 1 episode" in call(COMMANDS[2])
@@ -44,8 +44,12 @@ def main():
     frames = lerobot.frames_of("pick", "v2.1", (12, 9, 10), 2, lerobot.CAMERAS[0]) / 255
     assert np.allclose(made["z"][:, :3], frames.mean(axis=(1, 2)), atol=1e-5)
     assert np.array_equal(made["grip"], truth[2][1][:, 1])
+    lerobot.write("stack", "v3.0", (12, 9, 10), without=("next.success",))
+    assert "annotated: 2 files of rows extended" in call(COMMANDS[4])
+    assert sorted(set(os.listdir("annotated")) - set(os.listdir("stack"))) == [
+        "sarm_progress.parquet"]
     call(f"{HDF5} demos.h5")
-    assert "2 episodes" in call(COMMANDS[4])
+    assert "2 episodes" in call(COMMANDS[5])
     assert np.load("episodes/demos-demo_1.npz")["grip"].tolist() == [1, 1.25, 1.5, 1.75]
     for demo in (0, 1):
         os.remove(f"episodes/demos-demo_{demo}.npz")

@@ -40,7 +40,7 @@ def raw_frames(path):
     return np.frombuffer(raw, np.uint8).reshape(-1, *SIDES, 3)
 
 
-def rows_of(lengths, stored=None):
+def rows_of(lengths, stored=None, states=None):
     """Returns the columns of all episodes, and states, actions and labels as arrays by episode."""
     random = np.random.default_rng(5)
     columns = {"observation.state": (parquet.FLOAT, []), "action": (parquet.FLOAT, []),
@@ -51,6 +51,8 @@ def rows_of(lengths, stored=None):
     truth = []
     for episode, length in enumerate(lengths):
         state = random.normal(size=(length, STATE)).astype(np.float32)
+        if states is not None:
+            state = states[episode]
         action = random.integers(-3, 4, (length, ACTION)).astype(np.float32) / 4
         success = np.arange(length) >= length - 3
         truth.append((state, action, success))
@@ -158,12 +160,18 @@ def write_30(folder, lengths, columns, how, of_episodes):
             video(f"{folder}/videos/{camera}/chunk-000/file-000.mp4", sum(lengths), number)
 
 
-def write(folder, release, lengths, stored=None, more=None, of_episodes=None, **how):
-    """Returns the states, actions and labels of each episode."""
+def write(folder, release, lengths, stored=None, more=None, of_episodes=None, without=(),
+          states=None, **how):
+    """Returns the states, actions and labels of each episode. `without`: features left out;
+    `states`: of the episodes, in place of random ones."""
     os.makedirs(f"{folder}/meta")
-    columns, truth = rows_of(lengths, stored)
+    columns, truth = rows_of(lengths, stored, states)
     columns |= more or {}
-    write_json(f"{folder}/meta/info.json", info_of(release, lengths, stored or (), more or ()))
+    info = info_of(release, lengths, stored or (), more or ())
+    for name in without:
+        columns.pop(name)
+        info["features"].pop(name)
+    write_json(f"{folder}/meta/info.json", info)
     if release == "v2.1":
         write_21(folder, lengths, columns, how)
     else:

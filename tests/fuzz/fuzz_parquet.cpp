@@ -1,9 +1,10 @@
-// Reads Parquet: any bytes give cells or an error, in bounded memory.
+// Reads and extends Parquet: any bytes give cells or an error, in bounded memory.
 #include <algorithm>
 #include <string>
 #include <vector>
 
 #include "fuzz_target.hpp"
+#include "recordings/parquet/extend.hpp"
 #include "recordings/parquet/rows.hpp"
 
 namespace {
@@ -38,6 +39,22 @@ void read(std::string_view file, const std::vector<std::string>& names, const st
     }
 }
 
+/// Adds a column of bools, which is read back.
+void extend(std::string_view file) {
+    const Footer old = read_footer(file);
+    if (old.rows > 10000) return;
+    Extension extension(file);
+    std::string longer(file.substr(0, extension.kept()));
+    const auto send = [&](const std::string& bytes) { longer += bytes; };
+    extension.add({NewColumn::Kind::boolean, "added", std::string(old.rows, '\1'), {}}, send);
+    extension.end(send);
+    Rows rows(longer, {"added"});
+    fuzz::require(rows.rows() == old.rows, "an extended file has the rows that it had");
+    std::vector<Cell> cells;
+    while (rows.next(cells))
+        fuzz::require(cells.at(0).numbers == std::vector<double>{1}, "a new value is read back");
+}
+
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
@@ -51,6 +68,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
                 fuzz::require_printable(refused.what());
             }
         read(file, names, "");
+        extend(file);
     } catch (const Refused& refused) {
         fuzz::require_printable(refused.what());
     }

@@ -45,6 +45,7 @@ const std::map<std::string, Names> kArrows = {
     {"fit", {"episodes"}},
     {"calibrate", {"episodes"}},
     {"evaluate", {"episodes"}},
+    {"annotate", {"evaluate"}},
     {"report", {"explain", "fit", "evaluate"}},
     {"label", {"calibrate", "report"}},
     {"watch", {"embed", "label"}},
@@ -52,8 +53,8 @@ const std::map<std::string, Names> kArrows = {
     {"library", {"explain", "compile", "recordings"}},
     {"lsp", {"library"}},
     {"driver",
-     {"library", "emit", "explain", "embed", "fit", "calibrate", "evaluate", "report", "label",
-      "watch", "lsp", "prove"}},
+     {"library", "emit", "explain", "embed", "fit", "calibrate", "evaluate", "annotate", "report",
+      "label", "watch", "lsp", "prove"}},
 };
 
 /// Stages after check, which must not include ast or parse although the relation would allow it.

@@ -416,6 +416,12 @@ class Commands(unittest.TestCase):
         with etlc.watch(self.path / "t.etl", "none.mp4") as watching:
             watching.stop()
 
+    def test_annotate_names_what_is_wrong(self):
+        with self.assertRaisesRegex(etlc.SpecError, "is no LeRobot data set"):
+            etlc.annotate(self.spec, self.path / "none", self.path / "out", success="home")
+        with self.assertRaises(etlc.InputError):  # neither an output nor in place
+            etlc.annotate(self.spec, self.path / "none", success="home")
+
     def test_split(self):
         names = [str(self.path / "split" / f"{n:02}.npz") for n in range(20)]
         (self.path / "split").mkdir()

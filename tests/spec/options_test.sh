@@ -44,8 +44,8 @@ refuses "there is no command 'rn'; did you mean 'run'?" rn
 refuses "there is no command 'help'; did you mean '--help'?" help
 refuses "there is no command 'evalute'; did you mean 'evaluate'?" evalute t.etl --data t.csv
 refuses "there is no command 'simulate'; the commands are run, embed, fit, calibrate, evaluate, \
-crossvalidate, lsp, merge, explain, incident, report, label, watch, prove, dossier; etlc SPEC.etl \
-compiles a spec" \
+crossvalidate, lsp, merge, explain, incident, report, label, watch, prove, dossier, annotate; \
+etlc SPEC.etl compiles a spec" \
     simulate t.etl
 for option in --max-state --max-code --max-work --inline-targets; do
     for number in -1 1e3 0x10 ' 8' 1.5 99999999999999999999 ten; do

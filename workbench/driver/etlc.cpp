@@ -136,6 +136,15 @@ int make_dossier(Call& call) {
     return on_plan<dossier>(call);
 }
 
+int annotate_set(Call& call) {
+    const bool has_output = !call.output.empty() || call.annotate.in_place;
+    if (!call.annotate.wanted.any() && (has_output || call.annotate.list.empty()))
+        return complain("etlc annotate", "expected --success, --subtasks or --progress, or --list");
+    if (call.annotate.wanted.any() && !has_output)
+        return complain("etlc annotate", "expected -o FOLDER or --in-place");
+    return on_plan<annotate>(call);
+}
+
 int evaluate_specs(Call& call) {
     return with_specs(call, [&](const auto& files, auto& sinks) {
         std::vector<SpecToJudge> specs;
@@ -155,7 +164,7 @@ constexpr int (*kFunctions[])(Call& call) = {
     compile_spec,      run_trace,      on_spec<embed>, on_spec<fit>, on_spec<calibrate>,
     evaluate_specs,    evaluate_specs, serve_editors,  merge,        on_plan<explain>,
     on_plan<incident>, make_report,    make_labels,    watch_source, prove_class,
-    make_dossier};
+    make_dossier,      annotate_set};
 static_assert(std::size(kFunctions) == kCommandCount);
 
 int execute(Command command, int argc, char** argv, episodes::Sharing* merged = nullptr) {

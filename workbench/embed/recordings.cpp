@@ -31,13 +31,6 @@ namespace fs = std::filesystem;
 using diag::Code;
 using diag::Failure;
 
-std::string name_of_folder(const std::string& folder) {
-    std::error_code error;
-    const std::string name = fs::path(folder).lexically_normal().filename().string();
-    if (!name.empty() && name != "." && name != "..") return name;
-    return fs::canonical(folder, error).filename().string();
-}
-
 /// Finds the camera of each input.
 diag::Result<std::map<std::string, std::string>> cameras_of(const recordings::Dataset& set,
                                                             const Search& search) {
@@ -74,7 +67,8 @@ Recording recording_of(const recordings::SoundEpisode& sound, std::uint64_t stri
     const std::string& folder = sound.set->folder();
     Recording recording;
     recording.path = recordings::episode_path(folder, sound.episode->index);
-    recording.episode = fmt::format("{}-{:06}", name_of_folder(folder), sound.episode->index);
+    recording.episode =
+        fmt::format("{}-{:06}", recordings::name_of_folder(folder), sound.episode->index);
     std::set<std::string> different;
     for (const auto& [input, camera] : cameras) different.insert(camera);
     recording.has_one_camera = different.size() < 2;

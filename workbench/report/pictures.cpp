@@ -203,11 +203,6 @@ diag::Result<Pictures> from_frames(Film& film, const Length& length,
 
 // ---- frames of data sets ------------------------------------------------------------------------
 
-std::string name_of_folder(const std::string& folder) {
-    std::error_code ignored;
-    return fs::canonical(folder, ignored).filename().string();
-}
-
 /// Returns the episode of the data set that shows this one. `etlc embed` names it after the set:
 /// "pick-000003".
 diag::Result<std::string> dataset_episode(const std::string& set, const std::string& episode) {
@@ -226,7 +221,7 @@ diag::Result<std::string> dataset_episode(const std::string& set, const std::str
                                    "an episode of {}",
                                    data::in_quotes(name), set)};
     const std::string before = name.substr(0, end);
-    const std::string expected = name_of_folder(set) + "-";
+    const std::string expected = recordings::name_of_folder(set) + "-";
     if (before.ends_with('-') && before != expected)
         return Failure{Code::no_frames,
                        fmt::format("the episode {} is named after another data set than {}: "

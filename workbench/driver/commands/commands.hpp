@@ -59,6 +59,11 @@ std::optional<std::string> page_of_trace(const source::File& spec, const Compile
                                          const std::string& trace,
                                          const recordings::NamesInFile& names, diag::Sink& sink);
 
+/// `etlc annotate`: writes what the monitors say of a data set into a copy of it, or a list of its
+/// episodes.
+bool annotate(const source::File& spec, const Compiled& compiled, const Request& request,
+              diag::Sink& sink);
+
 // ---- commands that fill in what a spec lacks ----------------------------------------------------
 
 /// `etlc prove`: compares the class with the definition of its verdicts, for all inputs of a number

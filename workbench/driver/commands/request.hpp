@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "annotate/judge.hpp"
 #include "check/check.hpp"
 #include "compile.hpp"
 #include "embed/encoder.hpp"
@@ -115,6 +116,13 @@ struct Request : CompileOptions {
         std::string header;          ///< file; empty: the class is generated
         std::string counterexample;  ///< stem of two files; empty: the usual one
     } prove;
+
+    struct Annotate {
+        annotate::Wanted wanted;
+        bool in_place = false;
+        std::string made;  ///< folder of the episodes that `etlc embed` made; empty: none
+        std::string list;  ///< file; empty: none
+    } annotate;
 
     struct Report {
         report::FramesOption frames;

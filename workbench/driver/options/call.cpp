@@ -58,7 +58,10 @@ constexpr Row kCommands[] = {
     {Command::dossier, "dossier", "SPEC.etl -o FOLDER",
      "Collects what an engineer needs who signs for a generated class: the class, the certificate "
      "of etlc prove\nand what it has executed, the budget, what the thresholds are worth, coding "
-     "rules, limitations."}};
+     "rules, limitations."},
+    {Command::annotate, "annotate", "SPEC.etl --data DATASET -o DATASET2",
+     "Writes what monitors say of a LeRobot data set into a copy of it: success, subtasks and "
+     "progress,\nand a list of its episodes, the worst first."}};
 static_assert(std::size(kCommands) == kCommandCount);
 
 }  // namespace

@@ -32,8 +32,9 @@ enum class Command : std::uint8_t {
     watch,
     prove,
     dossier,
+    annotate,
 };
-inline constexpr std::size_t kCommandCount = 16;
+inline constexpr std::size_t kCommandCount = 17;
 
 /// The default of etlc crossvalidate.
 inline constexpr std::uint32_t kUsualFolds = 5;

@@ -85,7 +85,7 @@ std::vector<Option> make_options() {
         {incident, "file", file(in(&Call::incident, &Call::Incident::file)),
          "file written by write_incident()", kRequired},
         {merge, "parts", texts("PART...", in(&Call::parts)), "the parts, in any order", kRequired},
-        {kExecute | kLearn | kClass | embed | report | label | watch, "spec", spec(),
+        {kExecute | kLearn | kClass | embed | report | label | watch | annotate, "spec", spec(),
          "the spec, a .etl file", kRequired},
         {incident, "--spec", spec(), "the spec, a .etl file", kRequired},
         {kEvaluate, "spec", texts("SPEC.etl", in(&Call::specs)),
@@ -242,6 +242,21 @@ Takes label_table() {
     });
 }
 
+using annotate::Wanted;
+
+Takes dataset() {
+    return form("DATASET", [](Call& call, const Takes::Words& words) {
+        return call.data = words, std::string();
+    });
+}
+
+Takes undecided() {
+    Takes takes = choice<bool>({{"false", true}}, in(&Call::annotate, &Call::Annotate::wanted,
+                                                     &Wanted::undecided_is_false));
+    takes.usual.clear();
+    return takes;
+}
+
 Takes folds() {
     return number<std::uint32_t>(in(&Call::folds), 2, 1000);
 }
@@ -368,6 +383,39 @@ std::vector<Option> make_own_options() {
          Option::Need::none, "--output"},
         {fit, "--json", flag(in(&Call::fit, &Call::Fit::json)), "with --suggest: print JSON",
          Option::Need::none, "", "--suggest"},
+
+        // etlc annotate
+        {annotate, "--data", dataset(), "the data set, a folder in LeRobot's format", kRequired},
+        {annotate, "-o,--output", text("FOLDER", in(&Call::output)),
+         "the annotated copy, a new folder; videos become hard links where possible"},
+        {annotate, "--in-place", flag(in(&Call::annotate, &Call::Annotate::in_place)),
+         "put the annotated copy in the place of the data set", Option::Need::none, "--output"},
+        {annotate, "--success",
+         text("MONITOR", in(&Call::annotate, &Call::Annotate::wanted, &Wanted::success)),
+         "write next.success: true from the row whose action led to the step at which this monitor "
+         "is satisfied for good; in the last row where it is satisfied only at the end"},
+        {annotate, "--undecided", undecided(),
+         "write false for episodes that the monitor of --success does not decide; without it they "
+         "are an error",
+         Option::Need::none, "", "--success"},
+        {annotate, "--subtasks",
+         texts("NAME...", in(&Call::annotate, &Call::Annotate::wanted, &Wanted::subtasks)),
+         "write these predicates and lets as subtasks in language_persistent; where several hold, "
+         "the last named counts"},
+        {annotate, "--between",
+         text("TEXT", in(&Call::annotate, &Call::Annotate::wanted, &Wanted::between),
+              Wanted().between),
+         "the subtask after one has ended and before another begins", Option::Need::none, "",
+         "--subtasks"},
+        {annotate, "--progress",
+         text("MONITOR", in(&Call::annotate, &Call::Annotate::wanted, &Wanted::progress)),
+         "write sarm_progress.parquet: a number from 0 to 1 for each row, by the phases of this "
+         "monitor, F (a && F (b && ...))"},
+        {annotate, "--list", file(in(&Call::annotate, &Call::Annotate::list)),
+         "write a row for each episode as CSV, the worst first, and print the calls of "
+         "lerobot-edit-dataset that drop the violated ones; - is standard output"},
+        {annotate, "--made", text("FOLDER", in(&Call::annotate, &Call::Annotate::made)),
+         "take the samples from the episodes that etlc embed made of the data set"},
 
         // etlc calibrate, etlc evaluate and etlc crossvalidate
         {calibrate, "-o,--output", file(in(&Call::output)),

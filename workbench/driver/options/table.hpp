@@ -166,13 +166,13 @@ inline constexpr Commands kEvaluate = Commands(Command::evaluate) | Command::cro
 /// The commands that generate a class.
 inline constexpr Commands kClass = Commands(Command::compile) | Command::prove | Command::dossier;
 /// The commands that plan monitors.
-inline constexpr Commands kPlan =
-    kExecute | kEvaluate | kClass | Command::incident | Command::report | Command::watch;
+inline constexpr Commands kPlan = kExecute | kEvaluate | kClass | Command::incident |
+                                  Command::report | Command::watch | Command::annotate;
 inline constexpr Commands kLearn = Commands(Command::fit) | Command::calibrate;
 inline constexpr Commands kReadEpisodes = kLearn | kEvaluate | Command::report;
 inline constexpr Commands kFindEpisodes = kReadEpisodes | Command::label;
 inline constexpr Commands kReadRecordings =
-    kFindEpisodes | kExecute | Command::embed | Command::watch;
+    kFindEpisodes | kExecute | Command::embed | Command::watch | Command::annotate;
 inline constexpr Commands kReadSpec = kPlan | kLearn | Command::embed | Command::label;
 
 inline constexpr auto kRequired = Option::Need::required;

@@ -216,7 +216,7 @@ public:
 
     diag::Result<std::shared_ptr<Dataset>> read() {
         if (auto failure = read_info()) return *failure;
-        if (auto failure = major_ == 2 ? read_lines() : read_tables()) return *failure;
+        if (auto failure = set_->major_ == 2 ? read_lines() : read_tables()) return *failure;
         auto& episodes = set_->episodes_;
         std::sort(episodes.begin(), episodes.end(),
                   [](const auto& a, const auto& b) { return a.index < b.index; });
@@ -241,7 +241,7 @@ private:
             return wrong(kInfo, fmt::format("is of the version {}, expected v2.0, v2.1 or v3.0; "
                                             "LeRobot converts others",
                                             in_quotes(*version)));
-        major_ = (*version)[1] - '0';
+        set_->major_ = (*version)[1] - '0';
         const auto fps = info_.find("fps");
         if (fps == info_.end() || !fps->is_number() || !(fps->get<double>() > 0) ||
             !(fps->get<double>() < 1e6))
@@ -436,7 +436,7 @@ private:
     /// Compares the list of tasks; a data set without one is still read.
     void compare_tasks(const auto& check) {
         auto& contradictions = set_->contradictions_;
-        const auto list = read_tasks(set_->folder(), major_);
+        const auto list = read_tasks(set_->folder(), set_->major_);
         if (!list) return contradictions.push_back(list.failure().message);
         check("total_tasks", list->tasks.size(), "task", list->file);
         std::set<std::string> strange;
@@ -468,7 +468,6 @@ private:
 
     std::shared_ptr<Dataset> set_;
     Json info_;
-    int major_ = 0;
     std::string place_;  ///< place of the episodes
 };
 
@@ -510,6 +509,13 @@ const DatasetEpisode* Dataset::episode(std::uint64_t index) const {
 
 std::string episode_path(const std::string& folder, std::uint64_t index) {
     return fmt::format("{}:{:06}", folder, index);
+}
+
+std::string name_of_folder(const std::string& folder) {
+    std::error_code error;
+    const std::string name = fs::path(folder).lexically_normal().filename().string();
+    if (!name.empty() && name != "." && name != "..") return name;
+    return fs::canonical(folder, error).filename().string();
 }
 
 namespace {

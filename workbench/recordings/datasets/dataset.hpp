@@ -65,6 +65,8 @@ public:
 
     const std::string& folder() const { return folder_; }
     double fps() const { return fps_; }
+    /// 2 or 3, of the version.
+    int major_version() const { return major_; }
     const std::vector<Feature>& features() const { return features_; }
     std::vector<std::string> cameras() const;
     /// The cameras that have videos.
@@ -96,6 +98,7 @@ private:
 
     std::string folder_;
     double fps_ = 0;
+    int major_ = 0;
     std::vector<Feature> features_;
     std::vector<DatasetEpisode> episodes_;
     std::vector<std::string> contradictions_;
@@ -108,6 +111,9 @@ private:
 std::string with_dataset_meant(const std::string& why, const std::string& path);
 /// Returns the path of an episode: "pusht:000003".
 std::string episode_path(const std::string& folder, std::uint64_t index);
+/// Returns the name of a folder, also for "." and "sets/pusht/": the episodes that `etlc embed`
+/// makes of a data set begin with it.
+std::string name_of_folder(const std::string& folder);
 
 /// The values of the fields of a template.
 struct PathNames {

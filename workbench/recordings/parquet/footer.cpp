@@ -8,10 +8,7 @@ namespace etlc::recordings::parquet {
 
 namespace {
 
-constexpr std::string_view kMagic = "PAR1";
 constexpr std::string_view kEncrypted = "PARE";
-
-enum Repetition : std::int64_t { kRequired = 0, kOptional = 1, kRepeated = 2 };
 
 struct Element {
     std::string name;

@@ -26,6 +26,10 @@ enum class Physical : std::uint8_t {
     fixed = 7
 };
 
+enum Repetition : std::int64_t { kRequired = 0, kOptional = 1, kRepeated = 2 };
+
+inline constexpr std::string_view kMagic = "PAR1";
+
 /// A field of the table, or one of a struct in it: a value a row, or a list of values a row.
 struct Column {
     std::string name;  ///< of a field of a struct "STRUCT.FIELD"; each part may have dots itself
@@ -198,6 +202,7 @@ public:
     }
 
     void pass_over(Type type);
+    void pass_over_element(Type type);
 
 private:
     static constexpr const char* kWhat = "its metadata";
@@ -223,7 +228,6 @@ private:
         const std::uint64_t zigzag = bytes_.varint(kWhat);
         return static_cast<std::int64_t>(zigzag >> 1U) ^ -static_cast<std::int64_t>(zigzag & 1U);
     }
-    void pass_over_element(Type type);
 
     Cursor bytes_;
     int depth_ = 0;

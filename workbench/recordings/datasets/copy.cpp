@@ -1,0 +1,110 @@
+#include "recordings/datasets/copy.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "data/files/file.hpp"
+#include "data/text/text.hpp"
+
+namespace etlc::recordings {
+
+namespace fs = std::filesystem;
+using diag::Code;
+using diag::Failure;
+
+namespace {
+
+Failure unwritable(const fs::path& path, int error) {
+    return {Code::unwritable_output,
+            fmt::format("{} cannot be written: {}", data::in_quotes(path.string()),
+                        data::error_words(error))};
+}
+
+/// Removes the slash at the end.
+fs::path plain(const std::string& path) {
+    const fs::path normal = fs::absolute(path).lexically_normal();
+    return normal.has_filename() ? normal : normal.parent_path();
+}
+
+}  // namespace
+
+DatasetCopy::DatasetCopy(std::string from, std::string to, std::set<std::string> changed)
+    : from_(fs::canonical(from).string()),
+      to_(to.empty() ? from_ : plain(to).string()),
+      part_((fs::path(to_).parent_path() / fmt::format(".etlc-{}.part", ::getpid())).string()),
+      changed_(std::move(changed)),
+      replaces_(to.empty()) {}
+
+DatasetCopy::~DatasetCopy() {
+    std::error_code error;
+    fs::remove_all(part_, error);
+}
+
+/// Throws fs::filesystem_error.
+void DatasetCopy::take(const std::string& file, const std::string& from) {
+    const fs::path top = *fs::path(file).begin();
+    if (replaces_ || top == "videos" || top == "images") {
+        std::error_code error;
+        fs::create_hard_link(fs::canonical(from), path_of(file), error);
+        if (!error) return static_cast<void>(++linked_);
+    }
+    fs::copy_file(from, path_of(file));
+    ++copied_;
+}
+
+std::optional<Failure> DatasetCopy::fill() {
+    std::error_code exists;
+    if (!replaces_ && fs::exists(fs::symlink_status(to_, exists)))
+        return Failure{Code::unwritable_output, "exists: the new data set needs a new folder"};
+    if (!replaces_ && to_.starts_with(from_ + "/"))
+        return Failure{Code::unwritable_output, "lies in the data set of which it is a copy"};
+    try {
+        fs::create_directory(part_);
+        fs::recursive_directory_iterator it(from_);
+        for (const fs::recursive_directory_iterator end; it != end; ++it) {
+            const std::string from = it->path().string();
+            const std::string file = from.substr(from_.size() + 1);
+            const bool is_hidden = it.depth() == 0 && (file == ".git" || file == ".cache");
+            if (it->is_symlink() && !it->is_regular_file()) {
+                fs::copy_symlink(from, path_of(file));
+            } else if (it->is_directory()) {
+                if (is_hidden && !replaces_)
+                    it.disable_recursion_pending();
+                else
+                    fs::create_directory(path_of(file));
+            } else if (it->is_regular_file() && !changed_.contains(file)) {
+                take(file, from);
+            }
+        }
+    } catch (const fs::filesystem_error& error) {
+        return unwritable(error.path1(), error.code().value());
+    }
+    return std::nullopt;
+}
+
+std::optional<Failure> DatasetCopy::commit() {
+    if (!replaces_)
+        return ::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, to_.c_str(), RENAME_NOREPLACE) == 0
+                   ? std::nullopt
+                   : std::optional(unwritable(to_, errno));
+    if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, to_.c_str(), RENAME_EXCHANGE) == 0)
+        return std::nullopt;  // the destructor removes the old files
+    // A file system without exchange: the old set has another name for a moment.
+    const std::string old = part_ + ".old";
+    if (std::rename(to_.c_str(), old.c_str()) != 0) return unwritable(to_, errno);
+    if (std::rename(part_.c_str(), to_.c_str()) != 0) {
+        const int error = errno;
+        std::rename(old.c_str(), to_.c_str());
+        return unwritable(to_, error);
+    }
+    part_ = old;
+    return std::nullopt;
+}
+
+}  // namespace etlc::recordings

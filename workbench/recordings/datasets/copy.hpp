@@ -1,0 +1,50 @@
+// A copy of a data set, in which some files are others.
+// Takes: the folder of a set. Gives: a folder beside the new name, with all files except those that
+// the caller writes into it; then the name. Keeps true: the copy takes its name only when it is
+// complete, and a failure leaves nothing of it; the files of the set are not changed; no file is
+// loaded into memory.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "diag/diag.hpp"
+
+namespace etlc::recordings {
+
+class DatasetCopy {
+public:
+    /// `to`: the new folder; empty: the copy will replace the set. `changed`: the files, by their
+    /// paths in the folder, that the caller writes. Videos and images become hard links where the
+    /// file system can, and all files of a copy that will replace the set; the others are copied.
+    /// `.git` and `.cache`, which git and the Hub use, stay out of a new folder.
+    DatasetCopy(std::string from, std::string to, std::set<std::string> changed);
+    DatasetCopy(const DatasetCopy&) = delete;
+    DatasetCopy& operator=(const DatasetCopy&) = delete;
+    ~DatasetCopy();
+
+    /// Copies the other files. Failures are E0901 and name the file.
+    std::optional<diag::Failure> fill();
+    /// The path of a file in the copy.
+    std::string path_of(const std::string& file) const { return part_ + "/" + file; }
+    /// Gives the copy its name.
+    std::optional<diag::Failure> commit();
+
+    std::uint64_t copied() const { return copied_; }
+    std::uint64_t linked() const { return linked_; }
+
+private:
+    void take(const std::string& file, const std::string& from);
+
+    std::string from_;
+    std::string to_;
+    std::string part_;
+    std::set<std::string> changed_;
+    bool replaces_ = false;
+    std::uint64_t copied_ = 0;
+    std::uint64_t linked_ = 0;
+};
+
+}  // namespace etlc::recordings
