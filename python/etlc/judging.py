@@ -240,7 +240,8 @@ def annotate(
     Args:
         spec: the path of the spec.
         data: the folder of the data set.
-        output: the annotated copy, a new folder; `in_place` replaces the set itself.
+        output: the annotated copy, a new folder.
+        in_place: put the copy in the place of the data set.
         success: the monitor that `next.success` is from.
         undecided: "false" writes false for episodes that this monitor does not decide.
         subtasks: predicates and lets that become subtasks of `language_persistent`.

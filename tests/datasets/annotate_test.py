@@ -189,6 +189,24 @@ def check_list(states):
     assert f'delete_episodes --operation.episode_indices "[{listed}]"\n' in said, said
 
 
+def check_round_trip(states):
+    """Subtasks that were written label the predicate that they came from, to the row."""
+    annotate("--data", "s3", "-o", "back", "--subtasks", "near")
+    with open("back.etl", "w", encoding="utf-8") as file:
+        file.write("spec back;\nrate 10 Hz;\ninput x : f32;\npredicate near = x <= 0.2;\n"
+                   "monitor m = F near;\n")
+    done = subprocess.run([ETLC, "evaluate", "back.etl", "--data", "back", "--label-by", "subtask",
+                           *MAP[:2], "--json", "-"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "no predicate is named after the subtasks 'none'" in done.stderr, done.stderr
+    found = json.loads(done.stdout)["predicates"]["near"]
+    near = sum(int(holds(own)[0].sum()) for own in states)
+    assert 0 < near < sum(LENGTHS)
+    wanted = {"true_positives": near, "true_negatives": sum(LENGTHS) - near, "false_positives": 0,
+              "false_negatives": 0, "unlabelled": 0}
+    assert {key: found[key] for key in wanted} == wanted, found
+
+
 def check_in_place(states):
     lerobot.write("place", "v3.0", LENGTHS, without=("next.success",), states=states)
     before = {name: os.stat(f"place/{name}").st_ino for name in files_of("place")}
@@ -232,5 +250,6 @@ with tempfile.TemporaryDirectory() as folder:
     check_success("v3.0", own)
     check_progress(own)
     check_list(own)
+    check_round_trip(own)
     check_in_place(own)
     check_refusals()

@@ -417,10 +417,12 @@ class Commands(unittest.TestCase):
             watching.stop()
 
     def test_annotate_names_what_is_wrong(self):
+        spec = self.path / "home.etl"
+        spec.write_text("spec h; input x : f32; monitor home = F x < 1;")
         with self.assertRaisesRegex(etlc.SpecError, "is no LeRobot data set"):
-            etlc.annotate(self.spec, self.path / "none", self.path / "out", success="home")
+            etlc.annotate(spec, self.path / "none", self.path / "out", success="home")
         with self.assertRaises(etlc.InputError):  # neither an output nor in place
-            etlc.annotate(self.spec, self.path / "none", success="home")
+            etlc.annotate(spec, self.path / "none", success="home")
 
     def test_split(self):
         names = [str(self.path / "split" / f"{n:02}.npz") for n in range(20)]
