@@ -40,7 +40,7 @@ namespace dubins {
 // One program may hold several headers of this name, and units with other flags:
 // each has a class of its own.
 inline namespace ETLMON_BUILD {
-inline namespace text_b4f1d3b26ab9ca46 {
+inline namespace text_0d5bf770e79df36d {
 
 /// The inputs of one step. In Inputs{} all of them are missing.
 struct Inputs {
@@ -372,6 +372,6 @@ inline Verdicts Monitor::judge(const Atoms& now) noexcept {
   return verdicts;
 }
 
-}  // namespace text_b4f1d3b26ab9ca46
+}  // namespace text_0d5bf770e79df36d
 }  // namespace ETLMON_BUILD
 }  // namespace dubins

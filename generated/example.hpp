@@ -35,7 +35,7 @@ namespace example {
 // One program may hold several headers of this name, and units with other flags:
 // each has a class of its own.
 inline namespace ETLMON_BUILD {
-inline namespace text_305adae252ab4214 {
+inline namespace text_8cd111a5f93f98bc {
 
 /// The inputs of one step. In Inputs{} all of them are missing.
 struct Inputs {
@@ -154,6 +154,6 @@ inline Verdicts Monitor::judge(const Atoms& now) noexcept {
   return verdicts;
 }
 
-}  // namespace text_305adae252ab4214
+}  // namespace text_8cd111a5f93f98bc
 }  // namespace ETLMON_BUILD
 }  // namespace example

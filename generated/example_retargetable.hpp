@@ -42,7 +42,7 @@ namespace example {
 // One program may hold several headers of this name, and units with other flags:
 // each has a class of its own.
 inline namespace ETLMON_BUILD {
-inline namespace text_77e250d07347b312 {
+inline namespace text_8d791169fd06386d {
 
 /// The inputs of one step. In Inputs{} all of them are missing.
 struct Inputs {
@@ -75,7 +75,7 @@ inline constexpr size_t goal = 32;  ///< 2 rows of 2 elements
 /// The layout of a block of parameters. kShape is a hash of the class without its numbers; kEncoder
 /// is a hash of the encoder, 0 if the spec has none. A block must have both.
 struct Layout {
-  static constexpr uint64_t kShape = 0x4ed219e8a5b9dc23u;
+  static constexpr uint64_t kShape = 0xd872d22ec081b0d6u;
   static constexpr uint64_t kEncoder = 0x0000000000000000u;
   static constexpr size_t kSize = 192;  ///< in bytes
   /// Offset, count, row length and rule of each part.
@@ -223,6 +223,6 @@ inline Verdicts Monitor::judge(const Atoms& now) noexcept {
 /// counted (etlmon/params/shadow.hpp).
 using Shadow = etlmon::Shadow<Monitor, Inputs, Verdicts, 1>;
 
-}  // namespace text_77e250d07347b312
+}  // namespace text_8d791169fd06386d
 }  // namespace ETLMON_BUILD
 }  // namespace example
