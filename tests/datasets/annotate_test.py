@@ -35,8 +35,8 @@ sliding monitor again = F[0,3] near;
 MAP = ["--map", "x=observation.state[0]", "y=observation.state[1]", "z=observation.state[2]"]
 
 
-def annotate(*words, status=0):
-    done = subprocess.run([ETLC, "annotate", "pick.etl", *words, *MAP], capture_output=True,
+def annotate(*words, status=0, names=MAP):
+    done = subprocess.run([ETLC, "annotate", "pick.etl", *words, *names], capture_output=True,
                           text=True)
     assert done.returncode == status, (words, done.stdout, done.stderr)
     return done.stdout + done.stderr
@@ -207,6 +207,24 @@ def check_round_trip(states):
     assert {key: found[key] for key in wanted} == wanted, found
 
 
+def check_made(states):
+    """Samples from the episodes that were made of the set give what those of its rows give."""
+    os.mkdir("made")
+    for number, own in enumerate(states):
+        np.savez(f"made/s3-{number:06}.npz", **dict(zip("xyz", own.T)))
+    annotate("--data", "s3", "-o", "m3", "--made", "made", "--success", "placed", "--undecided",
+             "false", names=())
+    assert rows_of_set("m3", ["next.success"]) == rows_of_set("s3.out", ["next.success"])
+    np.savez("made/s3-000002.npz", **dict(zip("xyz", states[2][1:].T)))
+    said = annotate("--data", "s3", "-o", "none", "--made", "made", "--success", "calm", names=(),
+                    status=1)
+    assert f"has {LENGTHS[2] - 1} steps, the episode has {LENGTHS[2]} rows" in said, said
+    os.remove("made/s3-000002.npz")
+    said = annotate("--data", "s3", "-o", "none", "--made", "made", "--success", "calm", names=(),
+                    status=1)
+    assert "made/s3-000002.npz" in said and not os.path.exists("none"), said
+
+
 def check_in_place(states):
     lerobot.write("place", "v3.0", LENGTHS, without=("next.success",), states=states)
     before = {name: os.stat(f"place/{name}").st_ino for name in files_of("place")}
@@ -251,5 +269,6 @@ with tempfile.TemporaryDirectory() as folder:
     check_progress(own)
     check_list(own)
     check_round_trip(own)
+    check_made(own)
     check_in_place(own)
     check_refusals()
