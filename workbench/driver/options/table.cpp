@@ -181,9 +181,9 @@ std::vector<Option> make_options() {
          "groups of .h5 files that are episodes: 'data/*'"},
         {embed, "--episodes", text("PATTERN", in(&Call::chosen, &recordings::Chosen::groups)),
          "groups of .h5 files that are recordings: 'data/*'"},
-        {Commands(kFindEpisodes) | run, "--split", form("FROM:TO[:order]", read_split),
+        {Commands(kFindEpisodes) | run, "--split", form("FROM:TO", read_split),
          "only a part of the episodes, by shares: --split 0:0.25, --split 0.25:0.5 and --split "
-         "0.5:1 share none; dealt by their content, or kept in order"},
+         "0.5:1 share none; dealt by their content, or, as in 0.5:1:order, kept in order"},
         {kReadEpisodes, "--allow-overlap",
          checked(text("REASON", in(&Call::allow_overlap)), mistake_in_reason),
          "reason to accept episodes that share most of their content or contain targets; it is "
