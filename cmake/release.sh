@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # release.sh [FOLDER]: makes a release of the commit that is checked out: the wheel, the Debian
 # packages, the source archive, sbom.spdx.json, CHANGELOG.md and SHA256SUMS go into FOLDER (default:
-# build/etlc-VERSION). Needs Debian 12, which it installs missing packages on; the same commit gives
-# the same bytes. At last a new user's first commands run in an empty system with what was made.
+# build/etlc-VERSION). Needs Debian 12, where it installs missing packages; the same commit gives
+# the same bytes. Finally a new user's first commands run in an empty system with what was made.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 fail() { echo "release.sh: $*" >&2; exit 1; }

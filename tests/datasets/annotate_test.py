@@ -225,6 +225,18 @@ def check_made(states):
     assert "made/s3-000002.npz" in said and not os.path.exists("none"), said
 
 
+def check_mixed(states):
+    """Rows of two episodes that take turns are refused: their subtasks have no place."""
+    columns, _ = lerobot.rows_of(LENGTHS, None, states)
+    order = sorted(range(sum(LENGTHS)), key=lambda row: (
+        columns["frame_index"][1][row] if columns["episode_index"][1][row] < 2 else 1000 + row))
+    mixed = {name: (kind, [values[row] for row in order])
+             for name, (kind, values) in columns.items()}
+    lerobot.write("mixed", "v3.0", LENGTHS, states=states, more=mixed)
+    said = annotate("--data", "mixed", "-o", "none", "--subtasks", "near", status=1)
+    assert "rows of episode 0" in said and not os.path.exists("none"), said
+
+
 def check_in_place(states):
     lerobot.write("place", "v3.0", LENGTHS, without=("next.success",), states=states)
     before = {name: os.stat(f"place/{name}").st_ino for name in files_of("place")}
@@ -270,5 +282,6 @@ with tempfile.TemporaryDirectory() as folder:
     check_list(own)
     check_round_trip(own)
     check_made(own)
+    check_mixed(own)
     check_in_place(own)
     check_refusals()

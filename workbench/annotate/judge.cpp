@@ -175,6 +175,7 @@ public:
             return diag::Failure{Code::not_annotated, fmt::format("has {}, the episode has {}",
                                                                   diag::counted(row_, "step"),
                                                                   diag::counted(rows, "row"))};
+        episode_.rows = row_;
         note_end();
         return std::move(episode_);
     }

@@ -36,6 +36,7 @@ struct Place {
 struct Episode {
     enum class Outcome : std::uint8_t { undecided, failure, success };
 
+    std::uint64_t rows = 0;
     Outcome outcome = Outcome::undecided;
     std::uint64_t succeeds = 0;  ///< the first row of which next.success is true
     /// The rows at which a subtask begins, with its place in Wanted::subtasks; behind the last of

@@ -22,6 +22,7 @@ namespace {
 using diag::Code;
 using diag::Failure;
 using recordings::Table;
+using recordings::parquet::append;
 using recordings::parquet::NewColumn;
 using Json = nlohmann::ordered_json;
 
@@ -30,11 +31,6 @@ constexpr const char* kSuccess = "next.success";
 constexpr const char* kPersistent = "language_persistent";
 constexpr const char* kEvents = "language_events";
 constexpr std::uint64_t kMaxInfoBytes = 64U << 20U;
-
-template <class T>
-void append(std::string& bytes, T value) {
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 
 Failure in_part(const std::string& file, Failure failure) {
     failure.message = fmt::format("{}: {}", file, failure.message);
@@ -76,13 +72,14 @@ public:
                 return cells[i].numbers.empty() ? -1
                                                 : static_cast<std::int64_t>(cells[i].numbers[0]);
             };
-            if (whole(0) != now_) end_run();
+            if (whole(0) != now_)
+                if (auto failure = end_run()) return *failure;
             now_ = whole(0);
             times_.push_back(cells[1].numbers.empty() ? 0
                                                       : static_cast<float>(cells[1].numbers[0]));
             add_row(whole(2));
         }
-        end_run();
+        if (auto failure = end_run()) return *failure;
         return columns();
     }
 
@@ -102,19 +99,27 @@ private:
                                       : std::numeric_limits<float>::quiet_NaN()});
     }
 
-    /// Ends the rows of an episode, which all have the list of the episode.
-    void end_run() {
-        if (times_.empty()) return;
+    /// Ends the rows of an episode, which all have the list of the episode. Fails where the episode
+    /// has other rows in the file: the times of its subtasks are those of successive rows.
+    std::optional<Failure> end_run() {
+        if (times_.empty()) return std::nullopt;
+        const auto judged = judged_.episodes.find(static_cast<std::uint64_t>(now_));
+        if (rows_[now_] != times_.size() ||
+            (judged != judged_.episodes.end() && judged->second.rows != times_.size()))
+            return Failure{Code::unreadable_dataset,
+                           fmt::format("has rows of episode {} that do not follow each other, or "
+                                       "others than before",
+                                       now_)};
         NewColumn::Run run{times_.size(), {}};
-        const auto found = judged_.episodes.find(static_cast<std::uint64_t>(now_));
         const Wanted& wanted = writing_.wanted;
-        if (found != judged_.episodes.end())
-            for (const auto& [row, subtask] : found->second.subtasks)
+        if (judged != judged_.episodes.end())
+            for (const auto& [row, subtask] : judged->second.subtasks)
                 run.sayings.push_back({times_[row], subtask < wanted.subtasks.size()
                                                         ? wanted.subtasks[subtask]
                                                         : wanted.between});
         lists_.push_back(std::move(run));
         times_.clear();
+        return std::nullopt;
     }
 
     std::vector<NewColumn> columns() {

@@ -37,13 +37,13 @@ std::optional<std::string> why_not_proved(const diag::Sink& findings) {
 }
 
 /// The lines of the class that ran in the proof, and the branches that were taken.
-struct Covered {
-    std::string annotated;  ///< the header, each line with its count
+struct Executed {
     std::string summary;
+    std::string annotated;  ///< the header, each line with its count; empty: nothing is known
 };
 
-Covered covered(const std::string& header, const std::vector<prove::Line>& lines) {
-    Covered result;
+Executed counted(const std::string& header, const std::vector<prove::Line>& lines) {
+    Executed result;
     std::size_t ran = 0, ways = 0, taken = 0, number = 0;
     auto line = lines.begin();
     for (std::size_t begin = 0; begin < header.size();) {
@@ -64,10 +64,20 @@ Covered covered(const std::string& header, const std::vector<prove::Line>& lines
                                         std::string_view(header).substr(begin, end - begin));
         begin = end + 1;
     }
-    result.summary =
-        fmt::format("The proof ran {} of {} lines of the class, and took {} of {} branches.", ran,
-                    lines.size(), taken, ways);
+    result.summary = fmt::format(
+        "The proof ran {} of {} lines of the class, and took {} of {} branches.\n"
+        "`coverage.txt` has the class with the count of each line (`#####`: none), and of its "
+        "branches those never taken.\nDistances and thresholds are not part of the proof: they "
+        "are values without a number there.",
+        ran, lines.size(), taken, ways);
     return result;
+}
+
+Executed executed_of(const std::optional<Certified>& certified, const std::string& header) {
+    if (!certified) return {"Nothing: there is no proof.", ""};
+    const auto lines = prove::coverage_of(certified->coverage, "class.hpp");
+    if (lines) return counted(header, *lines);
+    return {"It is not known: $GCOV, or gcov, cannot say, for example after clang++.", ""};
 }
 
 /// Returns the comment at the head of a header.
@@ -84,10 +94,10 @@ std::string head_of(const std::string& header) {
 struct File {
     std::string name;
     std::string what;
-    std::string text;  ///< empty: another call writes it
+    std::string hash;
 };
 
-std::string index_of(const std::string& spec, const std::string& head, const std::string& covered,
+std::string index_of(const std::string& spec, const std::string& head, const std::string& executed,
                      const std::vector<File>& files) {
     std::string text = fmt::format(
         "# {0}: what there is to know about the class\n\nMade by etlc {1}. "
@@ -95,15 +105,15 @@ std::string index_of(const std::string& spec, const std::string& head, const std
         "| --- | --- | --- |\n",
         spec, library::kVersion);
     for (const File& file : files)
-        text += fmt::format("| {} | {} | {} |\n", file.name,
-                            data::hash_text(data::xxh64(file.text)), file.what);
+        text += fmt::format("| {} | {} | {} |\n", file.name, file.hash, file.what);
     text += fmt::format(
         "\n## What the class was made from, and what its thresholds are worth\n```\n{}```\n"
-        "A guarantee holds for new episodes that are exchangeable with those of the calibration:\n"
-        "same robot, camera, light, task and encoder. It is about whole episodes, over the draw "
-        "of\nboth; it says nothing about a single one, nor after a change of any of these.\n\n"
+        "A guarantee is a probability over the episodes of the calibration and new ones together. "
+        "It\nholds if these are exchangeable: the same robot, camera, light, task and encoder. "
+        "It says nothing\nabout one particular episode, and nothing after any of these has "
+        "changed.\n\n"
         "## What was executed\n{}\n",
-        head, covered);
+        head, executed);
     return text + kDossierPages;
 }
 
@@ -133,31 +143,31 @@ bool dossier(const source::File& spec, const Compiled& compiled, const Request& 
 
     const emit::Options options{request.name_space, library::kVersion, "", stem + ".targets.bin"};
     const std::string text = emit::header(compiled.plan, options);
-    std::vector<File> files{
-        {stem + ".etl", "the spec", std::string(spec.text())},
-        {stem + ".hpp", "the class", text},
-        {"budget.txt", "`etlc --emit report`: state, code, work, horizon",
-         emit::report(compiled.plan, options)},
-        {"certificate.txt", "`etlc prove`", certified ? certified->text : "not proved: " + *why}};
-    std::string ran = "Nothing: there is no proof.";
-    if (certified) {
-        const auto lines = prove::coverage_of(certified->coverage, "class.hpp");
-        ran = "It is not known: $GCOV, or gcov, does not say, as clang's does not.";
-        if (lines) {
-            Covered of = covered(text, *lines);
-            ran = of.summary +
-                  "\n`coverage.txt` has the class with the count of each line (`#####`: none), and "
-                  "of its branches those never taken.\nDistances and thresholds are not part of "
-                  "the proof: they are values without a number there.";
-            files.push_back({"coverage.txt", "the class in the proof, by gcov", of.annotated});
-        }
-    }
+    std::vector<File> files{{stem + ".hpp", "the class", data::hash_text(data::xxh64(text))}};
+    const auto note_numbers = [&](const char* ending) {
+        const std::string path = (folder / (stem + ending)).string();
+        const auto hash = data::hash_of_file(path, diag::Code::unwritable_output);
+        files.push_back({stem + ending, "numbers of the class", hash ? *hash : "unreadable"});
+    };
+    if (!compiled.plan.stored.empty()) note_numbers(".targets.bin");
+    if (request.check.retargetable) note_numbers(".params.bin");
     OutputFiles outputs(sink);
-    const std::string index = index_of(stem, head_of(text), ran, files);
-    for (const File& file : files)
-        if (file.name != stem + ".hpp" && !outputs.add((folder / file.name).string(), file.text))
-            return false;
-    return outputs.add((folder / "dossier.md").string(), index) && outputs.commit();
+    const auto add = [&](const std::string& name, const std::string& what,
+                         const std::string& content) {
+        files.push_back({name, what, data::hash_text(data::xxh64(content))});
+        return outputs.add((folder / name).string(), content);
+    };
+    const Executed executed = executed_of(certified, text);
+    return add(stem + ".etl", "the spec", std::string(spec.text())) &&
+           add("budget.txt", "`etlc --emit report`: state, code, work, horizon",
+               emit::report(compiled.plan, options)) &&
+           add("certificate.txt", "`etlc prove`",
+               certified ? certified->text : "not proved: " + *why) &&
+           (executed.annotated.empty() ||
+            add("coverage.txt", "the class in the proof, by gcov", executed.annotated)) &&
+           outputs.add((folder / "dossier.md").string(),
+                       index_of(stem, head_of(text), executed.summary, files)) &&
+           outputs.commit();
 }
 
 }  // namespace etlc::driver

@@ -504,7 +504,7 @@ std::vector<Option> make_own_options() {
 
         // etlc dossier
         {dossier, "-o,--output", text("FOLDER", in(&Call::output)),
-         "the folder to write; files in it that are not of a dossier stay", kRequired},
+         "the folder to write; other files in it stay", kRequired},
 
         {lsp, "--stdio", flag(in(&Call::on_standard_streams)),
          "accepted for clients that pass it; standard input and output are always used"},

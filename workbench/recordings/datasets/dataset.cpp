@@ -1,6 +1,7 @@
 #include "recordings/datasets/dataset.hpp"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "recordings/datasets/subtasks.hpp"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -31,9 +31,8 @@ struct Subtasks {
     }
 };
 
-/// Reads the subtasks of an episode; the word is one of
-/// data::kSubtaskWords. Failures: E0850, E0851,
-/// E0854, and E0862 where it has several sources.
+/// Reads the subtasks of an episode; the word is one of data::kSubtaskWords. Failures: E0850,
+/// E0851, E0854, and E0862 where it has several sources.
 diag::Result<Subtasks> read_subtasks(const std::string& path, std::string_view word = "subtask");
 
 }  // namespace etlc::recordings

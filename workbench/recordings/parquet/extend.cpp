@@ -1,9 +1,9 @@
 #include "recordings/parquet/extend.hpp"
 
 #include <zstd.h>
+
 #include <algorithm>
 #include <bit>
-#include <limits>
 
 namespace etlc::recordings::parquet {
 

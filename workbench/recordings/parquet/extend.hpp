@@ -40,6 +40,12 @@ struct NewColumn {
     std::vector<Run> lists;  ///< of texts
 };
 
+/// Adds the bytes of a number to the values of a column, or to what the program reads.
+template <class Number>
+void append(std::string& bytes, Number value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
 /// Sends bytes of the file, in their order.
 using Send = std::function<void(const std::string& bytes)>;
 

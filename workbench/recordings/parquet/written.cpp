@@ -16,13 +16,9 @@ namespace {
 
 using diag::Code;
 using diag::Failure;
+using parquet::append;
 using parquet::NewColumn;
 using records::Tag;
-
-template <class T>
-void append(std::string& bytes, T value) {
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 
 void append_text(std::string& bytes, const std::string& text) {
     append(bytes, static_cast<std::uint32_t>(text.size()));
