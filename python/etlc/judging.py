@@ -245,7 +245,7 @@ def annotate(
         success: the monitor that `next.success` is from.
         undecided: "false" writes false for episodes that this monitor does not decide.
         subtasks: predicates and lets that become subtasks of `language_persistent`.
-        between: the subtask after one has ended and before another begins; by default "none".
+        between: the subtask of rows in which none of these holds; by default "none".
         progress: the monitor of phases, F (a && F (b && ...)), that `sarm_progress.parquet` is
             from, a number from 0 to 1 for each row.
         list: a CSV file of all episodes, the worst first, which needs no output.

@@ -190,14 +190,13 @@ private:
         if (!watched_.phases.empty()) note_phase();
     }
 
-    /// The last of those that hold.
+    /// Notes where the last of those that hold, or none of them, begins.
     void note_subtask() {
         std::size_t now = watched_.subtasks.size();
         for (std::size_t s = 0; s < watched_.subtasks.size(); ++s)
             if (let(watched_.subtasks[s]).satisfied()) now = s;
         auto& all = episode_.subtasks;
-        const std::size_t before = all.empty() ? watched_.subtasks.size() : all.back().second;
-        if (now != before) all.emplace_back(row_, now);
+        if (all.empty() || now != all.back().second) all.emplace_back(row_, now);
     }
 
     void begin_phase() {

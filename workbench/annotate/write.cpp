@@ -8,12 +8,10 @@
 #include <set>
 #include <tuple>
 
-#include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
 #include "data/text/text.hpp"
 #include "recordings/datasets/copy.hpp"
 #include "recordings/parquet/table.hpp"
-#include "recordings/parquet/written.hpp"
 
 namespace etlc::annotate {
 
@@ -144,8 +142,7 @@ private:
     std::vector<NewColumn::Run> lists_;
 };
 
-std::optional<Failure> write_progress(const Writing& writing, std::vector<ProgressRow> rows,
-                                      const std::string& to) {
+std::string progress_file(const Writing& writing, std::vector<ProgressRow> rows) {
     std::sort(rows.begin(), rows.end(), [](const ProgressRow& a, const ProgressRow& b) {
         return std::tie(a.index, a.episode, a.frame) < std::tie(b.index, b.episode, b.frame);
     });
@@ -160,12 +157,12 @@ std::optional<Failure> write_progress(const Writing& writing, std::vector<Progre
         append(columns[2].values, row.frame);
         append(columns[3].values, row.progress);
     }
-    return recordings::write_parquet(to, rows.size(),
-                                     {{"etlc", writing.version},
-                                      {"spec", writing.spec},
-                                      {"spec_hash", writing.spec_hash},
-                                      {"monitor", writing.wanted.progress}},
-                                     columns);
+    return recordings::parquet::new_file(rows.size(),
+                                         {{"etlc", writing.version},
+                                          {"spec", writing.spec},
+                                          {"spec_hash", writing.spec_hash},
+                                          {"monitor", writing.wanted.progress}},
+                                         columns);
 }
 
 diag::Result<Json> read_json(const std::string& path) {
@@ -176,14 +173,10 @@ diag::Result<Json> read_json(const std::string& path) {
     return json;
 }
 
-std::optional<Failure> write_json(const std::string& path, const Json& json) {
-    return data::write_file_atomically(path, json.dump(4) + "\n", Code::unwritable_output);
-}
-
-/// Writes meta/info.json with the new features.
-std::optional<Failure> write_info(const Writing& writing, const std::string& to) {
+/// Returns meta/info.json with the new features.
+diag::Result<Json> new_info(const Writing& writing) {
     auto info = read_json(writing.set.path_of(kInfo));
-    if (!info) return info.failure();
+    if (!info) return info;
     const auto add = [&](const char* name, const char* type) {
         (*info)["features"][name] = {
             {"dtype", type}, {"shape", Json::array({1})}, {"names", nullptr}};
@@ -191,12 +184,11 @@ std::optional<Failure> write_info(const Writing& writing, const std::string& to)
     if (!writing.wanted.success.empty()) add(kSuccess, "bool");
     if (!writing.wanted.subtasks.empty()) add(kPersistent, "language");
     if (!writing.wanted.subtasks.empty()) add(kEvents, "language");
-    return write_json(to, *info);
+    return info;
 }
 
-/// Writes what was annotated beside what an earlier call annotated.
-std::optional<Failure> write_provenance(const Writing& writing, const Judged& judged,
-                                        const std::string& to) {
+/// Returns what was annotated, beside what an earlier call annotated.
+Json provenance(const Writing& writing, const Judged& judged) {
     auto old = read_json(writing.set.path_of(kProvenance));
     Json all = old ? std::move(*old) : Json::object();
     const auto begin = [&](const char* what) -> Json& {
@@ -221,7 +213,7 @@ std::optional<Failure> write_provenance(const Writing& writing, const Judged& ju
         progress["phases"] = judged.phases;
         progress["reached_at"] = std::vector<double>(judged.steps.begin() + 1, judged.steps.end());
     }
-    return write_json(to, all);
+    return all;
 }
 
 }  // namespace
@@ -273,21 +265,22 @@ diag::Result<Written> write(const Writing& writing, const Judged& judged) {
     if (auto failure = copy.fill()) return *failure;
     std::vector<ProgressRow> progress;
     for (const std::string& file : files) {
-        const std::string from = writing.set.path_of(file);
-        auto columns = FileColumns(writing, judged, progress).read(from);
+        auto columns = FileColumns(writing, judged, progress).read(writing.set.path_of(file));
         if (!columns) return in_part(file, columns.failure());
         if (!has_columns) continue;
-        if (auto failure = recordings::write_extended(from, copy.path_of(file), *columns))
-            return in_part(file, *failure);
+        if (auto failure = copy.extend(file, *columns)) return in_part(file, *failure);
     }
+    std::vector<std::pair<std::string, std::string>> others;
     if (!writing.wanted.progress.empty())
-        if (auto failure = write_progress(writing, std::move(progress), copy.path_of(kProgress)))
-            return in_part(kProgress, *failure);
-    if (has_columns)
-        if (auto failure = write_info(writing, copy.path_of(kInfo)))
-            return in_part(kInfo, *failure);
-    if (auto failure = write_provenance(writing, judged, copy.path_of(kProvenance)))
-        return in_part(kProvenance, *failure);
+        others.emplace_back(kProgress, progress_file(writing, std::move(progress)));
+    if (has_columns) {
+        const auto info = new_info(writing);
+        if (!info) return in_part(kInfo, info.failure());
+        others.emplace_back(kInfo, info->dump(4) + "\n");
+    }
+    others.emplace_back(kProvenance, provenance(writing, judged).dump(4) + "\n");
+    for (const auto& [file, bytes] : others)
+        if (auto failure = copy.write(file, bytes)) return in_part(file, *failure);
     if (auto failure = copy.commit()) return *failure;
     return Written{has_columns ? files.size() : 0, copy.copied(), copy.linked()};
 }

@@ -405,8 +405,7 @@ std::vector<Option> make_own_options() {
         {annotate, "--between",
          text("TEXT", in(&Call::annotate, &Call::Annotate::wanted, &Wanted::between),
               Wanted().between),
-         "the subtask after one has ended and before another begins", Option::Need::none, "",
-         "--subtasks"},
+         "the subtask of rows in which none of them holds", Option::Need::none, "", "--subtasks"},
         {annotate, "--progress",
          text("MONITOR", in(&Call::annotate, &Call::Annotate::wanted, &Wanted::progress)),
          "write sarm_progress.parquet: a number from 0 to 1 for each row, by the phases of this "

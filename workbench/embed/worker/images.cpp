@@ -28,6 +28,7 @@ using recordings::frames::kMaxImageBytes;
 using recordings::frames::kMaxPixels;
 using recordings::frames::kRefused;
 using recordings::frames::kWrongCall;
+using recordings::frames::number_at;
 using Bytes = std::vector<std::uint8_t>;
 using View = std::span<const std::uint8_t>;
 

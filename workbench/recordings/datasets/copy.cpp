@@ -2,13 +2,17 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 #include <utility>
 
+#include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
 #include "data/text/text.hpp"
 
@@ -30,6 +34,46 @@ Failure unwritable(const fs::path& path, int error) {
 fs::path plain(const std::string& path) {
     const fs::path normal = fs::absolute(path).lexically_normal();
     return normal.has_filename() ? normal : normal.parent_path();
+}
+
+/// A Parquet file, open to be read.
+struct Extended {
+    data::Descriptor file;
+    std::uint64_t kept = 0;  ///< the bytes before its footer
+    std::string footer;
+};
+
+diag::Result<Extended> open_parquet(const std::string& path) {
+    const Failure changed{Code::unreadable_parquet, "has changed while it was read"};
+    Extended opened;
+    opened.file = data::Descriptor(
+        data::uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); }));
+    struct stat status {};
+    if (!opened.file || ::fstat(*opened.file, &status) != 0)
+        return Failure{Code::unreadable_parquet, data::error_words(errno)};
+    const auto size = static_cast<std::uint64_t>(status.st_size);
+    char tail[8] = {};
+    std::uint32_t length = 0;
+    if (size < 12 || !data::read_all_at(*opened.file, size - 8, tail, 8)) return changed;
+    std::memcpy(&length, tail, sizeof length);
+    if (length > std::min<std::uint64_t>(size - 12, parquet::kMaxFooterBytes)) return changed;
+    opened.kept = size - 8 - length;
+    opened.footer.resize(length);
+    if (!data::read_all_at(*opened.file, opened.kept, opened.footer.data(), length)) return changed;
+    return opened;
+}
+
+/// Copies the first bytes of a file.
+std::optional<Failure> copy(const Extended& from, data::AtomicFile& to) {
+    constexpr std::uint64_t kBlock = 1U << 20U;
+    std::string block;
+    for (std::uint64_t at = 0; at < from.kept; at += block.size()) {
+        block.resize(std::min(from.kept - at, kBlock));
+        if (!data::read_all_at(*from.file, at, block.data(), block.size()))
+            return Failure{Code::unreadable_parquet, data::error_words(errno)};
+        if (auto failure = to.write(block)) return failure;
+    }
+    return std::nullopt;
 }
 
 }  // namespace
@@ -86,6 +130,26 @@ std::optional<Failure> DatasetCopy::fill() {
         return unwritable(error.path1(), error.code().value());
     }
     return std::nullopt;
+}
+
+std::optional<Failure> DatasetCopy::extend(const std::string& file,
+                                           const std::vector<parquet::NewColumn>& columns) {
+    const auto from = open_parquet(from_ + "/" + file);
+    if (!from) return from.failure();
+    try {
+        const std::string rest = parquet::extension(from->footer, from->kept, columns);
+        auto to = data::AtomicFile::create(path_of(file), Code::unwritable_output);
+        if (!to) return to.failure();
+        if (auto failure = copy(*from, *to)) return failure;
+        if (auto failure = to->write(rest)) return failure;
+        return to->commit();
+    } catch (const parquet::Refused& refused) {
+        return Failure{Code::unreadable_parquet, refused.what()};
+    }
+}
+
+std::optional<Failure> DatasetCopy::write(const std::string& file, const std::string& bytes) {
+    return data::write_file_atomically(path_of(file), bytes, Code::unwritable_output);
 }
 
 std::optional<Failure> DatasetCopy::commit() {

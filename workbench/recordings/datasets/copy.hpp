@@ -1,16 +1,18 @@
-// A copy of a data set, in which some files are others.
+// A copy of a data set, in which some files are others, or have more columns.
 // Takes: the folder of a set. Gives: a folder beside the new name, with all files except those that
 // the caller writes into it; then the name. Keeps true: the copy takes its name only when it is
-// complete, and a failure leaves nothing of it; the files of the set are not changed; no file is
-// loaded into memory.
+// complete, and a failure leaves nothing of it; the files of the set are not changed; memory is
+// that of what is new.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "diag/diag.hpp"
+#include "recordings/parquet/extend.hpp"
 
 namespace etlc::recordings {
 
@@ -27,8 +29,11 @@ public:
 
     /// Copies the other files. Failures are E0901 and name the file.
     std::optional<diag::Failure> fill();
-    /// The path of a file in the copy.
-    std::string path_of(const std::string& file) const { return part_ + "/" + file; }
+    /// Writes a Parquet file of the set with columns behind its own. A reader has read it before.
+    std::optional<diag::Failure> extend(const std::string& file,
+                                        const std::vector<parquet::NewColumn>& columns);
+    /// Writes another file.
+    std::optional<diag::Failure> write(const std::string& file, const std::string& bytes);
     /// Gives the copy its name.
     std::optional<diag::Failure> commit();
 
@@ -36,6 +41,7 @@ public:
     std::uint64_t linked() const { return linked_; }
 
 private:
+    std::string path_of(const std::string& file) const { return part_ + "/" + file; }
     void take(const std::string& file, const std::string& from);
 
     std::string from_;

@@ -9,7 +9,7 @@ namespace etlc::recordings::parquet {
 
 namespace {
 
-constexpr std::size_t kPageEntries = 1U << 16U;
+using Kind = NewColumn::Kind;
 
 // Thrift's compact protocol, written. Structs and lists that are not changed stay bytes.
 
@@ -95,6 +95,14 @@ Field number(std::int64_t id, Type type, std::int64_t value) {
     return {id, type, whole(value)};
 }
 
+Field text(std::int64_t id, std::string_view value) {
+    return {id, Type::binary, binary(value)};
+}
+
+Field structure(std::int64_t id, const Structure& fields) {
+    return {id, Type::structure, bytes_of(fields)};
+}
+
 Field list_field(std::int64_t id, Type of, std::vector<std::string> elements) {
     return {id, Type::list, bytes_of(List{of, std::move(elements)})};
 }
@@ -118,30 +126,8 @@ void add_to(Field* field, std::int64_t n) {
 
 // The schema of the new columns.
 
-std::string element(const std::string& name, Repetition repetition, Physical physical) {
-    Structure fields = {number(1, Type::i32, static_cast<std::int64_t>(physical)),
-                        number(3, Type::i32, repetition),
-                        {4, Type::binary, binary(name)}};
-    if (physical == Physical::binary) {  // UTF8, STRING
-        fields.push_back(number(6, Type::i32, 0));
-        fields.push_back({10, Type::structure, bytes_of(Structure{{1, Type::structure, {'\0'}}})});
-    }
-    return bytes_of(fields);
-}
-
-std::string group(const std::string& name, Repetition repetition, std::int64_t children,
-                  bool is_list = false) {
-    Structure fields = {number(3, Type::i32, repetition),
-                        {4, Type::binary, binary(name)},
-                        number(5, Type::i32, children)};
-    if (is_list) {
-        fields.push_back(number(6, Type::i32, 3));
-        fields.push_back({10, Type::structure, bytes_of(Structure{{3, Type::structure, {'\0'}}})});
-    }
-    return bytes_of(fields);
-}
-
-/// A leaf below a new column. Entries of it have a level of repetition and one of definition.
+/// A column without fields below it. Each of its entries has a level of repetition and one of
+/// definition.
 struct Leaf {
     std::vector<std::string> path;
     Physical physical = Physical::boolean;
@@ -154,63 +140,84 @@ struct Shape {
     std::vector<Leaf> leaves;
 };
 
+/// `converted`, `logical`: the numbers of a type; none where it is the physical one.
+std::string element(const std::string& name, Repetition repetition, Field size_or_type,
+                    std::int64_t converted = 0, std::int64_t logical = 0) {
+    Structure fields = {number(3, Type::i32, repetition), text(4, name)};
+    fields.insert(size_or_type.id < 3 ? fields.begin() : fields.end(), std::move(size_or_type));
+    if (logical > 0) {
+        fields.push_back(number(6, Type::i32, converted));
+        fields.push_back(structure(10, {structure(logical, {})}));
+    }
+    return bytes_of(fields);
+}
+
+std::string leaf_element(const std::string& name, Physical physical) {
+    constexpr std::int64_t kUtf8 = 0, kString = 1;
+    const Field type = number(1, Type::i32, static_cast<std::int64_t>(physical));
+    return physical == Physical::binary ? element(name, kOptional, type, kUtf8, kString)
+                                        : element(name, kOptional, type);
+}
+
+std::string group(const std::string& name, Repetition repetition, std::size_t children) {
+    return element(name, repetition, number(5, Type::i32, static_cast<std::int64_t>(children)));
+}
+
+std::string list(const std::string& name) {
+    constexpr std::int64_t kConverted = 3, kLogical = 3;
+    return element(name, kOptional, number(5, Type::i32, 1), kConverted, kLogical);
+}
+
 Shape shape_of_list(const std::string& name, bool has_times) {
     std::vector<std::pair<std::string, Physical>> members = {
         {"role", Physical::binary}, {"content", Physical::binary}, {"style", Physical::binary}};
     if (has_times) members.emplace_back("timestamp", Physical::float32);
     members.emplace_back("camera", Physical::binary);
     Shape shape;
-    const auto count = static_cast<std::int64_t>(members.size()) + 1;
-    shape.elements = {group(name, kOptional, 1, true), group("list", kRepeated, 1),
-                      group("element", kOptional, count)};
+    shape.elements = {list(name), group("list", kRepeated, 1),
+                      group("element", kOptional, members.size() + 1)};
     for (const auto& [member, physical] : members) {
-        shape.elements.push_back(element(member, kOptional, physical));
+        shape.elements.push_back(leaf_element(member, physical));
         shape.leaves.push_back({{name, "list", "element", member}, physical, 1, 4});
     }
-    for (std::string part : {group("tool_calls", kOptional, 1, true), group("list", kRepeated, 1),
-                             element("element", kOptional, Physical::binary)})
-        shape.elements.push_back(std::move(part));
+    shape.elements.push_back(list("tool_calls"));
+    shape.elements.push_back(group("list", kRepeated, 1));
+    shape.elements.push_back(leaf_element("element", Physical::binary));
     shape.leaves.push_back(
         {{name, "list", "element", "tool_calls", "list", "element"}, Physical::binary, 2, 6});
     return shape;
 }
 
 Shape shape_of(const NewColumn& column) {
-    using Kind = NewColumn::Kind;
-    if (column.kind == Kind::language || column.kind == Kind::events)
+    if (column.kind >= Kind::language)
         return shape_of_list(column.name, column.kind == Kind::language);
     const Physical physical = column.kind == Kind::boolean ? Physical::boolean
                               : column.kind == Kind::int64 ? Physical::int64
                                                            : Physical::float32;
-    return {{element(column.name, kOptional, physical)}, {{{column.name}, physical}}};
+    return {{leaf_element(column.name, physical)}, {{{column.name}, physical}}};
 }
 
 // The values.
 
-/// Returns the bytes of a value; 0 for lists.
-std::size_t bytes_of(NewColumn::Kind kind) {
-    constexpr std::size_t kBytes[] = {1, 8, 4, 0, 0};
-    return kBytes[static_cast<std::size_t>(kind)];
-}
-
 /// Packs numbers of a few bits, the lowest bits first.
-std::string packed(const std::vector<std::uint8_t>& numbers, unsigned bits) {
+std::string packed(std::string_view numbers, unsigned bits) {
     std::string bytes((numbers.size() + 7) / 8 * bits, '\0');
     for (std::size_t i = 0; i < numbers.size(); ++i)
         for (unsigned b = 0; b < bits; ++b) {
             const std::size_t at = i * bits + b;
-            if ((numbers[i] >> b & 1U) != 0) bytes[at / 8] |= static_cast<char>(1U << at % 8);
+            if ((numbers[i] >> b & 1) != 0) bytes[at / 8] |= static_cast<char>(1U << at % 8);
         }
     return bytes;
 }
 
 /// The levels of a page: one run of packed numbers, behind its length.
-std::string levels(const std::vector<std::uint8_t>& numbers, std::uint8_t most) {
+std::string levels(const std::string& numbers, std::uint8_t most) {
     if (most == 0) return "";
     const auto bits = static_cast<unsigned>(std::bit_width(static_cast<unsigned>(most)));
     const std::string run = varint((numbers.size() + 7) / 8 << 1U | 1U) + packed(numbers, bits);
-    const auto size = static_cast<std::uint32_t>(run.size());
-    return std::string(reinterpret_cast<const char*>(&size), sizeof size) + run;
+    std::string bytes;
+    append(bytes, static_cast<std::uint32_t>(run.size()));
+    return bytes + run;
 }
 
 std::string compressed(const std::string& bytes) {
@@ -222,131 +229,115 @@ std::string compressed(const std::string& bytes) {
     return result;
 }
 
-/// The pages of a leaf in a row group.
-class ChunkWriter {
-public:
-    ChunkWriter(const Leaf& leaf, const Send& send, std::uint64_t& at)
-        : leaf_(leaf), send_(send), at_(at), begin_(at) {}
-
-    void add(std::uint8_t repeated, std::uint8_t defined, std::string_view value = {}) {
-        if (repeated == 0 && definitions_.size() >= kPageEntries) end_page();
-        repetitions_.push_back(repeated);
-        definitions_.push_back(defined);
-        if (defined < leaf_.most_defined) return;
-        if (leaf_.physical == Physical::boolean) return bools_.push_back(value[0] != 0 ? 1 : 0);
-        if (leaf_.physical == Physical::binary) {
-            const auto size = static_cast<std::uint32_t>(value.size());
-            values_.append(reinterpret_cast<const char*>(&size), sizeof size);
-        }
-        values_ += value;
-    }
-
-    /// Returns the ColumnChunk; adds its bytes to those of the row group.
-    std::string end(std::int64_t& unpacked_bytes, std::int64_t& packed_bytes) {
-        if (!definitions_.empty() || values_so_far_ == 0) end_page();
-        std::vector<std::string> path;
-        for (const std::string& part : leaf_.path) path.push_back(binary(part));
-        const auto size = static_cast<std::int64_t>(at_ - begin_);
-        const Structure metadata = {number(1, Type::i32, static_cast<std::int64_t>(leaf_.physical)),
-                                    list_field(2, Type::i32, {whole(0), whole(3)}),  // PLAIN, RLE
-                                    list_field(3, Type::binary, std::move(path)),
-                                    number(4, Type::i32, 6),  // ZSTD
-                                    number(5, Type::i64, values_so_far_),
-                                    number(6, Type::i64, unpacked_),
-                                    number(7, Type::i64, size),
-                                    number(9, Type::i64, static_cast<std::int64_t>(begin_))};
-        unpacked_bytes += unpacked_;
-        packed_bytes += size;
-        return bytes_of(
-            Structure{number(2, Type::i64, 0), {3, Type::structure, bytes_of(metadata)}});
-    }
-
-private:
-    void end_page() {
-        const std::string page = levels(repetitions_, leaf_.most_repeated) +
-                                 levels(definitions_, leaf_.most_defined) + packed(bools_, 1) +
-                                 values_;
-        const std::string body = compressed(page);
-        const auto count = static_cast<std::int64_t>(definitions_.size());
-        const Structure of_data = {number(1, Type::i32, count), number(2, Type::i32, 0),
-                                   number(3, Type::i32, 3), number(4, Type::i32, 3)};
-        const std::string head =
-            bytes_of(Structure{number(1, Type::i32, 0),
-                               number(2, Type::i32, static_cast<std::int64_t>(page.size())),
-                               number(3, Type::i32, static_cast<std::int64_t>(body.size())),
-                               {5, Type::structure, bytes_of(of_data)}});
-        send_(head + body);
-        at_ += head.size() + body.size();
-        unpacked_ += static_cast<std::int64_t>(head.size() + page.size());
-        values_so_far_ += count;
-        repetitions_.clear();
-        definitions_.clear();
-        bools_.clear();
-        values_.clear();
-    }
-
-    const Leaf& leaf_;
-    const Send& send_;
-    std::uint64_t& at_;  ///< in the file
-    std::uint64_t begin_;
-    std::vector<std::uint8_t> repetitions_;
-    std::vector<std::uint8_t> definitions_;
-    std::vector<std::uint8_t> bools_;
-    std::string values_;
-    std::int64_t values_so_far_ = 0;
-    std::int64_t unpacked_ = 0;
+/// The entries of a page. A level is a character of its number.
+struct Page {
+    std::string repetitions;
+    std::string definitions;
+    std::string values;
 };
 
-/// Walks through the rows of a column, for one leaf.
-class Cells {
+/// The values of a column, by row.
+class Values {
 public:
-    explicit Cells(const NewColumn& column) : column_(column) {}
+    explicit Values(const NewColumn& column) : column_(column) {
+        for (const NewColumn::Run& run : column.lists)
+            lists_.insert(lists_.end(), run.rows, &run.sayings);
+    }
 
-    void add_row(ChunkWriter& to, const Leaf& leaf) {
-        if (column_.lists.empty()) {
-            const std::size_t size = bytes_of(column_.kind);
-            return to.add(0, 1, std::string_view(column_.values).substr(size * row_++, size));
+    std::uint64_t rows() const {
+        return column_.kind >= Kind::language ? lists_.size() : column_.values.size() / bytes();
+    }
+
+    /// Returns the values of a leaf in the rows [first, end).
+    Page page(const Leaf& leaf, std::uint64_t first, std::uint64_t end) const {
+        Page page;
+        if (column_.kind < Kind::language) {
+            page.definitions.assign(end - first, '\1');
+            page.values = column_.values.substr(first * bytes(), (end - first) * bytes());
+            if (column_.kind == Kind::boolean) page.values = packed(page.values, 1);
+            return page;
         }
-        while (row_ == column_.lists[run_].rows) {
-            ++run_;
-            row_ = 0;
+        for (std::uint64_t row = first; row < end; ++row) {
+            char repetition = 0;
+            for (const Saying& saying : *lists_[row]) {
+                page.repetitions += repetition;
+                repetition = 1;
+                add_member(page, leaf, saying);
+            }
+            if (!lists_[row]->empty()) continue;
+            page.repetitions += '\0';
+            page.definitions += '\1';  // a list without elements
         }
-        ++row_;
-        const std::vector<Saying>& sayings = column_.lists[run_].sayings;
-        if (sayings.empty()) return to.add(0, 1);  // a list without elements
-        for (std::size_t i = 0; i < sayings.size(); ++i)
-            add_member(to, leaf, i > 0 ? 1 : 0, sayings[i]);
+        return page;
     }
 
 private:
-    static void add_member(ChunkWriter& to, const Leaf& leaf, std::uint8_t repeated,
-                           const Saying& saying) {
-        constexpr std::uint8_t kNull = 3;
-        const std::string& name = leaf.path[3];
-        if (name == "role") return to.add(repeated, leaf.most_defined, "assistant");
-        if (name == "style") return to.add(repeated, leaf.most_defined, "subtask");
-        if (name == "content") return to.add(repeated, leaf.most_defined, saying.content);
-        if (name != "timestamp") return to.add(repeated, kNull);
-        const auto* const bytes = reinterpret_cast<const char*>(&saying.timestamp);
-        to.add(repeated, leaf.most_defined, {bytes, sizeof saying.timestamp});
+    std::size_t bytes() const {
+        return column_.kind == Kind::boolean ? 1 : column_.kind == Kind::int64 ? 8 : 4;
     }
+
+    static void add_member(Page& page, const Leaf& leaf, const Saying& saying) {
+        const std::string& name = leaf.path[3];
+        const bool is_null = name == "camera" || name == "tool_calls";
+        page.definitions += static_cast<char>(is_null ? 3 : leaf.most_defined);
+        if (is_null) return;
+        if (name == "timestamp") return append(page.values, saying.timestamp);
+        const std::string& value = name == "content" ? saying.content
+                                   : name == "role"  ? kRole
+                                                     : kStyle;
+        append(page.values, static_cast<std::uint32_t>(value.size()));
+        page.values += value;
+    }
+
+    inline static const std::string kRole = "assistant";
+    inline static const std::string kStyle = "subtask";
 
     const NewColumn& column_;
-    std::size_t run_ = 0;
-    std::uint64_t row_ = 0;  ///< the next one, of the run where there are runs
+    std::vector<const std::vector<Saying>*> lists_;  ///< of each row
 };
 
-/// Adds a chunk to a row group.
-void add_chunk(Structure& group, ChunkWriter& chunk) {
+/// Writes the pages of a leaf in a row group, and adds the chunk to the metadata of the group.
+void add_chunk(Structure& group, const Values& values, const Leaf& leaf, std::uint64_t first,
+               std::uint64_t end, std::uint64_t kept, std::string& file) {
+    constexpr std::uint64_t kPageRows = 1U << 13U;
+    const std::uint64_t begin = kept + file.size();
+    std::int64_t entries = 0;
     std::int64_t unpacked = 0;
-    std::int64_t packed = 0;
+    do {
+        const std::uint64_t next = std::min(end, first + kPageRows);
+        const Page page = values.page(leaf, first, next);
+        const std::string bytes = levels(page.repetitions, leaf.most_repeated) +
+                                  levels(page.definitions, leaf.most_defined) + page.values;
+        const std::string body = compressed(bytes);
+        const auto count = static_cast<std::int64_t>(page.definitions.size());
+        const std::string head = bytes_of(Structure{
+            number(1, Type::i32, 0), number(2, Type::i32, static_cast<std::int64_t>(bytes.size())),
+            number(3, Type::i32, static_cast<std::int64_t>(body.size())),
+            structure(5, {number(1, Type::i32, count), number(2, Type::i32, 0),
+                          number(3, Type::i32, 3), number(4, Type::i32, 3)})});
+        file += head + body;
+        unpacked += static_cast<std::int64_t>(head.size() + bytes.size());
+        entries += count;
+        first = next;
+    } while (first < end);
+    const auto size = static_cast<std::int64_t>(kept + file.size() - begin);
+    std::vector<std::string> path;
+    for (const std::string& part : leaf.path) path.push_back(binary(part));
+    const Structure metadata = {number(1, Type::i32, static_cast<std::int64_t>(leaf.physical)),
+                                list_field(2, Type::i32, {whole(0), whole(3)}),  // PLAIN, RLE
+                                list_field(3, Type::binary, std::move(path)),
+                                number(4, Type::i32, 6),  // ZSTD
+                                number(5, Type::i64, entries),
+                                number(6, Type::i64, unpacked),
+                                number(7, Type::i64, size),
+                                number(9, Type::i64, static_cast<std::int64_t>(begin))};
     Field& chunks = needed(group, 1);
     List list = list_in(chunks);
     list.of = Type::structure;
-    list.elements.push_back(chunk.end(unpacked, packed));
+    list.elements.push_back(bytes_of(Structure{number(2, Type::i64, 0), structure(3, metadata)}));
     chunks.bytes = bytes_of(list);
     add_to(find(group, 2), unpacked);
-    add_to(find(group, 6), packed);
+    add_to(find(group, 6), size);
 }
 
 /// Drops metadata that describe the columns, and would be believed before the schema.
@@ -368,104 +359,96 @@ void drop_descriptions(Structure& fields) {
 std::string empty_footer(std::uint64_t rows,
                          const std::vector<std::pair<std::string, std::string>>& metadata) {
     const auto count = static_cast<std::int64_t>(rows);
-    const Structure root = {{4, Type::binary, binary("schema")}, number(5, Type::i32, 0)};
+    const std::string root = element("schema", kRequired, number(5, Type::i32, 0));
     const Structure group = {list_field(1, Type::structure, {}), number(2, Type::i64, 0),
                              number(3, Type::i64, count)};
     std::vector<std::string> pairs;
     for (const auto& [key, value] : metadata)
-        pairs.push_back(
-            bytes_of(Structure{{1, Type::binary, binary(key)}, {2, Type::binary, binary(value)}}));
-    return bytes_of(Structure{number(1, Type::i32, 1),
-                              list_field(2, Type::structure, {bytes_of(root)}),
+        pairs.push_back(bytes_of(Structure{text(1, key), text(2, value)}));
+    return bytes_of(Structure{number(1, Type::i32, 1), list_field(2, Type::structure, {root}),
                               number(3, Type::i64, count),
                               list_field(4, Type::structure, {bytes_of(group)}),
-                              list_field(5, Type::structure, std::move(pairs)),
-                              {6, Type::binary, binary("etlc")}});
+                              list_field(5, Type::structure, std::move(pairs)), text(6, "etlc")});
 }
 
-}  // namespace
-
-/// The parts of the footer that columns change, and its fields.
-struct Extension::Metadata {
-    explicit Metadata(std::string_view footer) : fields(fields_in(footer)) {
-        schema = list_in(needed(fields, 2));
-        for (const std::string& group : list_in(needed(fields, 4)).elements)
-            groups.push_back(fields_in(group));
-    }
+/// The parts of a footer that new columns change.
+struct Metadata {
+    explicit Metadata(std::string_view footer)
+        : fields(fields_in(footer)),
+          schema(list_in(needed(fields, 2))),
+          groups(list_in(needed(fields, 4))) {}
 
     Structure fields;
     List schema;
-    std::vector<Structure> groups;
+    List groups;
 };
 
-Extension::Extension(std::string_view file) : old_(read_footer(file)) {
-    for (const RowGroup& group : old_.groups)
-        for (const Chunk& chunk : group.chunks)
-            if (!chunk.why_not.empty()) refuse("has a column that " + chunk.why_not);
-    Cursor tail(file.substr(file.size() - 8));
-    const auto size = tail.number<std::uint32_t>("its footer");
-    at_ = kept_ = file.size() - 8 - size;
-    metadata_ = std::make_shared<Metadata>(file.substr(kept_, size));
-    if (metadata_->groups.size() != old_.groups.size()) refuse("repeats a field of its metadata");
-}
-
-Extension::Extension(std::uint64_t rows,
-                     const std::vector<std::pair<std::string, std::string>>& metadata)
-    : metadata_(std::make_shared<Metadata>(empty_footer(rows, metadata))) {
-    old_.rows = rows;
-    old_.groups = {{rows, {}}};
-}
-
-/// Refuses a column that is there already, or has other rows than the file.
-void Extension::check(const NewColumn& column) const {
-    for (const Column& there : old_.columns)
+/// Refuses a column that is there already, and one of other rows.
+void check(const Footer& old, const NewColumn& column, std::uint64_t rows) {
+    for (const Column& there : old.columns)
         if (there.name == column.name) refuse("has a column '" + column.name + "' already");
-    std::uint64_t rows = column.values.size() / std::max<std::size_t>(1, bytes_of(column.kind));
-    for (const NewColumn::Run& run : column.lists) rows += run.rows;
-    if (rows != old_.rows)
-        refuse("has " + std::to_string(old_.rows) + " rows, and there are values for " +
+    if (rows != old.rows)
+        refuse("has " + std::to_string(old.rows) + " rows, and there are values for " +
                std::to_string(rows));
 }
 
-void Extension::add(const NewColumn& column, const Send& send) {
-    check(column);
-    if (at_ == 0) send(std::string(kMagic));
-    at_ = std::max<std::uint64_t>(at_, kMagic.size());
+/// Adds the pages of a column to what follows the first `kept` bytes of the file.
+void add_column(Metadata& metadata, const Footer& old, const NewColumn& column, std::uint64_t kept,
+                std::string& bytes) {
+    const Values values(column);
+    check(old, column, values.rows());
     const Shape shape = shape_of(column);
-    List& schema = metadata_->schema;
+    List& schema = metadata.schema;
     Structure root = fields_in(schema.elements[0]);
     add_to(&needed(root, 5), 1);
     schema.elements[0] = bytes_of(root);
     schema.elements.insert(schema.elements.end(), shape.elements.begin(), shape.elements.end());
     for (const Leaf& leaf : shape.leaves) {
-        Cells cells(column);
-        for (std::size_t g = 0; g < old_.groups.size(); ++g) {
-            ChunkWriter chunk(leaf, send, at_);
-            for (std::uint64_t row = 0; row < old_.groups[g].rows; ++row)
-                cells.add_row(chunk, leaf);
-            add_chunk(metadata_->groups[g], chunk);
+        std::uint64_t row = 0;
+        for (std::size_t g = 0; g < old.groups.size(); ++g) {
+            Structure group = fields_in(metadata.groups.elements[g]);
+            const std::uint64_t end = row + old.groups[g].rows;
+            add_chunk(group, values, leaf, row, end, kept, bytes);
+            metadata.groups.elements[g] = bytes_of(group);
+            row = end;
         }
     }
-    Field* const orders = find(metadata_->fields, 7);
+    Field* const orders = find(metadata.fields, 7);
     if (orders == nullptr) return;
     List list = list_in(*orders);  // the order of the type, for each leaf
-    list.elements.insert(list.elements.end(), shape.leaves.size(),
-                         bytes_of(Structure{{1, Type::structure, {'\0'}}}));
+    const std::string of_type = bytes_of(Structure{structure(1, {})});
+    list.elements.insert(list.elements.end(), shape.leaves.size(), of_type);
     orders->bytes = bytes_of(list);
 }
 
-void Extension::end(const Send& send) {
-    List groups;
-    for (const Structure& group : metadata_->groups) groups.elements.push_back(bytes_of(group));
-    Structure& fields = metadata_->fields;
-    needed(fields, 2).bytes = bytes_of(metadata_->schema);
-    needed(fields, 4).bytes = bytes_of(groups);
+}  // namespace
+
+std::string extension(std::string_view footer, std::uint64_t kept,
+                      const std::vector<NewColumn>& columns) {
+    const Footer old = parse_footer(footer, kept);
+    for (const RowGroup& group : old.groups)
+        for (const Chunk& chunk : group.chunks)
+            if (!chunk.why_not.empty()) refuse("has a column that " + chunk.why_not);
+    Metadata metadata(footer);
+    if (metadata.groups.elements.size() != old.groups.size())
+        refuse("repeats a field of its metadata");
+    std::string bytes;
+    for (const NewColumn& column : columns) add_column(metadata, old, column, kept, bytes);
+    Structure& fields = metadata.fields;
+    needed(fields, 2).bytes = bytes_of(metadata.schema);
+    needed(fields, 4).bytes = bytes_of(metadata.groups);
     drop_descriptions(fields);
-    const std::string footer = bytes_of(fields);
-    if (footer.size() > kMaxFooterBytes) refuse("cannot be extended: its footer gets too large");
-    const auto size = static_cast<std::uint32_t>(footer.size());
-    send(footer + std::string(reinterpret_cast<const char*>(&size), sizeof size) +
-         std::string(kMagic));
+    const std::string longer = bytes_of(fields);
+    if (longer.size() > kMaxFooterBytes) refuse("cannot be extended: its footer gets too large");
+    bytes += longer;
+    append(bytes, static_cast<std::uint32_t>(longer.size()));
+    return bytes + std::string(kMagic);
+}
+
+std::string new_file(std::uint64_t rows,
+                     const std::vector<std::pair<std::string, std::string>>& metadata,
+                     const std::vector<NewColumn>& columns) {
+    return std::string(kMagic) + extension(empty_footer(rows, metadata), kMagic.size(), columns);
 }
 
 }  // namespace etlc::recordings::parquet

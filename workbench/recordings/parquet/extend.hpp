@@ -1,13 +1,11 @@
 // New columns behind the old ones of a Parquet file.
-// Takes: the bytes of a file, or none, and the values of new columns. Gives: what follows the old
-// bytes up to their footer: the pages of the new columns, and a new footer. Keeps true: no old byte
-// moves, so all offsets in the old footer stay right; row groups keep their rows; fields of the old
-// footer that are not known here are copied. Source: parquet.thrift, Encodings.md.
+// Takes: the footer of a file, and the values of new columns. Gives: what follows the old bytes up
+// to their footer: the pages of the new columns, and a new footer. Keeps true: no old byte moves,
+// so all offsets in the old footer stay right; row groups keep their rows; fields of the old footer
+// that are not known here are copied. Source: parquet.thrift, Encodings.md.
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -40,39 +38,20 @@ struct NewColumn {
     std::vector<Run> lists;  ///< of texts
 };
 
-/// Adds the bytes of a number to the values of a column, or to what the program reads.
+/// Adds the bytes of a number to the values of a column.
 template <class Number>
 void append(std::string& bytes, Number value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// Sends bytes of the file, in their order.
-using Send = std::function<void(const std::string& bytes)>;
+/// Returns the bytes that follow the first `kept` bytes of a file, at which its footer began, to
+/// the end of the extended file. Each column has a value for each row. Throws Refused.
+std::string extension(std::string_view footer, std::uint64_t kept,
+                      const std::vector<NewColumn>& columns);
 
-/// All functions throw Refused.
-class Extension {
-public:
-    /// Extends a file, which outlives this object.
-    explicit Extension(std::string_view file);
-    /// Begins a file of one row group, with pairs of keys and values in its footer.
-    Extension(std::uint64_t rows, const std::vector<std::pair<std::string, std::string>>& metadata);
-
-    /// The number of old bytes that stay; what is sent follows them.
-    std::uint64_t kept() const { return kept_; }
-    /// Sends a column, which has a value for each row.
-    void add(const NewColumn& column, const Send& send);
-    /// Sends the footer.
-    void end(const Send& send);
-
-private:
-    struct Metadata;
-
-    void check(const NewColumn& column) const;
-
-    Footer old_;
-    std::uint64_t kept_ = 0;
-    std::uint64_t at_ = 0;  ///< the end of what was sent, in the file
-    std::shared_ptr<Metadata> metadata_;
-};
+/// Returns the bytes of a file of one row group, with pairs of keys and values in its footer.
+std::string new_file(std::uint64_t rows,
+                     const std::vector<std::pair<std::string, std::string>>& metadata,
+                     const std::vector<NewColumn>& columns);
 
 }  // namespace etlc::recordings::parquet

@@ -199,8 +199,8 @@ private:
 
 class FooterReader {
 public:
-    FooterReader(std::string_view file, std::string_view bytes)
-        : thrift_(bytes), data_bytes_(file.size() - bytes.size() - 8) {}
+    FooterReader(std::string_view bytes, std::uint64_t begin)
+        : thrift_(bytes), data_bytes_(begin) {}
 
     Footer read() {
         std::vector<Element> elements;
@@ -318,7 +318,12 @@ Footer read_footer(std::string_view file) {
     if (length > kMaxFooterBytes)
         refuse("has a footer of " + std::to_string(length) + " bytes, at most " +
                std::to_string(kMaxFooterBytes) + " are read");
-    return FooterReader(file, file.substr(file.size() - 8 - length, length)).read();
+    const std::size_t begin = file.size() - 8 - length;
+    return parse_footer(file.substr(begin, length), begin);
+}
+
+Footer parse_footer(std::string_view bytes, std::uint64_t begin) {
+    return FooterReader(bytes, begin).read();
 }
 
 /// A bool is a byte in a list, and the type itself in a struct.

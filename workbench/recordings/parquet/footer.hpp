@@ -67,6 +67,8 @@ struct Footer {
 
 /// Throws Refused.
 Footer read_footer(std::string_view file);
+/// Reads the bytes of a footer alone, which begins at `begin` in its file.
+Footer parse_footer(std::string_view bytes, std::uint64_t begin);
 
 inline constexpr std::uint64_t kMaxRows = 1ULL << 26U;
 inline constexpr std::size_t kMaxFooterBytes = 64U << 20U;
@@ -74,7 +76,7 @@ inline constexpr std::size_t kMaxFooterBytes = 64U << 20U;
 // Reads the bytes of a Parquet file from the front: little-endian numbers and parts.
 // Keeps true: missing bytes are refused, with the name of what was expected.
 
-/// Why a Parquet file is not read. Only etlc-read-parquet throws it, and sends the text to etlc.
+/// Why a Parquet file is not read. etlc-read-parquet sends the text to etlc.
 class Refused : public std::runtime_error {
 public:
     Refused(records::Cause cause, const std::string& why)

@@ -1,5 +1,4 @@
-// etlc-read-parquet: reads Parquet files in a separate process, since they may be hostile, and says
-// how to extend them.
+// etlc-read-parquet: reads Parquet files in a separate process, since they may be hostile.
 // It speaks the protocol of recordings/records/protocol.hpp.
 // Keeps true: its own memory, files and time are limited before a byte of the file is looked at.
 #include <fcntl.h>
@@ -7,18 +6,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <new>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "recordings/parquet/chunk.hpp"
-#include "recordings/parquet/extend.hpp"
 #include "recordings/parquet/rows.hpp"
 #include "recordings/records/protocol.hpp"
 
@@ -91,76 +87,14 @@ void read(std::string_view file, const std::string& key, double value,
     if (!block.empty()) records::send(Tag::rows, block);
 }
 
-template <class T>
-T given() {
-    T value{};
-    if (std::fread(&value, sizeof value, 1, stdin) != 1) records::quit(2);
-    return value;
-}
-
-template <class Size>
-std::string given_bytes() {
-    std::string bytes(given<Size>(), '\0');
-    if (std::fread(bytes.data(), 1, bytes.size(), stdin) != bytes.size()) records::quit(2);
-    return bytes;
-}
-
-parquet::NewColumn given_column(std::string_view shape) {
-    parquet::NewColumn column;
-    column.kind = static_cast<parquet::NewColumn::Kind>(shape[0] - '0');
-    column.name = shape.substr(1);
-    if (column.kind < parquet::NewColumn::Kind::language) {
-        column.values = given_bytes<std::uint64_t>();
-        return column;
-    }
-    column.lists.resize(given<std::uint64_t>());
-    for (parquet::NewColumn::Run& run : column.lists) {
-        run.rows = given<std::uint64_t>();
-        run.sayings.resize(given<std::uint32_t>());
-        for (parquet::Saying& saying : run.sayings) {
-            saying.timestamp = given<float>();
-            saying.content = given_bytes<std::uint32_t>();
-        }
-    }
-    return column;
-}
-
-void extend(parquet::Extension extension, const std::vector<std::string>& columns) {
-    records::send(Tag::shapes, std::to_string(extension.kept()));
-    const auto send = [](const std::string& bytes) {
-        for (std::size_t at = 0; at < bytes.size(); at += records::kBlockBytes)
-            records::send(Tag::rows, bytes.substr(at, records::kBlockBytes));
-    };
-    for (const std::string& column : columns) extension.add(given_column(column), send);
-    extension.end(send);
-}
-
-parquet::Extension new_file() {
-    const auto rows = given<std::uint64_t>();
-    std::vector<std::pair<std::string, std::string>> metadata(given<std::uint32_t>());
-    for (auto& [key, value] : metadata) {
-        key = given_bytes<std::uint32_t>();
-        value = given_bytes<std::uint32_t>();
-    }
-    return {rows, metadata};
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-    const std::string_view call = argc > 1 ? argv[1] : "";
-    const bool reads = call == "read" && argc >= 5;
-    const bool extends = call == "extend" && argc >= 3;
-    if (!reads && !extends && call != "begin") return 2;
-    const std::string_view file = reads || extends ? map_file(argv[2]) : "";
+    if (argc < 5 || std::string_view(argv[1]) != "read") return 2;
+    const std::string_view file = map_file(argv[2]);
     records::limit_resources(file.size());
     try {
-        if (reads)
-            read(file, argv[3], std::strtod(argv[4], nullptr), {argv + 5, argv + argc});
-        else if (extends)
-            extend(parquet::Extension(file), {argv + 3, argv + argc});
-        else
-            extend(new_file(), {argv + 2, argv + argc});
+        read(file, argv[3], std::strtod(argv[4], nullptr), {argv + 5, argv + argc});
     } catch (const parquet::Refused& refused) {
         records::fail(refused.cause(), refused.what());
     } catch (const std::bad_alloc&) {

@@ -40,19 +40,13 @@ std::optional<std::vector<Table::Column>> parse_columns(std::string_view text, s
 
 }  // namespace
 
-diag::Result<std::shared_ptr<Records>> Table::start(const std::string& path,
-                                                    const std::vector<std::string>& arguments,
-                                                    bool fed) {
-    return Records::start("etlc-read-parquet", "ETLC_PARQUET_READER", "Parquet", kCodes, path,
-                          arguments, fed);
-}
-
 diag::Result<std::unique_ptr<Table>> Table::open(const std::string& path,
                                                  const std::vector<std::string>& names,
                                                  const std::string& key, std::uint64_t value) {
     std::vector<std::string> arguments = {"read", path, key, std::to_string(value)};
     arguments.insert(arguments.end(), names.begin(), names.end());
-    auto records = start(path, arguments);
+    auto records = Records::start("etlc-read-parquet", "ETLC_PARQUET_READER", "Parquet", kCodes,
+                                  path, arguments);
     if (!records) return records.failure();
     if (is_lfs_pointer(path)) return Failure{Code::unreadable_parquet, kIsLfsPointer};
     const auto tag = (*records)->next();

@@ -35,11 +35,6 @@ public:
                                                      const std::string& key = "",
                                                      std::uint64_t value = 0);
 
-    /// Starts the program, about a file or none; `fed`: with what is given to its standard input.
-    static diag::Result<std::shared_ptr<Records>> start(const std::string& path,
-                                                        const std::vector<std::string>& arguments,
-                                                        bool fed = false);
-
     const std::vector<Column>& columns() const { return columns_; }
 
     /// Reads a cell for each name; false at the end.

@@ -41,21 +41,12 @@ inline constexpr std::string_view kOptional = "optional";
 inline constexpr std::string_view kTimes = "times";
 inline constexpr std::size_t kMaxNames = 1U << 20U;
 
-// etlc-read-parquet has three calls.
+// etlc-read-parquet has one call.
 // `read FILE KEY VALUE NAME...`: one `shapes` record, a line for each name, "absent", or "number",
 // "bool" or "text", with " list" behind it where a row has a list; then `rows` records of the rows
 // whose column KEY is VALUE, of all where KEY is empty. A row has a cell for each column that
 // exists: the number of its values (32 bits; kNullCell: the cell is null), then each value as a
 // double, or as the length (32 bits) and the bytes of a text, in the machine's order.
-// `extend FILE COLUMN...`: one `shapes` record, the number of the first bytes of the file that
-// stay, in decimal; then `rows` records of the bytes that follow these in the extended file. COLUMN
-// is the digit of parquet::NewColumn::Kind and a name. The values come on standard input, column
-// after column: the number of bytes (64 bits) and the values; or the number of runs (64 bits), and
-// for each its rows (64 bits), the number of texts in the list that its rows have (32 bits), and
-// for each of these its time as a float, and its length (32 bits) and bytes. `begin COLUMN...`: the
-// same for a new file, of which nothing is kept. Before the values come its rows (64 bits) and
-// pairs of texts for its metadata: their number (32 bits), then the length (32 bits) and bytes of
-// each text.
 inline constexpr std::uint32_t kNullCell = 0xffffffff;
 
 // The reader's side of the records, which it writes to standard output.

@@ -32,14 +32,12 @@ std::string escaped(std::string_view text) {
 diag::Result<std::shared_ptr<Records>> Records::start(std::string_view program,
                                                       const char* variable, const char* what,
                                                       const Codes& codes, const std::string& path,
-                                                      const std::vector<std::string>& arguments,
-                                                      bool fed) {
-    if (auto why = path.empty() ? std::nullopt : why_unreadable(path))
-        return Failure{codes.unreadable, *why};
+                                                      const std::vector<std::string>& arguments) {
+    if (auto why = why_unreadable(path)) return Failure{codes.unreadable, *why};
     const char* const named = std::getenv(variable);
     const std::string reader = named != nullptr ? named : helper_path(program);
-    auto child = Child::start(reader, arguments,
-                              {.max_silence_seconds = records::kMaxSilenceSeconds, .fed = fed});
+    auto child =
+        Child::start(reader, arguments, {.max_silence_seconds = records::kMaxSilenceSeconds});
     if (!child)
         return Failure{codes.unreadable, fmt::format("{} cannot be run, which reads {} files",
                                                      in_quotes(reader), what)};

@@ -25,16 +25,11 @@ public:
     };
 
     /// Starts a reader of the files `what`, "HDF5". The environment variable `variable` replaces
-    /// the program. `path`: empty for none.
+    /// the program.
     static diag::Result<std::shared_ptr<Records>> start(std::string_view program,
                                                         const char* variable, const char* what,
                                                         const Codes& codes, const std::string& path,
-                                                        const std::vector<std::string>& arguments,
-                                                        bool fed = false);
-
-    /// Writes to the standard input of a reader that is fed; false where it stops reading.
-    bool give(std::string_view bytes) { return child_->give(bytes); }
-    void give_no_more() { child_->give_no_more(); }
+                                                        const std::vector<std::string>& arguments);
 
     /// Reads the next record into `bytes()`. A failure that the reader sends is returned as one.
     diag::Result<records::Tag> next();
