@@ -4,9 +4,12 @@ the spec give by brute force, and the bytes that were there stay."""
 import filecmp
 import json
 import os
+import resource
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 import numpy as np
 
@@ -107,7 +110,7 @@ def check_success(release, states, **how):
     lerobot.write(folder, release, LENGTHS, without=("next.success",), states=states, **how)
     said = annotate("--data", folder, "-o", out, "--success", "placed", status=1)
     assert "'placed' does not decide 1 episode: '5'" in said, said
-    assert not os.path.exists(out) and not [f for f in os.listdir() if ".part" in f]
+    assert not os.path.exists(out) and no_part_is_left()
     said = annotate("--data", folder, "-o", out, "--success", "placed", "--undecided", "false")
     assert ", 1 undecided, listed in meta/etlc_annotations.json" in said, said
     data = [name for name in files_of(folder) if name.startswith("data/")]
@@ -245,7 +248,55 @@ def check_in_place(states):
         kept = os.stat(f"place/{name}").st_ino == inode
         assert kept != (name.startswith("data/") or name == "meta/info.json"), name
     assert rows_of_set("place", ["next.success"]) == rows_of_set("s3.out.calm", ["next.success"])
-    assert not [name for name in os.listdir() if name.startswith(".etlc")]
+    assert no_part_is_left()
+
+
+def no_part_is_left():
+    return not [name for name in os.listdir() if ".etlc-part" in name]
+
+
+def check_interruptions():
+    """A full disk leaves nothing; a call that is killed leaves a part, which the next one clears;
+    the set stays as it is."""
+    before = {name: footer_begins(f"s3/{name}")[0] for name in files_of("s3")
+              if name.endswith(".parquet")}
+    words = [ETLC, "annotate", "pick.etl", "--data", "s3", "-o", "late", "--success", "calm", *MAP]
+
+    def full_disk():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
+
+    done = subprocess.run(words, capture_output=True, text=True, preexec_fn=full_disk)
+    assert done.returncode == 1 and "cannot be written: larger than a file may be" in done.stderr, done.stderr
+    assert not os.path.exists("late") and no_part_is_left()
+
+    with open("sleeps", "w", encoding="utf-8") as file:  # before it reads what is to be extended
+        file.write(f'#!/bin/sh\n[ -e .late.etlc-part/meta ] && exec sleep 20\nexec {READER} "$@"\n')
+    os.chmod("sleeps", 0o755)
+    killed = subprocess.Popen(words, env={**os.environ, "ETLC_PARQUET_READER": "./sleeps"})
+    limit = time.monotonic() + 60
+    while not os.path.exists(".late.etlc-part/meta") and time.monotonic() < limit:
+        time.sleep(0.01)
+    done = subprocess.run(words, capture_output=True, text=True)
+    assert done.returncode == 1 and "late: error: is being written by another call" in done.stderr
+    killed.kill()
+    killed.wait()
+    assert os.path.exists(".late.etlc-part") and not os.path.exists("late")
+    assert subprocess.run(words, capture_output=True).returncode == 0
+    assert os.path.exists("late") and no_part_is_left()
+    assert before == {name: footer_begins(f"s3/{name}")[0] for name in before}
+
+
+def check_file_systems():
+    """Videos are copied where another file system cannot have links to them."""
+    shared = "/dev/shm"
+    if not os.path.isdir(shared) or os.stat(shared).st_dev == os.stat(".").st_dev:
+        return
+    with tempfile.TemporaryDirectory(dir=shared) as folder:
+        annotate("--data", "s3", "-o", f"{folder}/out", "--success", "calm")
+        for name in files_of("s3"):
+            if name.startswith("videos/"):
+                assert filecmp.cmp(f"s3/{name}", f"{folder}/out/{name}", shallow=False), name
 
 
 def check_refusals():
@@ -268,7 +319,7 @@ def check_refusals():
     annotate("--data", "s3", "-o", "none", status=2)
     annotate("--data", "s3", "--success", "calm", status=2)
     assert not os.path.exists("none")
-    assert not [name for name in os.listdir() if name.startswith(".etlc")]
+    assert no_part_is_left()
 
 
 with tempfile.TemporaryDirectory() as folder:
@@ -284,4 +335,6 @@ with tempfile.TemporaryDirectory() as folder:
     check_made(own)
     check_mixed(own)
     check_in_place(own)
+    check_interruptions()
+    check_file_systems()
     check_refusals()

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -28,6 +29,13 @@ Failure unwritable(const fs::path& path, int error) {
     return {Code::unwritable_output,
             fmt::format("{} cannot be written: {}", data::in_quotes(path.string()),
                         data::error_words(error))};
+}
+
+/// Names the copy while it is incomplete. A call that is killed leaves it; the next one for the
+/// same folder clears it.
+std::string part_of(const fs::path& folder) {
+    return (folder.parent_path() / fmt::format(".{}.etlc-part", folder.filename().string()))
+        .string();
 }
 
 /// Removes the slash at the end.
@@ -81,13 +89,29 @@ std::optional<Failure> copy(const Extended& from, data::AtomicFile& to) {
 DatasetCopy::DatasetCopy(std::string from, std::string to, std::set<std::string> changed)
     : from_(fs::canonical(from).string()),
       to_(to.empty() ? from_ : plain(to).string()),
-      part_((fs::path(to_).parent_path() / fmt::format(".etlc-{}.part", ::getpid())).string()),
+      part_(part_of(to_)),
       changed_(std::move(changed)),
       replaces_(to.empty()) {}
 
 DatasetCopy::~DatasetCopy() {
     std::error_code error;
-    fs::remove_all(part_, error);
+    if (lock_) fs::remove_all(part_, error);
+}
+
+std::optional<Failure> DatasetCopy::begin() {
+    if (!replaces_ && fs::exists(fs::symlink_status(to_)))
+        return Failure{Code::unwritable_output, "exists: the new data set needs a new folder"};
+    if (!replaces_ && to_.starts_with(from_ + "/"))
+        return Failure{Code::unwritable_output, "lies in the data set of which it is a copy"};
+    fs::create_directory(part_);
+    data::Descriptor folder(data::uninterrupted(
+        [&] { return ::open(part_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); }));
+    if (!folder || ::flock(*folder, LOCK_EX | LOCK_NB) != 0)
+        return Failure{Code::unwritable_output, "is being written by another call"};
+    lock_ = std::move(folder);
+    for (const fs::directory_entry& left_over : fs::directory_iterator(part_))
+        fs::remove_all(left_over.path());
+    return std::nullopt;
 }
 
 /// Throws fs::filesystem_error.
@@ -103,13 +127,8 @@ void DatasetCopy::take(const std::string& file, const std::string& from) {
 }
 
 std::optional<Failure> DatasetCopy::fill() {
-    std::error_code exists;
-    if (!replaces_ && fs::exists(fs::symlink_status(to_, exists)))
-        return Failure{Code::unwritable_output, "exists: the new data set needs a new folder"};
-    if (!replaces_ && to_.starts_with(from_ + "/"))
-        return Failure{Code::unwritable_output, "lies in the data set of which it is a copy"};
     try {
-        fs::create_directory(part_);
+        if (auto failure = begin()) return failure;
         fs::recursive_directory_iterator it(from_);
         for (const fs::recursive_directory_iterator end; it != end; ++it) {
             const std::string from = it->path().string();
@@ -154,21 +173,15 @@ std::optional<Failure> DatasetCopy::write(const std::string& file, const std::st
 
 std::optional<Failure> DatasetCopy::commit() {
     if (!replaces_)
-        return ::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, to_.c_str(), RENAME_NOREPLACE) == 0
-                   ? std::nullopt
-                   : std::optional(unwritable(to_, errno));
+        return std::rename(part_.c_str(), to_.c_str()) == 0 ? std::nullopt
+                                                            : std::optional(unwritable(to_, errno));
+    // The destructor removes the old files.
     if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, to_.c_str(), RENAME_EXCHANGE) == 0)
-        return std::nullopt;  // the destructor removes the old files
-    // A file system without exchange: the old set has another name for a moment.
-    const std::string old = part_ + ".old";
-    if (std::rename(to_.c_str(), old.c_str()) != 0) return unwritable(to_, errno);
-    if (std::rename(part_.c_str(), to_.c_str()) != 0) {
-        const int error = errno;
-        std::rename(old.c_str(), to_.c_str());
-        return unwritable(to_, error);
-    }
-    part_ = old;
-    return std::nullopt;
+        return std::nullopt;
+    if (errno != EINVAL && errno != ENOSYS) return unwritable(to_, errno);
+    return Failure{Code::unwritable_output,
+                   "cannot be replaced on its file system, which cannot exchange the names of two "
+                   "folders: write a copy with -o"};
 }
 
 }  // namespace etlc::recordings

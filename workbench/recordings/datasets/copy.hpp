@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "data/files/file.hpp"
 #include "diag/diag.hpp"
 #include "recordings/parquet/extend.hpp"
 
@@ -42,11 +43,14 @@ public:
 
 private:
     std::string path_of(const std::string& file) const { return part_ + "/" + file; }
+    /// Makes the folder of the copy. Throws fs::filesystem_error.
+    std::optional<diag::Failure> begin();
     void take(const std::string& file, const std::string& from);
 
     std::string from_;
     std::string to_;
-    std::string part_;
+    std::string part_;       ///< the copy, until it is complete
+    data::Descriptor lock_;  ///< of that folder
     std::set<std::string> changed_;
     bool replaces_ = false;
     std::uint64_t copied_ = 0;
