@@ -4,6 +4,11 @@
 # that it uses, which tests/house checks.
 option(ETLC_PRECOMPILE "Read the headers that most files include once a build" ON)
 mark_as_advanced(ETLC_PRECOMPILE)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Debug")
+  # GCC 12 defines __OPTIMIZE__ behind a precompiled header and `#pragma GCC target`, even without
+  # -O. Eigen does not compile then, and the runtime's namespace has two names.
+  set(ETLC_PRECOMPILE OFF)
+endif()
 
 # One static library per folder, `etlc_<folder>`; DEPENDS lists the stages that it builds on, as in
 # docs/contributing/compiler.md. Include paths start below the layer: base/source is included as
