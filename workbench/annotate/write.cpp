@@ -19,6 +19,7 @@ namespace {
 
 using diag::Code;
 using diag::Failure;
+using recordings::in_part;
 using recordings::Table;
 using recordings::parquet::append;
 using recordings::parquet::NewColumn;
@@ -29,11 +30,6 @@ constexpr const char* kSuccess = "next.success";
 constexpr const char* kPersistent = "language_persistent";
 constexpr const char* kEvents = "language_events";
 constexpr std::uint64_t kMaxInfoBytes = 64U << 20U;
-
-Failure in_part(const std::string& file, Failure failure) {
-    failure.message = fmt::format("{}: {}", file, failure.message);
-    return failure;
-}
 
 /// A row of the file of progress.
 struct ProgressRow {

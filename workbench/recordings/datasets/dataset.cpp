@@ -36,12 +36,6 @@ Failure wrong(const std::string& file, const std::string& why) {
     return {Code::unreadable_dataset, fmt::format("{} {}", file, why)};
 }
 
-/// Adds the file in the folder to a failure.
-Failure in_part(const std::string& file, Failure failure) {
-    failure.message = fmt::format("{}: {}", file, failure.message);
-    return failure;
-}
-
 std::optional<std::uint64_t> whole(const Json& object, const char* key) {
     const auto found = object.find(key);
     if (found == object.end() || !found->is_number()) return std::nullopt;
@@ -126,6 +120,11 @@ bool stays_inside(const std::string& path) {
 
 }  // namespace
 
+diag::Failure in_part(const std::string& file, diag::Failure failure) {
+    failure.message = fmt::format("{}: {}", file, failure.message);
+    return failure;
+}
+
 diag::Result<std::string> path_from(const std::string& pattern, const PathNames& names) {
     std::string path;
     for (std::size_t at = 0; at < pattern.size();) {
@@ -201,9 +200,7 @@ diag::Result<TaskList> read_tasks(const std::string& folder, int major) {
     const std::string file = major == 2 ? "meta/tasks.jsonl" : "meta/tasks.parquet";
     auto tasks = (major == 2 ? read_lines : read_table)(folder + "/" + file);
     if (tasks) return TaskList{file, std::move(*tasks)};
-    Failure failure = tasks.failure();
-    failure.message = fmt::format("{}: {}", file, failure.message);
-    return failure;
+    return in_part(file, tasks.failure());
 }
 
 }  // namespace

@@ -107,6 +107,8 @@ private:
     std::map<std::string, VideoParts> parts_;                      ///< by video
 };
 
+/// Adds a file in the folder to a failure.
+diag::Failure in_part(const std::string& file, diag::Failure failure);
 /// Adds to `why`, the reason that a path leads to no recording, the data set that may be meant.
 std::string with_dataset_meant(const std::string& why, const std::string& path);
 /// Returns the path of an episode: "pusht:000003".

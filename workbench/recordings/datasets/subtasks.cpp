@@ -72,19 +72,15 @@ private:
                                         const std::vector<std::string>& texts,
                                         const std::vector<std::string>& numbers, bool is_of_episode,
                                         const Take& take) {
-        const auto fail = [&](Failure failure) {
-            failure.message = fmt::format("{}: {}", file, failure.message);
-            return failure;
-        };
         std::vector<std::string> names = texts;
         names.insert(names.end(), numbers.begin(), numbers.end());
         auto table = Table::open(set_.path_of(file), names, is_of_episode ? "episode_index" : "",
                                  episode_.index);
-        if (!table) return fail(table.failure());
+        if (!table) return in_part(file, table.failure());
         Cells cells;
         for (std::uint64_t row = 0;; ++row) {
             const auto more = (*table)->next(cells);
-            if (!more) return fail(more.failure());
+            if (!more) return in_part(file, more.failure());
             if (!*more) return std::nullopt;
             for (std::size_t i = 0; i < names.size(); ++i) {
                 Table::Cell& cell = cells[i];
@@ -94,12 +90,12 @@ private:
                     (!is_text && std::all_of(cell.numbers.begin(), cell.numbers.end(),
                                              [](double x) { return std::isnan(x); }));
                 if (is_text != (i < texts.size()) && !is_null)
-                    return fail(
-                        inconsistent(fmt::format("column {} does not hold {}", in_quotes(names[i]),
-                                                 is_text ? "numbers" : "text")));
+                    return in_part(file, inconsistent(fmt::format("column {} does not hold {}",
+                                                                  in_quotes(names[i]),
+                                                                  is_text ? "numbers" : "text")));
                 if (!is_text && i < texts.size()) cell.texts.resize(cell.numbers.size());
             }
-            if (auto failure = take(row, cells)) return fail(*failure);
+            if (auto failure = take(row, cells)) return in_part(file, *failure);
         }
     }
 

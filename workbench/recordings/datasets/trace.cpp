@@ -154,11 +154,6 @@ std::optional<Failure> refuse_empty(const DatasetPath& path) {
                                path.first, path.end, in_quotes(path.folder + ":0:50"))};
 }
 
-Failure in_rows(const DatasetEpisode& episode, Failure failure) {
-    failure.message = fmt::format("{}: {}", episode.rows, failure.message);
-    return failure;
-}
-
 }  // namespace
 
 diag::Result<SoundEpisode> find_episode(const std::string& path) {
@@ -200,7 +195,7 @@ diag::Result<std::unique_ptr<Trace>> open_dataset_trace(const std::string& path,
     }
     auto table =
         Table::open(found->set->path_of(episode.rows), names, "episode_index", episode.index);
-    if (!table) return in_rows(episode, table.failure());
+    if (!table) return in_part(episode.rows, table.failure());
     std::vector<bool> there;
     for (std::size_t c = 0; c < channels.size(); ++c) {
         if (there.emplace_back(false); subtask_name(channels[c].name)) continue;
@@ -303,19 +298,17 @@ public:
     diag::Result<bool> next(Frame& frame) override {
         for (;;) {
             const auto more = table_->next(cells_);
-            if (!more) return of_rows(more.failure());
+            if (!more) return in_part(rows_, more.failure());
             if (*more != (row_ < length_))
-                return of_rows({Code::unreadable_dataset,
-                                "has other rows than before: it has changed meanwhile"});
+                return in_part(rows_, {Code::unreadable_dataset,
+                                       "has other rows than before: it has changed meanwhile"});
             if (!*more) return false;
             if (row_ % stride_ == 0) break;
             ++row_;
         }
-        if (auto failure = decode(frame)) {
-            failure->message =
-                fmt::format("row {} of the episode: {}: {}", row_, camera_, failure->message);
-            return of_rows(*failure);
-        }
+        if (auto failure = decode(frame))
+            return in_part(
+                rows_, in_part(fmt::format("row {} of the episode: {}", row_, camera_), *failure));
         ++row_;
         return true;
     }
@@ -334,11 +327,6 @@ private:
         return Failure{
             Code::unreadable_image,
             fmt::format("is {}, expected an image", image.is_null ? "null" : "without bytes")};
-    }
-
-    Failure of_rows(Failure failure) const {
-        failure.message = fmt::format("{}: {}", rows_, failure.message);
-        return failure;
     }
 
     std::unique_ptr<Table> table_;
@@ -375,14 +363,11 @@ diag::Result<std::unique_ptr<FrameSource>> open_stored_images(const Dataset& set
                                                               const DatasetEpisode& episode,
                                                               const std::string& camera,
                                                               std::uint64_t stride) {
-    const auto of_rows = [&](Code code, const std::string& why) {
-        return Failure{code, fmt::format("{}: {}", episode.rows, why)};
-    };
     auto table = Table::open(set.path_of(episode.rows), {camera + ".bytes", camera + ".path"},
                              "episode_index", episode.index);
-    if (!table) return of_rows(table.failure().code, table.failure().message);
+    if (!table) return in_part(episode.rows, table.failure());
     if (const auto why = refused(camera, (*table)->columns()))
-        return of_rows(Code::unreadable_parquet, *why);
+        return in_part(episode.rows, {Code::unreadable_parquet, *why});
     auto decoder = ImageDecoder::start();
     if (!decoder) return decoder.failure();
     return std::unique_ptr<FrameSource>(std::make_unique<StoredImages>(
@@ -397,11 +382,7 @@ public:
 
     diag::Result<bool> next(Frame& frame) override {
         auto more = frames_->next(frame);
-        if (!more) {
-            Failure failure = more.failure();
-            failure.message = fmt::format("{}: {}", video_, failure.message);
-            return failure;
-        }
+        if (!more) return in_part(video_, more.failure());
         if (*more) ++taken_;
         if (*more ? taken_ > steps_ : taken_ < steps_)
             return Failure{Code::video_out_of_step,
