@@ -248,16 +248,20 @@ public:
         return column_.kind >= Kind::language ? lists_.size() : column_.values.size() / bytes();
     }
 
-    /// Returns the values of a leaf in the rows [first, end).
-    Page page(const Leaf& leaf, std::uint64_t first, std::uint64_t end) const {
+    /// Returns the values of a leaf in rows from `row` up to `end`, as many as a page has, and
+    /// moves `row` behind these.
+    Page page(const Leaf& leaf, std::uint64_t& row, std::uint64_t end) const {
+        constexpr std::size_t kPageEntries = 1U << 16U;
         Page page;
         if (column_.kind < Kind::language) {
-            page.definitions.assign(end - first, '\1');
-            page.values = column_.values.substr(first * bytes(), (end - first) * bytes());
+            const std::size_t count = std::min<std::uint64_t>(end - row, kPageEntries);
+            page.definitions.assign(count, '\1');
+            page.values = column_.values.substr(row * bytes(), count * bytes());
             if (column_.kind == Kind::boolean) page.values = packed(page.values, 1);
+            row += count;
             return page;
         }
-        for (std::uint64_t row = first; row < end; ++row) {
+        for (; row < end && page.definitions.size() < kPageEntries; ++row) {
             char repetition = 0;
             for (const Saying& saying : *lists_[row]) {
                 page.repetitions += repetition;
@@ -296,16 +300,14 @@ private:
     std::vector<const std::vector<Saying>*> lists_;  ///< of each row
 };
 
-/// Writes the pages of a leaf in a row group, and adds the chunk to the metadata of the group.
-void add_chunk(Structure& group, const Values& values, const Leaf& leaf, std::uint64_t first,
+/// Writes the pages of a leaf in the rows of a row group, and adds the chunk to its metadata.
+void add_chunk(Structure& group, const Values& values, const Leaf& leaf, std::uint64_t row,
                std::uint64_t end, std::uint64_t kept, std::string& file) {
-    constexpr std::uint64_t kPageRows = 1U << 13U;
     const std::uint64_t begin = kept + file.size();
     std::int64_t entries = 0;
     std::int64_t unpacked = 0;
     do {
-        const std::uint64_t next = std::min(end, first + kPageRows);
-        const Page page = values.page(leaf, first, next);
+        const Page page = values.page(leaf, row, end);
         const std::string bytes = levels(page.repetitions, leaf.most_repeated) +
                                   levels(page.definitions, leaf.most_defined) + page.values;
         const std::string body = compressed(bytes);
@@ -318,8 +320,7 @@ void add_chunk(Structure& group, const Values& values, const Leaf& leaf, std::ui
         file += head + body;
         unpacked += static_cast<std::int64_t>(head.size() + bytes.size());
         entries += count;
-        first = next;
-    } while (first < end);
+    } while (row < end);
     const auto size = static_cast<std::int64_t>(kept + file.size() - begin);
     std::vector<std::string> path;
     for (const std::string& part : leaf.path) path.push_back(binary(part));
