@@ -43,19 +43,23 @@ std::size_t footer_bytes(std::string_view file) {
     return Cursor(file.substr(file.size() - 8)).number<std::uint32_t>("its footer");
 }
 
-/// Adds a column of bools, which is read back.
+/// Adds a column of bools and one of subtasks, which are read back.
 void extend(std::string_view file) {
     const Footer old = read_footer(file);
     if (old.rows > 10000) return;
     const std::size_t begin = file.size() - 8 - footer_bytes(file);
     const NewColumn added = {NewColumn::Kind::boolean, "added", std::string(old.rows, '\1'), {}};
-    const std::string longer = std::string(file.substr(0, begin)) +
-                               extension(file.substr(begin, footer_bytes(file)), begin, {added});
-    Rows rows(longer, {"added"});
+    const NewColumn said = {NewColumn::Kind::language, "said", "", {{old.rows, {{0.5F, "go"}}}}};
+    const std::string longer =
+        std::string(file.substr(0, begin)) +
+        extension(file.substr(begin, footer_bytes(file)), begin, {added, said});
+    Rows rows(longer, {"added", "said.content"});
     fuzz::require(rows.rows() == old.rows, "an extended file has the rows that it had");
     std::vector<Cell> cells;
-    while (rows.next(cells))
+    while (rows.next(cells)) {
         fuzz::require(cells.at(0).numbers == std::vector<double>{1}, "a new value is read back");
+        fuzz::require(cells.at(1).texts == std::vector<std::string>{"go"}, "a text is read back");
+    }
 }
 
 }  // namespace
