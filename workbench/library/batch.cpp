@@ -7,8 +7,6 @@
 #include <system_error>
 #include <thread>
 
-#include "library/program.hpp"
-
 namespace etlc::library {
 
 namespace {
@@ -30,10 +28,10 @@ Worker::Worker(const Program& program)
       evaluator_(program.plan(), program.tables()),
       views_(program.model().inputs.size()),
       widened_(program.model().inputs.size()) {
-    for (const check::Input& input : program.model().inputs)
-        is_f32_.push_back(type_of(input) == ETLC_F32);
-    for (const Index i : program.plan().inputs)
-        if (!is_f32_[i]) widened_[i].resize(program.model().inputs[i].dimension);
+    for (const Index i : program.plan().inputs) {
+        const check::Input& input = program.model().inputs[i];
+        if (type_of(input) != ETLC_F32) widened_[i].resize(input.dimension);
+    }
 }
 
 void Worker::run(execute::State& state, const Grids& samples, std::uint64_t row,
@@ -44,7 +42,7 @@ void Worker::run(execute::State& state, const Grids& samples, std::uint64_t row,
     for (std::uint64_t step = 0; step < samples.steps; ++step, to += monitors) {
         for (const Index i : program_.plan().inputs) {
             views_[i].elements = elements_of(i, at(samples.grids[i], samples.steps, row, step));
-            if (samples.steps == 1 && row + 1 < samples.rows && is_f32_[i])
+            if (samples.steps == 1 && row + 1 < samples.rows && widened_[i].empty())
                 fetch_ahead(at(samples.grids[i], 1, row + 1, 0),
                             program_.model().inputs[i].dimension * sizeof(float));
         }
@@ -52,19 +50,15 @@ void Worker::run(execute::State& state, const Grids& samples, std::uint64_t row,
     }
 }
 
-void Worker::make_imagined() {
-    if (!imagined_) imagined_ = std::make_unique<execute::State>(evaluator_.new_state());
-}
-
 void Worker::imagine(const execute::State& state, const Grids& samples, std::uint64_t row,
                      etlc_verdict* verdicts) {
-    *imagined_ = state;
+    imagined_ = state;
     run(*imagined_, samples, row, verdicts);
 }
 
 /// Returns the elements in float32: in the memory of the caller if they are there.
 const float* Worker::elements_of(Index index, const void* data) {
-    if (data == nullptr || is_f32_[index]) return static_cast<const float*>(data);
+    if (data == nullptr || widened_[index].empty()) return static_cast<const float*>(data);
     widen(program_.model().inputs[index], data, widened_[index].data());
     return widened_[index].data();
 }
@@ -72,10 +66,6 @@ const float* Worker::elements_of(Index index, const void* data) {
 void Workers::prepare(std::uint32_t threads) {
     while (workers_.size() < threads) workers_.push_back(std::make_unique<Worker>(*program_));
     threads_ = threads;
-}
-
-void Workers::prepare_to_imagine() {
-    for (const std::unique_ptr<Worker>& worker : workers_) worker->make_imagined();
 }
 
 template <class Work>
@@ -157,7 +147,6 @@ void look_ahead(const std::shared_ptr<const Program>& program,
                 const Grids& samples, std::uint32_t threads, etlc_verdict* verdicts) {
     Workers workers(program);
     workers.prepare(threads);
-    workers.prepare_to_imagine();
     workers.each(samples.rows, [&](Worker& worker, std::uint64_t row) {
         worker.imagine(*states[row / plans], samples, row, verdicts);
     });

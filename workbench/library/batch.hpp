@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "execute/evaluator.hpp"
@@ -28,8 +29,7 @@ public:
     /// Steps a state with the samples of a row. `verdicts`: room for those of the row.
     void run(execute::State& state, const Grids& samples, std::uint64_t row,
              etlc_verdict* verdicts);
-    /// The same with a copy of the state, once there is memory for one.
-    void make_imagined();
+    /// The same with a copy of the state.
     void imagine(const execute::State& state, const Grids& samples, std::uint64_t row,
                  etlc_verdict* verdicts);
 
@@ -39,9 +39,8 @@ private:
     const Program& program_;
     execute::Evaluator evaluator_;
     std::vector<execute::SampleView> views_;   ///< per input
-    std::vector<bool> is_f32_;                 ///< per input
-    std::vector<std::vector<float>> widened_;  ///< per input that is not
-    std::unique_ptr<execute::State> imagined_;
+    std::vector<std::vector<float>> widened_;  ///< per input; empty: its elements are float32
+    std::optional<execute::State> imagined_;
 };
 
 /// Workers of a program, as many as some call has asked for.
@@ -51,7 +50,6 @@ public:
 
     /// Makes workers for `threads` >= 1 threads. Allocates memory for those that there were not.
     void prepare(std::uint32_t threads);
-    void prepare_to_imagine();
     /// Calls `work(worker, row)` for all rows, in as many threads as were prepared.
     template <class Work>
     void each(std::uint64_t rows, const Work& work);
