@@ -8,7 +8,6 @@
 #include <cstring>
 #include <mutex>
 #include <string_view>
-#include <vector>
 
 #include "check/model/fingerprint.hpp"
 #include "data/files/hash.hpp"
@@ -233,6 +232,8 @@ std::uint64_t hold(std::unique_ptr<Session> session) {
 
 namespace {
 
+// The bytes of etlc_save(): a head that says what they are a state of, the numbers, and a checksum.
+
 /// The first byte is not text, so text conversions are detected; the last word is 1, in the byte
 /// order of the machine.
 struct Head {
@@ -244,12 +245,12 @@ struct Head {
     std::uint64_t data = 0;
     std::uint64_t thresholds = 0;
     std::uint64_t plan = 0;  ///< hash of the printed plan, which the options of etlc_open() change
-    std::uint64_t environments = 0;
+    std::uint64_t environments = 0;  ///< 0: no batch
     std::uint64_t history = 0;
 };
 static_assert(sizeof(Head) == 96, "there is no padding");
 
-Head head_of(const Program& program, const StateOrigin& origin) {
+Head head_of(const Program& program, const Batch* batch, std::uint64_t history) {
     const check::Fingerprint made_from = check::fingerprint(program.model());
     Head head;
     std::strncpy(head.version, kVersion, sizeof head.version - 1);
@@ -257,8 +258,8 @@ Head head_of(const Program& program, const StateOrigin& origin) {
     head.data = made_from.data;
     head.thresholds = made_from.thresholds;
     head.plan = data::xxh64(plan::print(program.plan()));
-    head.environments = origin.environments;
-    head.history = origin.history;
+    head.environments = batch == nullptr ? 0 : batch->size();
+    head.history = history;
     return head;
 }
 
@@ -295,25 +296,15 @@ std::string difference(const Program& program, const Head& found, const Head& ex
     return "";
 }
 
-}  // namespace
-
-void begin_state(const Program& program, const StateOrigin& origin,
-                 std::vector<std::uint8_t>& bytes) {
-    const Head head = head_of(program, origin);
-    bytes.resize(sizeof head);
-    std::memcpy(bytes.data(), &head, sizeof head);
+template <class Part>
+void append(std::vector<std::uint8_t>& bytes, const Part& part) {
+    const auto* const first = reinterpret_cast<const std::uint8_t*>(&part);
+    bytes.insert(bytes.end(), first, first + sizeof part);
 }
 
-void end_state(std::vector<std::uint8_t>& bytes) {
-    const std::uint64_t sum = data::xxh64(text_of_bytes(bytes));
-    const std::size_t size = bytes.size();
-    bytes.resize(size + sizeof sum);
-    std::memcpy(bytes.data() + size, &sum, sizeof sum);
-}
-
-std::string open_state(const Program& program, const StateOrigin& origin,
+/// Checks head and checksum, and takes them away. Returns what is wrong; else an empty text.
+std::string open_state(const Program& program, const Head& expected,
                        std::span<const std::uint8_t>& bytes) {
-    const Head expected = head_of(program, origin);
     Head found;
     std::uint64_t sum = 0;
     const bool is_state = bytes.size() >= sizeof found.magic &&
@@ -332,20 +323,13 @@ std::string open_state(const Program& program, const StateOrigin& origin,
     return difference(program, found, expected);
 }
 
-// Saves and loads the state of a session.
-
-namespace {
-
-StateOrigin origin_of(const Batch* batch, std::uint64_t history) {
-    return {batch == nullptr ? 0 : batch->size(), history};
-}
-
 }  // namespace
 
 const std::vector<std::uint8_t>& Session::save() {
-    begin_state(*program_, origin_of(batch(), history_), saved_);
+    saved_.clear();
+    append(saved_, head_of(*program_, batch(), history_));
     write_state(saved_);
-    end_state(saved_);
+    append(saved_, data::xxh64(text_of_bytes(saved_)));
     return saved_;
 }
 
@@ -366,8 +350,8 @@ void Session::write_state(std::vector<std::uint8_t>& bytes) const {
 }
 
 std::string Session::load(std::span<const std::uint8_t> bytes) {
-    if (std::string why = open_state(*program_, origin_of(batch(), history_), bytes); !why.empty())
-        return why;
+    const Head expected = head_of(*program_, batch(), history_);
+    if (std::string why = open_state(*program_, expected, bytes); !why.empty()) return why;
     // The states of this session stay as they are until all bytes have been read.
     Session loaded(*this);
     if (!loaded.read_state(bytes) || !bytes.empty()) return "the state is damaged";
