@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "diag/diag.hpp"
 #include "etlmon/distance/widen.hpp"
 #include "plan/recorder_plan.hpp"
 

@@ -62,12 +62,11 @@ inline std::uint32_t type_of(const check::Input& input) {
     return ETLC_F32;
 }
 
-/// Returns a sample; null where it is missing.
-inline const void* at(const etlc_column& column, std::uint64_t step) {
-    if (column.data == nullptr || (column.present != nullptr && column.present[step] == 0))
-        return nullptr;
-    return static_cast<const char*>(column.data) + static_cast<std::int64_t>(step) * column.stride;
+/// Returns a column as the only row of a grid.
+inline etlc_grid grid_of(const etlc_column& column) {
+    return {column.data, column.present, 0, column.stride, column.count, column.type};
 }
+/// Returns a sample; null where it is missing.
 inline const void* at(const etlc_grid& grid, std::uint64_t steps, std::uint64_t row,
                       std::uint64_t step) {
     if (grid.data == nullptr || (grid.present != nullptr && grid.present[row * steps + step] == 0))

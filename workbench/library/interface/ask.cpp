@@ -1,4 +1,5 @@
-// Queries: measurements, lets, counts, explanations and incidents of a step; encoders.
+// Queries: measurements, lets, counts, explanations and incidents of a step; encoders; the
+// description of the spec of a session.
 
 #include <algorithm>
 #include <cstring>
@@ -52,6 +53,35 @@ etlc_status with_recorder(etlc_session number, const Work& work) noexcept {
                       "no incident is kept: open the spec with options.recorder, as \"2s,1s,4\"");
     });
 }
+
+std::uint32_t restarts_of(const plan::Monitor& monitor) {
+    switch (monitor.restarts) {
+        case check::Restarts::on_request: return ETLC_ON_REQUEST;
+        case check::Restarts::when_final: return ETLC_WHEN_FINAL;
+        case check::Restarts::never: break;
+    }
+    return ETLC_NEVER;
+}
+
+std::size_t count_of(Session& session, std::uint32_t kind) {
+    switch (kind) {
+        case ETLC_INPUTS: return session.model().inputs.size();
+        case ETLC_MONITORS: return session.plan().monitors.size();
+        case ETLC_PREDICATES: return session.model().predicates.size();
+        default: return session.plan().lets.size();
+    }
+}
+
+const std::string& name_of(Session& session, std::uint32_t kind, Index index) {
+    switch (kind) {
+        case ETLC_INPUTS: return session.model().inputs[index].name;
+        case ETLC_MONITORS: return session.plan().monitors[index].name;
+        case ETLC_PREDICATES: return session.program()->predicate_name(index);
+        default: return session.model().lets[session.plan().lets[index].index].name;
+    }
+}
+
+constexpr const char* kKinds[] = {"input", "monitor", "predicate", "let"};
 
 }  // namespace
 
@@ -223,52 +253,6 @@ etlc_status etlc_forget_incidents(etlc_session session) {
         return ETLC_OK;
     });
 }
-
-}  // extern "C"
-
-// The description of the spec of a session.
-
-namespace etlc::library {
-
-namespace {
-
-std::uint32_t restarts_of(const plan::Monitor& monitor) {
-    switch (monitor.restarts) {
-        case check::Restarts::on_request: return ETLC_ON_REQUEST;
-        case check::Restarts::when_final: return ETLC_WHEN_FINAL;
-        case check::Restarts::never: break;
-    }
-    return ETLC_NEVER;
-}
-
-std::size_t count_of(Session& session, std::uint32_t kind) {
-    switch (kind) {
-        case ETLC_INPUTS: return session.model().inputs.size();
-        case ETLC_MONITORS: return session.plan().monitors.size();
-        case ETLC_PREDICATES: return session.model().predicates.size();
-        default: return session.plan().lets.size();
-    }
-}
-
-const std::string& name_of(Session& session, std::uint32_t kind, Index index) {
-    switch (kind) {
-        case ETLC_INPUTS: return session.model().inputs[index].name;
-        case ETLC_MONITORS: return session.plan().monitors[index].name;
-        case ETLC_PREDICATES: return session.program()->predicate_name(index);
-        default: return session.model().lets[session.plan().lets[index].index].name;
-    }
-}
-
-constexpr const char* kKinds[] = {"input", "monitor", "predicate", "let"};
-
-}  // namespace
-
-}  // namespace etlc::library
-
-using namespace etlc;
-using namespace etlc::library;
-
-extern "C" {
 
 etlc_status etlc_describe(etlc_session session, etlc_description* description) {
     return with_any(session, [&](Session& opened) -> etlc_status {

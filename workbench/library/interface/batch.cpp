@@ -19,36 +19,6 @@ etlc_status check_room(const Session& session, const Grids& samples, const void*
                   samples.rows, samples.steps, monitors);
 }
 
-}  // namespace
-
-etlc_status check_grids(const Session& session, const Grids& samples, std::size_t grid_count,
-                        std::uint32_t threads, const void* verdicts, std::size_t count) {
-    if (const etlc_status failed = check_count(session, samples.grids, grid_count, "grids"))
-        return failed;
-    if (threads > kMostThreads)
-        return refuse(ETLC_WRONG_VALUE, "threads is {}, expected at most {}", threads,
-                      kMostThreads);
-    if (const etlc_status failed = check_room(session, samples, verdicts, count)) return failed;
-    const std::vector<check::Input>& inputs = session.model().inputs;
-    for (std::size_t i = 0; i < inputs.size(); ++i)
-        if (const etlc_status failed =
-                check_grid(inputs[i], samples.grids[i], samples.rows, samples.steps))
-            return failed;
-    return ETLC_OK;
-}
-
-etlc_status check_none_ended(const Batch& batch) {
-    for (std::uint64_t e = 0; e < batch.size(); ++e)
-        if (batch.is_ended(e))
-            return refuse(ETLC_ENDED,
-                          "the episode of environment {} has ended with etlc_finish_batch(): "
-                          "etlc_reset_batch() begins another one",
-                          e);
-    return ETLC_OK;
-}
-
-namespace {
-
 etlc_status check_environments(const Batch& batch, std::uint64_t environments) {
     if (environments == batch.size()) return ETLC_OK;
     return refuse(ETLC_WRONG_NUMBER, "there are {} environments, expected the {} of the batch",
@@ -78,6 +48,32 @@ void for_each_of(const Batch& batch, const std::uint8_t* which, const Work& work
 }
 
 }  // namespace
+
+etlc_status check_grids(const Session& session, const Grids& samples, std::size_t grid_count,
+                        std::uint32_t threads, const void* verdicts, std::size_t count) {
+    if (const etlc_status failed = check_count(session, samples.grids, grid_count, "grids"))
+        return failed;
+    if (threads > kMostThreads)
+        return refuse(ETLC_WRONG_VALUE, "threads is {}, expected at most {}", threads,
+                      kMostThreads);
+    if (const etlc_status failed = check_room(session, samples, verdicts, count)) return failed;
+    const std::vector<check::Input>& inputs = session.model().inputs;
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+        if (const etlc_status failed =
+                check_grid(inputs[i], samples.grids[i], samples.rows, samples.steps))
+            return failed;
+    return ETLC_OK;
+}
+
+etlc_status check_none_ended(const Batch& batch) {
+    for (std::uint64_t e = 0; e < batch.size(); ++e)
+        if (batch.is_ended(e))
+            return refuse(ETLC_ENDED,
+                          "the episode of environment {} has ended with etlc_finish_batch(): "
+                          "etlc_reset_batch() begins another one",
+                          e);
+    return ETLC_OK;
+}
 
 }  // namespace etlc::library
 

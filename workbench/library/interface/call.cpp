@@ -1,20 +1,12 @@
 #include "library/interface/call.hpp"
 
-#include <cstdint>
 #include <exception>
 #include <new>
 #include <stdexcept>
 
 #include "data/spill/spill.hpp"
-#include "library/program.hpp"
 
 namespace etlc::library {
-
-namespace {
-
-constexpr const char* kNoDiagnostics = "{\"diagnostics\": []}\n";
-
-}  // namespace
 
 Message& Message::here() noexcept {
     thread_local Message message;
@@ -23,7 +15,7 @@ Message& Message::here() noexcept {
 
 void Message::clear() noexcept {
     text_ = "";
-    json_ = kNoDiagnostics;
+    json_ = "{\"diagnostics\": []}\n";
 }
 
 void Message::take_diagnostics(std::string text, std::string json) noexcept {
@@ -44,28 +36,17 @@ etlc_status Message::say_what_failed() noexcept {
     try {
         throw;
     } catch (const std::bad_alloc&) {
-        text_ = "there is not enough memory for this";
-        return ETLC_OUT_OF_MEMORY;
     } catch (const std::length_error&) {
-        text_ = "there is not enough memory for this";
-        return ETLC_OUT_OF_MEMORY;
     } catch (const data::SpillError& error) {
-        try {
-            return say(ETLC_OUT_OF_MEMORY, "{}", error.what());
-        } catch (...) {
-            text_ = "there is not enough memory for this";
-            return ETLC_OUT_OF_MEMORY;
-        }
+        return say(ETLC_OUT_OF_MEMORY, "{}", error.what());
     } catch (const std::exception& error) {
-        try {
-            return say(ETLC_INTERNAL, "internal error: {}", error.what());
-        } catch (...) {
-            text_ = "internal error";
-        }
+        return say(ETLC_INTERNAL, "internal error: {}", error.what());
     } catch (...) {
         text_ = "internal error";
+        return ETLC_INTERNAL;
     }
-    return ETLC_INTERNAL;
+    text_ = "there is not enough memory for this";
+    return ETLC_OUT_OF_MEMORY;
 }
 
 etlc_status check_restarts(const Session& session, std::uint32_t monitor) {
@@ -146,21 +127,6 @@ etlc_status check_sample(const check::Input& input, const etlc_sample& sample) {
     if (const etlc_status failed = check_elements(input, sample.type, sample.count)) return failed;
     if (const etlc_status failed = check_aligned(input, sample.data, 0)) return failed;
     return check_bool(input, sample.data);
-}
-
-etlc_status check_column(const check::Input& input, const etlc_column& column,
-                         std::uint64_t steps) {
-    if (column.data == nullptr) return ETLC_OK;
-    if (const etlc_status failed = check_elements(input, column.type, column.count)) return failed;
-    if (const etlc_status failed = check_aligned(input, column.data, column.stride)) return failed;
-    if (const etlc_status failed = check_reach(input, column.stride, steps)) return failed;
-    if (input.type != check::InputType::boolean) return ETLC_OK;
-    const auto* flag = static_cast<const std::uint8_t*>(column.data);
-    for (std::uint64_t step = 0; step < steps; ++step, flag += column.stride) {
-        if (column.present != nullptr && column.present[step] == 0) continue;
-        if (const etlc_status failed = check_bool(input, flag)) return failed;
-    }
-    return ETLC_OK;
 }
 
 etlc_status check_grid(const check::Input& input, const etlc_grid& grid, std::uint64_t rows,

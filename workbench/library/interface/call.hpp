@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <utility>
 
@@ -153,7 +152,6 @@ etlc_status check_verdicts(const void* verdicts, std::size_t count);
 /// Return ETLC_OK, or refuse the samples of an input. The room for the verdicts has been checked,
 /// so that `rows` times `steps` is no number that the caller made up.
 etlc_status check_sample(const check::Input& input, const etlc_sample& sample);
-etlc_status check_column(const check::Input& input, const etlc_column& column, std::uint64_t steps);
 etlc_status check_grid(const check::Input& input, const etlc_grid& grid, std::uint64_t rows,
                        std::uint64_t steps);
 

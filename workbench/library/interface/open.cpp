@@ -1,7 +1,6 @@
 // Opens and closes sessions, and returns messages.
 #include <cstddef>
 #include <cstring>
-#include <optional>
 #include <string>
 #include <vector>
 

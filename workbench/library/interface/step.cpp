@@ -1,11 +1,11 @@
-// Steps the monitors of a session.
+// Steps the monitors of a session; copies sessions, looks ahead of them, saves and loads their
+// states.
 
 #include <cmath>
 #include <cstring>
 #include <vector>
 
 #include "library/interface/call.hpp"
-#include "library/program.hpp"
 
 namespace etlc::library {
 
@@ -72,12 +72,12 @@ etlc_status etlc_run(etlc_session session, const etlc_column* columns, size_t co
             return failed;
         const std::vector<check::Input>& inputs = opened.model().inputs;
         for (std::size_t i = 0; i < inputs.size(); ++i)
-            if (const etlc_status failed = check_column(inputs[i], columns[i], steps))
+            if (const etlc_status failed = check_grid(inputs[i], grid_of(columns[i]), 1, steps))
                 return failed;
         for (std::uint64_t step = 0; step < steps; ++step) {
             for (Index i = 0; i < inputs.size(); ++i)
                 if (opened.program()->is_used(i))
-                    take(inputs[i], at(columns[i], step), opened.sample(i));
+                    take(inputs[i], at(grid_of(columns[i]), steps, 0, step), opened.sample(i));
             give(opened.step(), verdicts);
             verdicts += opened.plan().monitors.size();
         }
@@ -132,29 +132,6 @@ etlc_status etlc_observe(etlc_session session, uint32_t predicate, float distanc
     });
 }
 
-}  // extern "C"
-
-// Copies sessions, looks ahead of them, saves and loads their states.
-
-namespace etlc::library {
-
-namespace {
-
-etlc_status check_not_ended(const Session& session) {
-    if (!session.is_ended()) return ETLC_OK;
-    return refuse(ETLC_ENDED,
-                  "the episode has ended with etlc_finish(): etlc_reset() begins another one");
-}
-
-}  // namespace
-
-}  // namespace etlc::library
-
-using namespace etlc;
-using namespace etlc::library;
-
-extern "C" {
-
 etlc_status etlc_copy(etlc_session session, etlc_session* copy) {
     return with_any(session, [&](Session& opened) -> etlc_status {
         return give_session(copy, "copy", [&] { return std::make_unique<Session>(opened); });
@@ -167,7 +144,7 @@ etlc_status etlc_ahead(etlc_session session, const etlc_grid* grids, size_t grid
     return with_any(session, [&](Session& opened) -> etlc_status {
         const Batch* const batch = opened.batch();
         if (const etlc_status failed =
-                batch == nullptr ? check_not_ended(opened) : check_none_ended(*batch))
+                batch == nullptr ? check_open(opened) : check_none_ended(*batch))
             return failed;
         const std::uint64_t environments = batch == nullptr ? 1 : batch->size();
         if (plans == 0 || plans > kMostRows / environments)
