@@ -72,14 +72,11 @@ std::vector<std::string> facts_of(const Analysis& analysis, const std::string& n
 
 struct WordInfo {
     enum class Kind : std::uint8_t {
-        declaration,
         keyword,
         type,
         unit,
         operation,
-        aggregation,
-        function,
-        distance,
+        function,  ///< also an aggregation or a distance
         argument,  ///< of calibrated(...), fitted(...) or an encoder; no word of the grammar
     };
     std::string_view word;

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -27,6 +28,7 @@ struct Duration {
     std::string text;    ///< "0.5 s"
     std::string detail;  ///< "10 steps"
 };
+using Durations = std::vector<Duration>;
 
 using check::Decimal;
 using check::Quantity;
@@ -43,90 +45,82 @@ Quantity step_of(const Analysis& analysis) {
     return {Decimal::parse(analysis.checked->step_number), analysis.checked->step_unit};
 }
 
-class Found {
-public:
-    void add(std::string text, std::uint64_t steps, bool rounded) {
-        const bool known = std::any_of(all_.begin(), all_.end(),
-                                       [&](const Duration& d) { return d.text == text; });
-        if (steps == 0 || known || text.starts_with("about")) return;
-        if (text.find('/') != std::string::npos) return;  // it is not a finite decimal
-        all_.push_back(
-            {std::move(text), (rounded ? "rounded to " : "") + diag::counted(steps, "step")});
-    }
-    std::vector<Duration> take() { return std::move(all_); }
-
-private:
-    std::vector<Duration> all_;
-};
+void add(Durations& found, std::string text, std::uint64_t steps, bool rounded) {
+    const bool known =
+        std::any_of(found.begin(), found.end(), [&](const Duration& d) { return d.text == text; });
+    if (steps == 0 || known || text.starts_with("about")) return;
+    if (text.find('/') != std::string::npos) return;  // it is not a finite decimal
+    found.push_back(
+        {std::move(text), (rounded ? "rounded to " : "") + diag::counted(steps, "step")});
+}
 
 /// Adds a duration that is a whole number of steps, or is rounded to one.
-void add_written(Found& found, const Analysis& analysis, std::string_view number,
+void add_written(Durations& found, const Analysis& analysis, std::string_view number,
                  std::string_view unit, bool with_neighbours) {
     const Quantity step = step_of(analysis);
     const check::StepCount count = check::count_steps({Decimal::parse(number), unit}, step);
     if (count.too_many) return;
     const std::string text = check::with_unit(number, unit);
     const std::string& rounding = analysis.checked->model.rounding;
-    if (count.whole) return found.add(text, count.floor, false);
+    if (count.whole) return add(found, text, count.floor, false);
     if (!rounding.empty()) {
         const bool up = rounding == "up" || (rounding == "to the nearest" && count.upper_half);
-        return found.add(text, count.floor + (up ? 1 : 0), true);
+        return add(found, text, count.floor + (up ? 1 : 0), true);
     }
     if (!with_neighbours || count.floor == 0) return;
     for (const std::uint64_t steps : {count.floor, count.floor + 1})
-        found.add(check::duration_text(steps, step, unit), steps, false);
+        add(found, check::duration_text(steps, step, unit), steps, false);
 }
 
 /// Returns usual durations; none where the spec has no rate.
-std::vector<Duration> durations(const Analysis& analysis) {
+Durations durations(const Analysis& analysis) {
     if (analysis.checked->step_number.empty()) return {};
-    Found found;
+    Durations found;
     for (const auto& [number, unit] : kUsual) add_written(found, analysis, number, unit, false);
-    return found.take();
+    return found;
 }
 
 /// Returns the number with each unit; where that is no whole number of steps, the two neighbours.
-std::vector<Duration> durations_near(const Analysis& analysis, const std::string& number) {
+Durations durations_near(const Analysis& analysis, const std::string& number) {
     if (analysis.checked->step_number.empty()) return {};
     if (Decimal::parse(number).digits.size() > check::kMaxTimeDigits) return {};
-    Found found;
+    Durations found;
     for (const std::string_view unit : kUnits) add_written(found, analysis, number, unit, true);
-    return found.take();
+    return found;
 }
 
-constexpr int kKeyword = 14;
+/// Kinds of items, as the protocol numbers them.
+enum class ItemKind {
+    function = 3,
+    field = 5,
+    variable = 6,
+    unit = 11,
+    value = 12,
+    keyword = 14,
+    constant = 21,
+    operation = 24,
+    type = 25
+};
 
-/// Returns the protocol's number of a kind of item.
-int item_kind(WordInfo::Kind kind) {
-    constexpr int kFunction = 3;
-    constexpr int kUnit = 11;
-    constexpr int kOperator = 24;
-    constexpr int kType = 25;
+ItemKind item_kind(WordInfo::Kind kind) {
     switch (kind) {
-        case WordInfo::Kind::type: return kType;
-        case WordInfo::Kind::unit: return kUnit;
-        case WordInfo::Kind::operation: return kOperator;
-        case WordInfo::Kind::aggregation:
-        case WordInfo::Kind::function:
-        case WordInfo::Kind::distance: return kFunction;
-        case WordInfo::Kind::declaration:
+        case WordInfo::Kind::type: return ItemKind::type;
+        case WordInfo::Kind::unit: return ItemKind::unit;
+        case WordInfo::Kind::operation: return ItemKind::operation;
+        case WordInfo::Kind::function: return ItemKind::function;
         case WordInfo::Kind::keyword:
         case WordInfo::Kind::argument: break;
     }
-    return kKeyword;
+    return ItemKind::keyword;
 }
 
-int item_kind(NameKind kind) {
-    constexpr int kFunction = 3;
-    constexpr int kField = 5;
-    constexpr int kVariable = 6;
-    constexpr int kConstant = 21;
+ItemKind item_kind(NameKind kind) {
     switch (kind) {
-        case NameKind::constant: return kConstant;
-        case NameKind::input: return kField;
+        case NameKind::constant: return ItemKind::constant;
+        case NameKind::input: return ItemKind::field;
         case NameKind::projection:
-        case NameKind::encoder: return kFunction;
-        default: return kVariable;
+        case NameKind::encoder: return ItemKind::function;
+        default: return ItemKind::variable;
     }
 }
 
@@ -181,17 +175,16 @@ class Items {
 public:
     Items(const Analysis& analysis, source::Span typed) : range_(analysis.lines.range(typed)) {}
 
-    void add(const std::string& label, int kind, const std::string& detail,
+    void add(const std::string& label, ItemKind kind, const std::string& detail,
              const std::vector<std::string>& sentences = {}) {
         add_at(range_, label, kind, detail);
-        if (sentences.empty()) return;
-        std::string text;
-        for (const std::string& sentence : sentences) text += (text.empty() ? "" : "\n") + sentence;
-        items_.back()["documentation"] = text;
+        if (!sentences.empty())
+            items_.back()["documentation"] = fmt::format("{}", fmt::join(sentences, "\n"));
     }
 
     /// Adds an item that replaces another range than the typed word.
-    void add_at(const Json& range, const std::string& label, int kind, const std::string& detail) {
+    void add_at(const Json& range, const std::string& label, ItemKind kind,
+                const std::string& detail) {
         // Items keep their order.
         items_.push_back({{"label", label},
                           {"kind", kind},
@@ -221,10 +214,9 @@ void add_names(Items& items, const Analysis& analysis, const parse::Continuation
 }
 
 void add_durations(Items& items, const Analysis& analysis, const parse::Continuations& at) {
-    constexpr int kValue = 12;
     if (at.in_interval && at.typed.begin == at.typed.end)
         for (const Duration& duration : durations(analysis))
-            items.add(duration.text, kValue, duration.detail);
+            items.add(duration.text, ItemKind::value, duration.detail);
     if (at.number_before.empty()) return;
     // Items replace the number before the cursor.
     const auto size = static_cast<std::uint32_t>(at.number_before.size());
@@ -236,7 +228,7 @@ void add_durations(Items& items, const Analysis& analysis, const parse::Continua
     if (!takes_unit) return;
     const Json range = analysis.lines.range({begin - size, at.typed.end});
     for (const Duration& duration : durations_near(analysis, at.number_before))
-        items.add_at(range, duration.text, kValue, duration.detail);
+        items.add_at(range, duration.text, ItemKind::value, duration.detail);
 }
 
 }  // namespace
@@ -248,7 +240,7 @@ Json completion(const Question& question) {
     add_names(items, analysis, at);
     const bool method = at.role == Role::calibration || at.role == Role::fitting;
     for (const std::string& word : words_of(at.role))
-        items.add(word, kKeyword, method ? "method" : "argument");
+        items.add(word, ItemKind::keyword, method ? "method" : "argument");
     add_durations(items, analysis, at);
     for (const std::string& word : at.words) {
         // The grammar allows formulas here, the language does not.
@@ -349,10 +341,6 @@ Sentences about(const check::Encoder& encoder) {
     return facts;
 }
 
-std::string shown(float number) {
-    return fmt::format("{}", number);
-}
-
 Sentences about(const Model& model, Index index) {
     const check::Predicate& predicate = model.predicates[index];
     const check::Threshold& threshold = predicate.threshold;
@@ -368,8 +356,8 @@ Sentences about(const Model& model, Index index) {
         facts.push_back(fmt::format("Of T labelled positive frames it misses at most {}.",
                                     check::miss_bound(predicate)));
     if (known && !predicate.equality())
-        facts.push_back(fmt::format("Robustness in [{}, {}].", shown(predicate.robustness.low),
-                                    shown(predicate.robustness.high)));
+        facts.push_back(fmt::format("Robustness in [{}, {}].", predicate.robustness.low,
+                                    predicate.robustness.high));
     if (predicate.missing)
         facts.push_back(
             fmt::format("Where a sample is missing it counts as {}.", *predicate.missing));

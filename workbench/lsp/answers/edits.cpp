@@ -160,15 +160,6 @@ Json code_actions(const Question& question) {
 
 namespace {
 
-int number_of(diag::Severity severity) {
-    switch (severity) {
-        case diag::Severity::error: return 1;
-        case diag::Severity::warning: return 2;
-        case diag::Severity::note: break;
-    }
-    return 3;  // information
-}
-
 /// Returns a path relative to the folder of the spec.
 std::string shown_path(const std::string& path, const source::File& spec) {
     const std::filesystem::path folder = std::filesystem::path(spec.path()).parent_path();
@@ -243,7 +234,8 @@ Json diagnostics_of(const Analysis& analysis, const Planned* planned, const std:
     Json result = Json::array();
     for (const diag::Diagnostic& found : sorted) {
         Json diagnostic{{"range", analysis.lines.range(place_of(found, analysis))},
-                        {"severity", number_of(found.severity())},
+                        // The protocol numbers them in the same order, from 1.
+                        {"severity", 1 + static_cast<int>(found.severity())},
                         {"code", diag::info(found.code).code},
                         {"source", "etlc"},
                         {"message", message_of(found, analysis, with_related)}};

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <filesystem>
 
 #include "lsp/answers/answers.hpp"
@@ -38,10 +37,6 @@ int symbol_kind(const Declared& declared) {
         case check::NameKind::unreadable: break;
     }
     return kVariable;
-}
-
-std::string detail_of(const Declared& declared) {
-    return declared.kind ? std::string(check::word(*declared.kind)) : "spec";
 }
 
 }  // namespace
@@ -99,7 +94,7 @@ Json symbols(const Question& question) {
         Json symbol{{"name", declared.name}, {"kind", symbol_kind(declared)}};
         const Range whole = analysis.lines.range(declared.span);
         if (question.client.hierarchical_symbols) {
-            symbol["detail"] = detail_of(declared);
+            symbol["detail"] = declared.kind ? check::word(*declared.kind) : "spec";
             symbol["range"] = whole;
             symbol["selectionRange"] = analysis.lines.range(declared.name_span);
         } else {
@@ -119,7 +114,7 @@ std::string written(const Analysis& analysis, const Declared& declared) {
     const bool whole = text.ends_with(';') || declared.kind == check::NameKind::unreadable;
     if (text.size() <= kLongest) return text + (whole ? "" : ";");
     std::size_t end = kLongest;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+    while (end > 0 && source::is_continuation(text[end])) --end;
     return text.substr(0, end) + " ...";
 }
 
@@ -133,21 +128,14 @@ std::string escaped(const std::string& text) {
     return result;
 }
 
-/// The content of a hover: code and sentences.
-struct Explained {
-    std::string code;
-    std::vector<std::string> sentences;
-};
-
-Json markup_of(const Explained& explained, bool with_markdown) {
-    std::string text = with_markdown ? "```etl\n" + explained.code + "\n```" : explained.code;
-    for (const std::string& sentence : explained.sentences)
+Json found(const std::string& code, const std::vector<std::string>& sentences, Range range,
+           bool with_markdown) {
+    std::string text = with_markdown ? "```etl\n" + code + "\n```" : code;
+    for (const std::string& sentence : sentences)
         text += (with_markdown ? "\n\n" + escaped(sentence) : "\n" + source::visible(sentence));
-    return {{"kind", with_markdown ? "markdown" : "plaintext"}, {"value", std::move(text)}};
-}
-
-Json found(const Explained& explained, Range range, bool with_markdown) {
-    return {{"contents", markup_of(explained, with_markdown)}, {"range", range}};
+    return {{"contents",
+             {{"kind", with_markdown ? "markdown" : "plaintext"}, {"value", std::move(text)}}},
+            {"range", range}};
 }
 
 }  // namespace
@@ -165,7 +153,7 @@ Json hover(const Question& question) {
         const std::vector<std::string> facts =
             declared->kind ? facts_of(analysis, at->name, document.planned())
                            : std::vector<std::string>{};
-        return found({written(analysis, *declared), facts}, analysis.lines.range(at->span),
+        return found(written(analysis, *declared), facts, analysis.lines.range(at->span),
                      with_markdown);
     }
     for (const parse::Word& word : parse::words_of(analysis.file)) {
@@ -173,7 +161,7 @@ Json hover(const Question& question) {
         if (word.span.begin > offset) break;
         const WordInfo* const info = find_word(analysis.file.text(word.span));
         if (info == nullptr) continue;
-        return found({std::string(info->form), {std::string(info->meaning) + "."}},
+        return found(std::string(info->form), {std::string(info->meaning) + "."},
                      analysis.lines.range(word.span), with_markdown);
     }
     return nullptr;

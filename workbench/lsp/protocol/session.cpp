@@ -72,6 +72,21 @@ const std::map<std::string_view, Json (*)(const Question&)>& answers() {
     return all;
 }
 
+/// Does some work, and returns why it could not be done.
+template <class Work>
+std::optional<Refusal> refusal_of(const Work& work) {
+    try {
+        work();
+        return std::nullopt;
+    } catch (const Refusal& refusal) {
+        return refusal;
+    } catch (const std::bad_alloc&) {
+        return Refusal{ErrorCode::request_failed, "there is not enough memory for this"};
+    } catch (const data::SpillError& error) {
+        return Refusal{ErrorCode::request_failed, error.what()};
+    }
+}
+
 }  // namespace
 
 void Session::receive(const Frame& frame) {
@@ -109,16 +124,11 @@ void Session::receive(const Json& message) {
 }
 
 void Session::answer(const Json& id, const std::string& method, const Json& params) {
-    try {
+    const auto refusal = refusal_of([&] {
         Json result = result_of(method, params);
         send_({{"jsonrpc", "2.0"}, {"id", id}, {"result", std::move(result)}});
-    } catch (const Refusal& refusal) {
-        respond_error(id, refusal.code, refusal.message);
-    } catch (const std::bad_alloc&) {
-        respond_error(id, ErrorCode::request_failed, "there is not enough memory for this");
-    } catch (const data::SpillError& error) {
-        respond_error(id, ErrorCode::request_failed, error.what());
-    }
+    });
+    if (refusal) respond_error(id, refusal->code, refusal->message);
 }
 
 Json Session::result_of(const std::string& method, const Json& params) {
@@ -139,15 +149,8 @@ void Session::take_note(const std::string& method, const Json& params) {
     if (life_ != Life::running) return;
     const auto found = notifications().find(method);
     if (found == notifications().end()) return;
-    try {
-        (this->*found->second)(params);
-    } catch (const Refusal& refusal) {
-        log(fmt::format("{}: {}", method, refusal.message));
-    } catch (const std::bad_alloc&) {
-        log(fmt::format("{}: there is not enough memory for this", method));
-    } catch (const data::SpillError& error) {
-        log(fmt::format("{}: {}", method, error.what()));
-    }
+    const auto refusal = refusal_of([&] { (this->*found->second)(params); });
+    if (refusal) log(fmt::format("{}: {}", method, refusal->message));
 }
 
 void Session::respond_error(const Json& id, ErrorCode code, const std::string& message) {
@@ -280,13 +283,8 @@ void Session::do_idle_work() {
     const auto found = std::find_if(documents_.begin(), documents_.end(),
                                     [](const auto& entry) { return entry.second.needs_plan(); });
     if (found == documents_.end()) return;
-    try {
-        found->second.plan();
-    } catch (const std::bad_alloc&) {
-        log("there is not enough memory to plan the monitors");
-    } catch (const data::SpillError& error) {
-        log(error.what());
-    }
+    const auto refusal = refusal_of([&] { found->second.plan(); });
+    if (refusal) log(fmt::format("planning the monitors: {}", refusal->message));
 }
 
 namespace {

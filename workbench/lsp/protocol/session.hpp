@@ -11,7 +11,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "lsp/answers/answers.hpp"
 #include "lsp/text/json.hpp"
@@ -90,7 +89,6 @@ private:
 
     Json initialize(const Json& params);
     Json shutdown();
-    void initialized(const Json& params);
     void exit(const Json& params);
     void opened(const Json& params);
     void changed(const Json& params);

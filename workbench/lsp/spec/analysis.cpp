@@ -5,9 +5,7 @@
 #include <utility>
 
 #include "check/context/context.hpp"
-#include "lsp/text/json.hpp"
 #include "parse/parse.hpp"
-#include "parse/stream/words.hpp"
 #include "recordings/open.hpp"
 
 namespace etlc::lsp {

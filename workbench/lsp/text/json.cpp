@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <filesystem>
 #include <limits>
 #include <system_error>
@@ -159,20 +160,15 @@ Position Lines::position(std::uint32_t offset) const {
 
 namespace {
 
-int hexadecimal(char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    const int letter = std::tolower(static_cast<unsigned char>(c));
-    return letter >= 'a' && letter <= 'f' ? letter - 'a' + 10 : -1;
-}
-
 /// Decodes %20 and the like; incomplete sequences stay.
 std::string decoded(std::string_view text) {
     std::string result;
     for (std::size_t i = 0; i < text.size(); ++i) {
-        const bool triple = text[i] == '%' && i + 2 < text.size() &&
-                            hexadecimal(text[i + 1]) >= 0 && hexadecimal(text[i + 2]) >= 0;
-        if (triple) {
-            result += static_cast<char>(16 * hexadecimal(text[i + 1]) + hexadecimal(text[i + 2]));
+        unsigned byte = 0;
+        const char* const digits = text.data() + i + 1;
+        if (text[i] == '%' && i + 2 < text.size() &&
+            std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2) {
+            result += static_cast<char>(byte);
             i += 2;
         } else {
             result += text[i];

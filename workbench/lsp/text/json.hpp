@@ -62,10 +62,8 @@ enum class ErrorCode : std::int32_t {
     invalid_request = -32600,
     method_not_found = -32601,
     invalid_params = -32602,
-    internal_error = -32603,
     server_not_initialized = -32002,
     request_failed = -32803,
-    request_cancelled = -32800,
 };
 
 /// Why a request gets an error in place of a result.
