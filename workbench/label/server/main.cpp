@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
@@ -37,7 +38,7 @@ constexpr const char* kHost = "127.0.0.1";
 constexpr int kGood = 200;
 constexpr int kForbidden = 403;
 constexpr const char* kEnd = "/events/end";       ///< a page has gone, which no page says itself
-constexpr std::size_t kConnections = 512;         ///< at a time; a browser opens six for a page
+constexpr int kConnections = 512;                 ///< at a time; a browser opens six for a page
 constexpr int kReadSeconds = 2;                   ///< for the next bytes of a request
 constexpr std::size_t kMostRequests = 1'000'000;  ///< of a connection
 
@@ -188,59 +189,35 @@ private:
 };
 
 /// A thread for each connection, so that none waits for a slow one: programs that connect and say
-/// nothing keep no page waiting. Threads are started when they are needed.
+/// nothing keep no page waiting.
 class Connections final : public httplib::TaskQueue {
     /// void, or in later versions of the library whether the connection was taken.
     using Taken = decltype(std::declval<httplib::TaskQueue&>().enqueue(nullptr));
 
 public:
     Taken enqueue(std::function<void()> connection) override {
-        const std::lock_guard lock(mutex_);
-        waiting_.push_back(std::move(connection));
-        if (idle_ < waiting_.size() && threads_.size() < kConnections) start();
-        changed_.notify_one();
+        if (!start(connection)) connection();  // the others wait for it
         return static_cast<Taken>(true);
     }
 
-    void shutdown() override {
-        {
-            const std::lock_guard lock(mutex_);
-            is_over_ = true;
-        }
-        changed_.notify_all();
-        for (std::thread& thread : threads_) thread.join();
-    }
+    void shutdown() override {}
 
 private:
-    void start() {
+    static bool start(const std::function<void()>& connection) {
+        if (open_ >= kConnections) return false;
         try {
-            threads_.emplace_back([this] { work(); });
+            std::thread([connection] {
+                connection();
+                --open_;
+            }).detach();
         } catch (const std::system_error&) {
-            if (threads_.empty()) throw;  // else a thread that there is takes the connection
+            return false;
         }
+        ++open_;
+        return true;
     }
 
-    void work() {
-        std::unique_lock lock(mutex_);
-        for (;;) {
-            ++idle_;
-            changed_.wait(lock, [this] { return is_over_ || !waiting_.empty(); });
-            --idle_;
-            if (waiting_.empty()) return;
-            const std::function<void()> connection = std::move(waiting_.front());
-            waiting_.pop_front();
-            lock.unlock();
-            connection();
-            lock.lock();
-        }
-    }
-
-    std::mutex mutex_;
-    std::condition_variable changed_;
-    std::deque<std::function<void()>> waiting_;
-    std::vector<std::thread> threads_;
-    std::size_t idle_ = 0;
-    bool is_over_ = false;
+    static inline std::atomic<int> open_ = 0;
 };
 
 /// Answers with events until the page goes: https://html.spec.whatwg.org, "Server-sent events".
@@ -317,7 +294,7 @@ int serve() {
     etlc::recordings::frames::append(head, static_cast<std::uint32_t>(port));
     if (!write_all(head)) return 1;
     etlc.listen();
-    return server.listen_after_bind() ? 0 : 1;
+    ::_exit(server.listen_after_bind() ? 0 : 1);  // connections may still use what is here
 }
 
 }  // namespace
