@@ -6,11 +6,9 @@
 #include <filesystem>
 #include <map>
 #include <set>
-#include <utility>
 
 #include "data/files/file.hpp"
 #include "data/text/text.hpp"
-#include "episodes/labels/labels.hpp"
 #include "execute/inputs.hpp"
 #include "recordings/episodes.hpp"
 #include "recordings/open.hpp"
@@ -46,6 +44,11 @@ diag::Result<std::pair<std::uint64_t, std::vector<bool>>> measured(
     }
     if (steps == 0) return recordings::no_steps();
     return std::pair{steps, has};
+}
+
+bool has_changed(const std::vector<Table>& tables) {
+    return std::any_of(tables.begin(), tables.end(),
+                       [](const Table& table) { return table.has_changed(); });
 }
 
 /// Says what the first error of a sink says, with its place.
@@ -92,10 +95,6 @@ std::optional<Desk> Desk::open(const check::Model& model, DeskRequest request, d
 
 const std::string& Desk::predicate(std::size_t p) const {
     return model_->predicates[predicates_[p]].name;
-}
-
-std::vector<std::string> Desk::tables() const {
-    return paths_;
 }
 
 bool Desk::is_labelled(std::size_t episode) const {
@@ -168,9 +167,7 @@ bool Desk::read(diag::Sink& sink) {
             }
             tables.push_back(std::move(*found[t]));
         }
-        if (std::any_of(tables.begin(), tables.end(),
-                        [](const Table& table) { return table.has_changed(); }))
-            continue;
+        if (has_changed(tables)) continue;
         if (!take(labels.get(), sink)) return false;
         tables_ = std::move(tables);
         changes_.clear();
@@ -305,8 +302,7 @@ diag::Result<std::optional<std::size_t>> Desk::take_back(std::vector<Change>& fr
 }
 
 bool Desk::have_tables_changed() const {
-    return std::any_of(tables_.begin(), tables_.end(),
-                       [](const Table& table) { return table.has_changed(); });
+    return has_changed(tables_);
 }
 
 std::optional<Failure> Desk::reload() {

@@ -49,7 +49,7 @@ public:
     const std::vector<Index>& predicates() const { return predicates_; }
     const std::string& predicate(std::size_t p) const;
     const std::vector<Episode>& episodes() const { return episodes_; }
-    std::vector<std::string> tables() const;
+    const std::vector<std::string>& tables() const { return paths_; }
     const Marks& marks(std::size_t episode, std::size_t p) const { return marks_[episode][p]; }
     /// Returns whether all predicates have labels.
     bool is_labelled(std::size_t episode) const;

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "data/files/file.hpp"
+#include "recordings/frames/protocol.hpp"
 
 namespace etlc::label {
 
@@ -20,10 +20,6 @@ constexpr std::size_t kMostPictureBytes = 256U << 20U;
 constexpr std::uint64_t kMostPassed = 64;  ///< frames that are decoded rather than skipped
 constexpr std::uint64_t kBefore = 16;      ///< frames before the one asked for
 constexpr std::uint64_t kMostFileBytes = 64U << 20U;
-
-void append(std::string& bytes, std::uint32_t number, unsigned size) {
-    for (unsigned i = 0; i < size; ++i) bytes += static_cast<char>(number >> (8 * i) & 0xFFU);
-}
 
 Failure of_path(const Failure& failure, const std::string& path) {
     return {failure.code,
@@ -44,15 +40,11 @@ ImageFile bitmap(const Picture& picture) {
     constexpr std::uint32_t kHead = 54;
     const std::uint32_t row = (3 * picture.width + 3) / 4 * 4;
     std::string bytes = "BM";
-    append(bytes, kHead + row * picture.height, 4);
-    append(bytes, 0, 4);
-    append(bytes, kHead, 4);
-    append(bytes, kHead - 14, 4);
-    append(bytes, picture.width, 4);
-    append(bytes, picture.height, 4);
-    append(bytes, 1, 2);
-    append(bytes, 24, 2);
-    for (int i = 0; i < 6; ++i) append(bytes, 0, 4);
+    constexpr std::uint32_t kPlanes = 1, kBitsPerPixel = 24;
+    for (const std::uint32_t number :
+         {kHead + row * picture.height, 0U, kHead, kHead - 14, picture.width, picture.height,
+          kPlanes | kBitsPerPixel << 16U})
+        recordings::frames::append(bytes, number);
     bytes.resize(kHead + std::size_t{row} * picture.height);
     char* to = &bytes[kHead];
     for (std::size_t y = picture.height; y-- > 0; to += row) {

@@ -20,6 +20,7 @@ namespace etlc::label {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
 using episodes::Label;
 using Labels = std::vector<Label>;
 
@@ -70,12 +71,12 @@ diag::Result<std::vector<Measured>> measure(const check::Model& model, const Des
     return measured;
 }
 
-/// Returns the intervals of a label in an episode.
-std::vector<Interval> runs_of(const Labels& labels, Label wanted) {
+/// Returns the runs of equal labels.
+std::vector<Interval> runs_of(const Labels& labels) {
     std::vector<Interval> runs;
     for (std::size_t step = 0; step < labels.size(); ++step) {
-        if (labels[step] != wanted) continue;
-        if (runs.empty() || runs.back().end != step) runs.push_back({step, step, wanted});
+        if (runs.empty() || runs.back().label != labels[step])
+            runs.push_back({step, step, labels[step]});
         runs.back().end = step + 1;
     }
     return runs;
@@ -140,19 +141,13 @@ private:
     /// Returns the intervals by the frames alone. A run that is less than half as long as any
     /// labelled one takes the judgement before it, or after it at the beginning.
     std::vector<Interval> judged_intervals(const std::vector<float>& scores) const {
-        std::vector<Interval> runs;
-        for (std::size_t step = 0; step < scores.size(); ++step) {
-            const Label label = judged(scores[step]);
-            if (runs.empty() || runs.back().label != label)
-                runs.push_back({step, step + 1, label});
-            else
-                runs.back().end = step + 1;
-        }
+        Labels labels;
+        for (const float score : scores) labels.push_back(judged(score));
         std::vector<Interval> kept;
         const auto is_short = [&](const Interval& run) {
             return 2 * (run.end - run.start) < shortest_run_;
         };
-        for (const Interval& run : runs) {
+        for (const Interval& run : runs_of(labels)) {
             if (!kept.empty() && (is_short(run) || kept.back().label == run.label))
                 kept.back().end = run.end;
             else if (kept.size() == 1 && is_short(kept.front()))
@@ -207,13 +202,9 @@ private:
 
     void learn_runs(const std::vector<const Measured*>& episodes) {
         for (const Measured* one : episodes) {
-            std::size_t start = 0;
-            for (std::size_t step = 1; step <= one->labels.size(); ++step) {
-                const bool is_end = step == one->labels.size();
-                if (is_end ? start == 0 : one->labels[step] == one->labels[step - 1]) continue;
-                shortest_run_ = std::min<std::uint64_t>(shortest_run_, step - start);
-                start = step;
-            }
+            const std::vector<Interval> runs = runs_of(one->labels);
+            for (const Interval& run : runs)
+                if (runs.size() > 1) shortest_run_ = std::min(shortest_run_, run.end - run.start);
         }
         if (shortest_run_ == kNoRun) shortest_run_ = 0;
     }
@@ -225,7 +216,8 @@ private:
         for (const Measured* one : episodes) {
             if (one->labels.empty()) continue;
             const std::vector<Interval> judged = judged_intervals(one->scores);
-            for (const Interval& labelled : runs_of(one->labels, Label::yes)) {
+            for (const Interval& labelled : runs_of(one->labels)) {
+                if (labelled.label != Label::yes) continue;
                 const auto overlap = [&](const Interval& of) {
                     return std::min(of.end, labelled.end) -
                            std::min({std::max(of.start, labelled.start), of.end, labelled.end});
@@ -269,10 +261,6 @@ private:
     std::int64_t starts_late_ = 0;  ///< steps, by the frames alone
     std::int64_t ends_late_ = 0;
 };
-
-int code_of(Label label) {
-    return label == Label::yes ? 1 : label == Label::no ? 0 : 2;
-}
 
 }  // namespace
 
@@ -324,16 +312,32 @@ std::optional<Proposals> propose(const check::Model& model, const Desk& desk,
     return proposals;
 }
 
+Json json_of(const Marks& marks) {
+    if (!marks) return nullptr;
+    Json intervals = Json::array();
+    for (const Interval& one : *marks)
+        intervals.push_back({one.start, one.end, one.label == Label::unknown ? 2 : 1});
+    return intervals;
+}
+
+std::optional<Marks> marks_of(const Json& json, std::uint64_t steps) {
+    if (json.is_null()) return Marks();
+    std::vector<Interval> intervals;
+    for (const Json& one : json) {
+        const std::uint64_t from = intervals.empty() ? 0 : intervals.back().end;
+        intervals.push_back({one.at(0), one.at(1), one.at(2) == 2 ? Label::unknown : Label::yes});
+        const Interval& last = intervals.back();
+        if (last.start < from || last.start >= last.end || last.end > steps) return std::nullopt;
+    }
+    return intervals;
+}
+
 std::string text_of(const Proposals& proposals, const Desk& desk) {
-    using Json = nlohmann::ordered_json;
     Json all = Json::array();
     for (const Proposal& proposal : proposals.found) {
         Json marks = Json::object();
         for (std::size_t p = 0; p < proposal.marks.size(); ++p) {
-            if (!proposal.marks[p]) continue;
-            Json& intervals = marks[desk.predicate(p)] = Json::array();
-            for (const Interval& one : *proposal.marks[p])
-                intervals.push_back({one.start, one.end, code_of(one.label)});
+            if (proposal.marks[p]) marks[desk.predicate(p)] = json_of(proposal.marks[p]);
         }
         all.push_back({{"episode", proposal.episode},
                        {"name", desk.episodes()[proposal.episode].name},
@@ -348,22 +352,13 @@ std::string text_of(const Proposals& proposals, const Desk& desk) {
 
 namespace {
 
-Proposal proposal_of(const nlohmann::json& text, const Desk& desk) {
+Proposal proposal_of(const Json& text, const Desk& desk) {
     Proposal proposal{text.at("episode"), text.at("doubt"), {}};
     const std::uint64_t steps = desk.episodes().at(proposal.episode).steps;
-    const nlohmann::json& predicates = text.at("predicates");
-    for (std::size_t p = 0; p < desk.predicates().size(); ++p) {
-        Marks& marks = proposal.marks.emplace_back();
-        const auto found = predicates.find(desk.predicate(p));
-        if (found == predicates.end()) continue;
-        marks.emplace();
-        for (const nlohmann::json& one : *found) {
-            const std::uint64_t start = one.at(0);
-            const std::uint64_t end = one.at(1);
-            if (start < end && end <= steps)
-                marks->push_back({start, end, one.at(2) == 2 ? Label::unknown : Label::yes});
-        }
-    }
+    for (std::size_t p = 0; p < desk.predicates().size(); ++p)
+        proposal.marks.push_back(
+            marks_of(text.at("predicates").value(desk.predicate(p), Json()), steps)
+                .value_or(Marks()));
     return proposal;
 }
 
@@ -371,9 +366,9 @@ Proposal proposal_of(const nlohmann::json& text, const Desk& desk) {
 
 std::optional<Proposals> parse_proposals(const std::string& text, const Desk& desk) {
     try {
-        const auto all = nlohmann::json::parse(text);
+        const auto all = Json::parse(text);
         Proposals proposals{all.at("why_none"), {}};
-        for (const nlohmann::json& one : all.at("proposals"))
+        for (const Json& one : all.at("proposals"))
             proposals.found.push_back(proposal_of(one, desk));
         return proposals;
     } catch (const std::exception&) {  // the program was another one, or was stopped

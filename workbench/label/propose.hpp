@@ -5,6 +5,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +41,10 @@ std::optional<Proposals> propose(const check::Model& model, const Desk& desk,
 /// Returns the episodes that all predicates are labelled in.
 std::vector<std::string> labelled_episodes(const Desk& desk);
 
+/// Writes labels as JSON, [[start, end, 1], ...] with 2 where nobody knows, null where nobody has
+/// labelled; reads them. Nothing where the JSON is no labels of an episode of so many steps.
+nlohmann::ordered_json json_of(const Marks& marks);
+std::optional<Marks> marks_of(const nlohmann::ordered_json& json, std::uint64_t steps);
 /// Writes proposals as JSON, on one line; reads them. Nothing where the text is none.
 std::string text_of(const Proposals& proposals, const Desk& desk);
 std::optional<Proposals> parse_proposals(const std::string& text, const Desk& desk);

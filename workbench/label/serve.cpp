@@ -4,12 +4,9 @@
 
 #include <chrono>
 #include <cstddef>
-#include <optional>
 #include <utility>
 
 #include "data/text/text.hpp"
-#include "label/service.hpp"
-#include "report/document.hpp"
 
 namespace etlc::label {
 
@@ -18,7 +15,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using diag::Code;
 using diag::Failure;
-using episodes::Label;
 
 /// A page that has not asked for so long is closed. A page in the background asks once a minute,
 /// because browsers slow its timers down; one that is closed says so.
@@ -35,31 +31,6 @@ Answer refused(const std::string& kind, const std::string& why, std::uint32_t st
 
 Answer not_found(const std::string& why) {
     return {404, "text/plain; charset=utf-8", why};
-}
-
-int code_of_label(Label label) {
-    return label == Label::yes ? 1 : label == Label::no ? 0 : 2;
-}
-
-Json json_of(const Marks& marks) {
-    if (!marks) return nullptr;
-    Json intervals = Json::array();
-    for (const Interval& one : *marks)
-        intervals.push_back({one.start, one.end, code_of_label(one.label)});
-    return intervals;
-}
-
-/// Reads what json_of writes; nothing where it is no labels of an episode of so many steps.
-std::optional<Marks> marks_of(const Json& json, std::uint64_t steps) {
-    if (json.is_null()) return Marks();
-    std::vector<Interval> intervals;
-    for (const Json& one : json) {
-        intervals.push_back({one.at(0), one.at(1), one.at(2) == 2 ? Label::unknown : Label::yes});
-        const Interval& last = intervals.back();
-        const std::uint64_t from = intervals.size() > 1 ? std::prev(intervals.end(), 2)->end : 0;
-        if (last.start < from || last.start >= last.end || last.end > steps) return std::nullopt;
-    }
-    return intervals;
 }
 
 /// Answers the requests of pages.
@@ -253,7 +224,6 @@ std::string page_with(const std::vector<report::PageFile>& own, std::string_view
 }
 
 std::string page_of(const Desk& desk, const PageRequest& request) {
-    using Json = nlohmann::ordered_json;
     Json data{{"spec",
                {{"name", request.spec},
                 {"path", request.spec_path},

@@ -8,10 +8,8 @@
 
 #include <exception>
 #include <filesystem>
-#include <memory>
 #include <utility>
 
-#include "data/files/child.hpp"
 #include "label/server/protocol.hpp"
 
 namespace etlc::label {

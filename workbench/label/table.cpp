@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <limits>
-#include <set>
 #include <utility>
 
 #include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
-#include "episodes/labels/labels.hpp"
 
 namespace etlc::label {
 
@@ -224,15 +221,10 @@ void end_at(Intervals& intervals, std::uint64_t step) {
 }  // namespace
 
 std::optional<Key> key_named(std::string_view word) {
-    constexpr std::array<std::pair<std::string_view, Key>, 6> kKeys = {{{"begin", Key::begin},
-                                                                        {"end", Key::end},
-                                                                        {"unknown", Key::unknown},
-                                                                        {"remove", Key::remove},
-                                                                        {"never", Key::never},
-                                                                        {"forget", Key::forget}}};
-    for (const auto& [name, key] : kKeys)
-        if (name == word) return key;
-    return std::nullopt;
+    constexpr std::string_view kWords[] = {"begin", "end", "unknown", "remove", "never", "forget"};
+    const auto* const found = std::find(std::begin(kWords), std::end(kWords), word);
+    if (found == std::end(kWords)) return std::nullopt;
+    return static_cast<Key>(found - std::begin(kWords));
 }
 
 std::vector<Interval> joined(const std::vector<Interval>& intervals) {
