@@ -11,6 +11,8 @@ namespace etlc::explain {
 
 namespace {
 
+using etlmon::Key;
+
 /// A set of positions, built from ranges.
 class Ranges {
 public:
@@ -49,20 +51,39 @@ std::uint64_t at(const ir::Node& node, std::uint64_t position, std::uint64_t off
     return is_past(node) ? position - offset : position + offset;
 }
 
-}  // namespace
+/// A literal at a step.
+struct Evidence {
+    NodeId literal = 0;
+    std::uint64_t step = 0;
+};
 
-bool Statement::takes_one(const ir::Node& node) const {
-    return (ir::takes_max(node.op) || node.op == ir::Op::disjunction) == satisfied;
-}
+/// The statement that the formula `root` is satisfied, or violated, at a position of the prefix
+/// 0..last, so far or for good.
+struct Statement {
+    const ir::Graph& graph;
+    NodeId root = 0;
+    std::uint64_t position = 0;
+    std::uint64_t last = 0;
+    bool satisfied = true;
+    Semantics semantics = Semantics::so_far;
 
-bool Statement::goes_on(const ir::Node& node, std::uint64_t at) const {
-    return semantics == Semantics::for_good && !is_past(node) && !takes_one(node) &&
-           node.interval.high > last - at;
-}
+    /// Returns whether one operand, or one position of a window, suffices: so for the max of a
+    /// satisfied formula and the min of a violated one.
+    bool takes_one(const ir::Node& node) const {
+        return (ir::takes_max(node.op) || node.op == ir::Op::disjunction) == satisfied;
+    }
+    /// Returns whether the window at this position extends past the prefix, where the formula has
+    /// to hold as well.
+    bool goes_on(const ir::Node& node, std::uint64_t at) const {
+        return semantics == Semantics::for_good && !is_past(node) && !takes_one(node) &&
+               node.interval.high > last - at;
+    }
+    /// The position after the prefix, which stands for the unseen future.
+    std::uint64_t unseen() const { return last + 1; }
+};
 
-namespace {
-
-/// Finds the positions that the statement reads, from the root down.
+/// Finds the positions that the statement reads, the unseen one included, per node, from the root
+/// down.
 class Reach {
 public:
     explicit Reach(const Statement& statement)
@@ -122,244 +143,285 @@ private:
     std::vector<Ranges> ranges_;
 };
 
-}  // namespace
+/// The claim that a statement is true, and the evidence that it can do without. Evidence that the
+/// claim needs leaves nothing changed. Withdrawing all costs about as much as visiting each pair of
+/// a position and one in its window once.
+class Claim {
+public:
+    /// `supports`: per node that is a literal or constant, by step, the unseen one included.
+    Claim(const Statement& statement, const std::vector<std::vector<bool>>& supports)
+        : statement_(statement),
+          graph_(statement.graph),
+          true_(Reach(statement).find()),
+          offsets_(true_.size()),
+          parents_(true_.size()),
+          first_(true_.size(), kNever),
+          final_(true_.size(), 0) {
+        for (NodeId id = 0; id < true_.size(); ++id) {
+            const ir::Node& node = graph_[id];
+            for (std::uint64_t k = 0; k <= statement.last; ++k) {
+                if (!true_[id][k]) continue;
+                first_[id] = std::min(first_[id], k);
+                final_[id] = k;
+            }
+            if (first_[id] == kNever && !true_[id][statement.unseen()]) continue;
+            for (std::size_t n = 0; n < node.operands.size(); ++n)
+                parents_[node.operands[n]].push_back({id, n + 1 == node.operands.size()});
+            if (!node.operands.empty()) {
+                establish(id);
+                continue;
+            }
+            for (std::uint64_t k = 0; k <= statement.unseen(); ++k)
+                true_[id][k] = true_[id][k] && supports[id][k];
+        }
+    }
 
-std::vector<std::vector<bool>> reach(const Statement& statement) {
-    return Reach(statement).find();
-}
+    /// Returns whether a literal is within reach, supports the claim, and has not been withdrawn.
+    bool uses(NodeId literal, std::uint64_t step) const { return true_[literal][step]; }
 
-Claim::Claim(const Statement& statement, const std::vector<std::vector<bool>>& supports)
-    : statement_(statement),
-      graph_(statement.graph),
-      true_(reach(statement)),
-      offsets_(true_.size()),
-      parents_(true_.size()),
-      first_(true_.size(), kNever),
-      final_(true_.size(), 0) {
-    for (NodeId id = 0; id < true_.size(); ++id) {
+    /// Returns whether the claim needs one of these beside the evidence that is left.
+    bool needs(const std::vector<Evidence>& evidence) {
+        const bool still_true = withdraw(evidence);
+        take_back();
+        return !still_true;
+    }
+
+    /// Withdraws them unless the claim needs them; returns whether it did.
+    bool can_do_without(const std::vector<Evidence>& evidence) {
+        const bool still_true = withdraw(evidence);
+        if (!still_true) take_back();
+        changes_.clear();
+        return still_true;
+    }
+
+private:
+    /// The window of a temporal operator, as offsets in the direction of the operator.
+    struct Window {
+        std::uint64_t low = 0;
+        std::uint64_t high = 0;  ///< cut at the end of the prefix, or at its beginning
+        bool empty = false;
+        bool goes_on = false;  ///< extends past the prefix
+    };
+    /// A fact that held before a change that may be undone.
+    struct Before {
+        NodeId node = 0;
+        std::uint64_t position = 0;
+        std::uint64_t offset = 0;
+    };
+    struct Parent {
+        NodeId node = 0;
+        bool is_last = true;  ///< the operand of the window, not the left one of an until
+    };
+
+    static constexpr std::uint64_t kNever = UINT64_MAX;
+
+    bool holds() const { return true_[statement_.root][statement_.position]; }
+
+    Window window(const ir::Node& node, std::uint64_t position) const {
+        const std::uint64_t room = is_past(node) ? position : statement_.last - position;
+        return {node.interval.low, std::min<std::uint64_t>(node.interval.high, room),
+                node.interval.low > room, statement_.goes_on(node, position)};
+    }
+
+    // ---- what is true to begin with -------------------------------------------------------------
+
+    void establish(NodeId id) {
         const ir::Node& node = graph_[id];
-        for (std::uint64_t k = 0; k <= statement.last; ++k) {
-            if (!true_[id][k]) continue;
-            first_[id] = std::min(first_[id], k);
-            final_[id] = k;
-        }
-        if (first_[id] == kNever && !true_[id][statement.unseen()]) continue;
-        for (std::size_t n = 0; n < node.operands.size(); ++n)
-            parents_[node.operands[n]].push_back({id, n + 1 == node.operands.size()});
-        if (!node.operands.empty()) {
-            establish(id);
-            continue;
-        }
-        for (std::uint64_t k = 0; k <= statement.unseen(); ++k)
-            true_[id][k] = true_[id][k] && supports[id][k];
+        const bool temporal = is_temporal(node);
+        const std::uint64_t unseen_position = statement_.unseen();
+        if (temporal) offsets_[id].resize(unseen_position + 1);
+        for (std::uint64_t k = 0; k <= unseen_position; ++k)
+            if (true_[id][k])
+                true_[id][k] = !temporal              ? combination(node, k)
+                               : k == unseen_position ? unseen(node)
+                                                      : search(id, k, 0);
     }
-}
 
-Claim::Window Claim::window(const ir::Node& node, std::uint64_t position) const {
-    const std::uint64_t room = is_past(node) ? position : statement_.last - position;
-    return {node.interval.low, std::min<std::uint64_t>(node.interval.high, room),
-            node.interval.low > room, statement_.goes_on(node, position)};
-}
-
-// ---- what is true to begin with -----------------------------------------------------------------
-
-void Claim::establish(NodeId id) {
-    const ir::Node& node = graph_[id];
-    const bool temporal = is_temporal(node);
-    const std::uint64_t unseen_position = statement_.unseen();
-    if (temporal) offsets_[id].resize(unseen_position + 1);
-    for (std::uint64_t k = 0; k <= unseen_position; ++k)
-        if (true_[id][k])
-            true_[id][k] = !temporal              ? combination(node, k)
-                           : k == unseen_position ? unseen(node)
-                                                  : search(id, k, 0);
-}
-
-bool Claim::combination(const ir::Node& node, std::uint64_t position) const {
-    const bool one = statement_.takes_one(node);
-    for (const NodeId operand : node.operands)
-        if (true_[operand][position] == one) return one;
-    return !one;
-}
-
-/// Evaluates the position that stands for the unseen future, as Values does.
-bool Claim::unseen(const ir::Node& node) const {
-    const bool one = statement_.takes_one(node);
-    if (one && (node.interval.low > 0 || ir::counts(node.op))) return false;
-    const std::vector<bool>& operand = true_[node.operands.back()];
-    const bool never_forgets = node.operands.size() == 1 && !node.interval.bounded();
-    const bool now = operand[statement_.unseen()];
-    if (now == one || !is_past(node) || (one && !never_forgets)) return now;
-    const auto seen_end = operand.begin() + static_cast<std::ptrdiff_t>(statement_.unseen());
-    return (std::find(operand.begin(), seen_end, one) != seen_end) == one;
-}
-
-bool Claim::search(NodeId id, std::uint64_t position, std::uint64_t from) {
-    if (ir::counts(graph_[id].op)) return count(id, position);
-    return statement_.takes_one(graph_[id]) ? find_witness(id, position, from)
-                                            : find_release(id, position, from);
-}
-
-/// Counts the positions of the window at which the operand is true; where one position would not
-/// suffice, those at which it is not.
-bool Claim::count(NodeId id, std::uint64_t position) {
-    const ir::Node& node = graph_[id];
-    const bool one = statement_.takes_one(node);
-    const Window w = window(node, position);
-    std::uint64_t counted = 0;
-    for (std::uint64_t o = w.low; o <= w.high; ++o)
-        counted += true_[node.operands[0]][at(node, position, o)] == one ? 1 : 0;
-    offsets_[id][position] = counted;
-    return has_enough(node, counted);
-}
-
-bool Claim::has_enough(const ir::Node& node, std::uint64_t counted) const {
-    return (counted >= node.index) == statement_.takes_one(node);
-}
-
-/// Finds the first offset of the window, at or after `from`, at which the last operand is true,
-/// with the left one true up to there. Before `from` the left one is known to be true.
-bool Claim::find_witness(NodeId id, std::uint64_t position, std::uint64_t from) {
-    const ir::Node& node = graph_[id];
-    const Window w = window(node, position);
-    if (w.empty) return false;
-    const std::vector<bool>& last = true_[node.operands.back()];
-    const bool binary = node.operands.size() == 2;
-    const std::vector<bool>& left = true_[node.operands.front()];
-    for (std::uint64_t o = binary ? from : std::max(from, w.low); o <= w.high; ++o) {
-        if (o >= w.low && last[at(node, position, o)]) {
-            offsets_[id][position] = o;
-            return true;
-        }
-        if (binary && !left[at(node, position, o)]) return false;
+    bool combination(const ir::Node& node, std::uint64_t position) const {
+        const bool one = statement_.takes_one(node);
+        for (const NodeId operand : node.operands)
+            if (true_[operand][position] == one) return one;
+        return !one;
     }
-    return false;
-}
 
-/// Finds the first offset, at or after `from`, at which the left operand is true. Up to it the last
-/// one has to be true in the window; without it, in all of the window and after the prefix. Before
-/// `from` the last one is known to be true.
-bool Claim::find_release(NodeId id, std::uint64_t position, std::uint64_t from) {
-    const ir::Node& node = graph_[id];
-    const Window w = window(node, position);
-    offsets_[id][position] = kNever;
-    if (w.empty && !w.goes_on) return true;
-    const std::vector<bool>& last = true_[node.operands.back()];
-    const bool binary = node.operands.size() == 2;
-    const std::vector<bool>& left = true_[node.operands.front()];
-    for (std::uint64_t o = binary ? from : std::max(from, w.low); o <= w.high; ++o) {
-        if (o >= w.low && !last[at(node, position, o)]) return false;
-        if (binary && (o < w.high || w.goes_on) && left[at(node, position, o)]) {
-            offsets_[id][position] = o;
-            return true;
-        }
+    /// Evaluates the position that stands for the unseen future, as Values does.
+    bool unseen(const ir::Node& node) const {
+        const bool one = statement_.takes_one(node);
+        if (one && (node.interval.low > 0 || ir::counts(node.op))) return false;
+        const std::vector<bool>& operand = true_[node.operands.back()];
+        const bool never_forgets = node.operands.size() == 1 && !node.interval.bounded();
+        const bool now = operand[statement_.unseen()];
+        if (now == one || !is_past(node) || (one && !never_forgets)) return now;
+        const auto seen_end = operand.begin() + static_cast<std::ptrdiff_t>(statement_.unseen());
+        return (std::find(operand.begin(), seen_end, one) != seen_end) == one;
     }
-    return !w.goes_on || last[statement_.unseen()];
-}
 
-// ---- without some of it -------------------------------------------------------------------------
-
-bool Claim::needs(const std::vector<Evidence>& evidence) {
-    const bool still_true = withdraw(evidence);
-    take_back();
-    return !still_true;
-}
-
-bool Claim::can_do_without(const std::vector<Evidence>& evidence) {
-    const bool still_true = withdraw(evidence);
-    if (!still_true) take_back();
-    changes_.clear();
-    return still_true;
-}
-
-bool Claim::withdraw(const std::vector<Evidence>& evidence) {
-    for (const Evidence& e : evidence) refute(e.literal, e.step);
-    while (!refuted_.empty() && holds()) {
-        const Evidence next = refuted_.back();
-        refuted_.pop_back();
-        for (const Parent& parent : parents_[next.literal]) tell(parent, next.step);
+    bool search(NodeId id, std::uint64_t position, std::uint64_t from) {
+        if (ir::counts(graph_[id].op)) return count(id, position);
+        return statement_.takes_one(graph_[id]) ? find_witness(id, position, from)
+                                                : find_release(id, position, from);
     }
-    refuted_.clear();
-    return holds();
-}
 
-void Claim::refute(NodeId id, std::uint64_t position) {
-    if (!true_[id][position]) return;
-    const std::uint64_t offset = offsets_[id].empty() ? 0 : offsets_[id][position];
-    changes_.push_back({id, position, offset});
-    true_[id][position] = false;
-    refuted_.push_back({id, position});
-}
-
-/// Tells a parent that the operand is no longer true at this position.
-void Claim::tell(const Parent& parent, std::uint64_t position) {
-    const ir::Node& node = graph_[parent.node];
-    if (!is_temporal(node)) {
-        if (true_[parent.node][position] && !combination(node, position))
-            refute(parent.node, position);
-        return;
-    }
-    if (parent.is_last && true_[parent.node][statement_.unseen()] && !unseen(node))
-        refute(parent.node, statement_.unseen());
-    if (position == statement_.unseen()) return tell_of_unseen(parent);
-    const std::uint64_t room = is_past(node) ? statement_.last - position : position;
-    const std::uint64_t low = parent.is_last ? node.interval.low : 0;
-    const std::uint64_t high = std::min<std::uint64_t>(node.interval.high, room);
-    if (low > high) return;
-    // the positions within reach that see this one at an offset in [low, high]
-    std::uint64_t from = is_past(node) ? position + low : position - high;
-    std::uint64_t to = is_past(node) ? position + high : position - low;
-    from = std::max(from, first_[parent.node]);
-    to = std::min(to, final_[parent.node]);
-    for (std::uint64_t k = from; k <= to && holds(); ++k)
-        if (true_[parent.node][k])
-            reconsider(parent, k, is_past(node) ? k - position : position - k);
-}
-
-/// Tells a parent that the operand is no longer true after the prefix.
-void Claim::tell_of_unseen(const Parent& parent) {
-    const ir::Node& node = graph_[parent.node];
-    if (!parent.is_last) return;
-    for (std::uint64_t k = first_[parent.node]; k <= final_[parent.node] && k != kNever; ++k)
-        if (true_[parent.node][k] && statement_.goes_on(node, k) &&
-            offsets_[parent.node][k] == kNever)
-            refute(parent.node, k);
-}
-
-/// Searches again, because the operand is no longer true at this offset from the position.
-void Claim::reconsider(const Parent& parent, std::uint64_t position, std::uint64_t offset) {
-    const NodeId id = parent.node;
-    const std::uint64_t known = offsets_[id][position];
-    const bool one = statement_.takes_one(graph_[id]);
-    if (ir::counts(graph_[id].op)) {
-        const std::uint64_t counted = one ? known - 1 : known + 1;
-        if (!has_enough(graph_[id], counted)) return refute(id, position);
-        changes_.push_back({id, position, known});
+    /// Counts the positions of the window at which the operand is true; where one position would
+    /// not suffice, those at which it is not.
+    bool count(NodeId id, std::uint64_t position) {
+        const ir::Node& node = graph_[id];
+        const bool one = statement_.takes_one(node);
+        const Window w = window(node, position);
+        std::uint64_t counted = 0;
+        for (std::uint64_t o = w.low; o <= w.high; ++o)
+            counted += true_[node.operands[0]][at(node, position, o)] == one ? 1 : 0;
         offsets_[id][position] = counted;
-        return;
+        return has_enough(node, counted);
     }
-    if (parent.is_last != one) {  // an operand that has to be true up to the known offset
-        if (one ? offset < known : offset <= known) refute(id, position);
-        return;
-    }
-    if (offset != known) return;
-    if (search(id, position, one ? offset : offset + 1)) {
-        changes_.push_back({id, position, known});
-        return;
-    }
-    offsets_[id][position] = known;
-    refute(id, position);
-}
 
-void Claim::take_back() {
-    for (; !changes_.empty(); changes_.pop_back()) {
-        const Before& before = changes_.back();
-        true_[before.node][before.position] = true;
-        if (!offsets_[before.node].empty()) offsets_[before.node][before.position] = before.offset;
+    bool has_enough(const ir::Node& node, std::uint64_t counted) const {
+        return (counted >= node.index) == statement_.takes_one(node);
     }
-}
 
-namespace {
+    /// Finds the first offset of the window, at or after `from`, at which the last operand is true,
+    /// with the left one true up to there. Before `from` the left one is known to be true.
+    bool find_witness(NodeId id, std::uint64_t position, std::uint64_t from) {
+        const ir::Node& node = graph_[id];
+        const Window w = window(node, position);
+        if (w.empty) return false;
+        const std::vector<bool>& last = true_[node.operands.back()];
+        const bool binary = node.operands.size() == 2;
+        const std::vector<bool>& left = true_[node.operands.front()];
+        for (std::uint64_t o = binary ? from : std::max(from, w.low); o <= w.high; ++o) {
+            if (o >= w.low && last[at(node, position, o)]) {
+                offsets_[id][position] = o;
+                return true;
+            }
+            if (binary && !left[at(node, position, o)]) return false;
+        }
+        return false;
+    }
+
+    /// Finds the first offset, at or after `from`, at which the left operand is true. Up to it the
+    /// last one has to be true in the window; without it, in all of the window and after the
+    /// prefix. Before `from` the last one is known to be true.
+    bool find_release(NodeId id, std::uint64_t position, std::uint64_t from) {
+        const ir::Node& node = graph_[id];
+        const Window w = window(node, position);
+        offsets_[id][position] = kNever;
+        if (w.empty && !w.goes_on) return true;
+        const std::vector<bool>& last = true_[node.operands.back()];
+        const bool binary = node.operands.size() == 2;
+        const std::vector<bool>& left = true_[node.operands.front()];
+        for (std::uint64_t o = binary ? from : std::max(from, w.low); o <= w.high; ++o) {
+            if (o >= w.low && !last[at(node, position, o)]) return false;
+            if (binary && (o < w.high || w.goes_on) && left[at(node, position, o)]) {
+                offsets_[id][position] = o;
+                return true;
+            }
+        }
+        return !w.goes_on || last[statement_.unseen()];
+    }
+
+    // ---- without some of it ---------------------------------------------------------------------
+
+    bool withdraw(const std::vector<Evidence>& evidence) {
+        for (const Evidence& e : evidence) refute(e.literal, e.step);
+        while (!refuted_.empty() && holds()) {
+            const Evidence next = refuted_.back();
+            refuted_.pop_back();
+            for (const Parent& parent : parents_[next.literal]) tell(parent, next.step);
+        }
+        refuted_.clear();
+        return holds();
+    }
+
+    void refute(NodeId id, std::uint64_t position) {
+        if (!true_[id][position]) return;
+        const std::uint64_t offset = offsets_[id].empty() ? 0 : offsets_[id][position];
+        changes_.push_back({id, position, offset});
+        true_[id][position] = false;
+        refuted_.push_back({id, position});
+    }
+
+    /// Tells a parent that the operand is no longer true at this position.
+    void tell(const Parent& parent, std::uint64_t position) {
+        const ir::Node& node = graph_[parent.node];
+        if (!is_temporal(node)) {
+            if (true_[parent.node][position] && !combination(node, position))
+                refute(parent.node, position);
+            return;
+        }
+        if (parent.is_last && true_[parent.node][statement_.unseen()] && !unseen(node))
+            refute(parent.node, statement_.unseen());
+        if (position == statement_.unseen()) return tell_of_unseen(parent);
+        const std::uint64_t room = is_past(node) ? statement_.last - position : position;
+        const std::uint64_t low = parent.is_last ? node.interval.low : 0;
+        const std::uint64_t high = std::min<std::uint64_t>(node.interval.high, room);
+        if (low > high) return;
+        // the positions within reach that see this one at an offset in [low, high]
+        std::uint64_t from = is_past(node) ? position + low : position - high;
+        std::uint64_t to = is_past(node) ? position + high : position - low;
+        from = std::max(from, first_[parent.node]);
+        to = std::min(to, final_[parent.node]);
+        for (std::uint64_t k = from; k <= to && holds(); ++k)
+            if (true_[parent.node][k])
+                reconsider(parent, k, is_past(node) ? k - position : position - k);
+    }
+
+    /// Tells a parent that the operand is no longer true after the prefix.
+    void tell_of_unseen(const Parent& parent) {
+        const ir::Node& node = graph_[parent.node];
+        if (!parent.is_last) return;
+        for (std::uint64_t k = first_[parent.node]; k <= final_[parent.node] && k != kNever; ++k)
+            if (true_[parent.node][k] && statement_.goes_on(node, k) &&
+                offsets_[parent.node][k] == kNever)
+                refute(parent.node, k);
+    }
+
+    /// Searches again, because the operand is no longer true at this offset from the position.
+    void reconsider(const Parent& parent, std::uint64_t position, std::uint64_t offset) {
+        const NodeId id = parent.node;
+        const std::uint64_t known = offsets_[id][position];
+        const bool one = statement_.takes_one(graph_[id]);
+        if (ir::counts(graph_[id].op)) {
+            const std::uint64_t counted = one ? known - 1 : known + 1;
+            if (!has_enough(graph_[id], counted)) return refute(id, position);
+            changes_.push_back({id, position, known});
+            offsets_[id][position] = counted;
+            return;
+        }
+        if (parent.is_last != one) {  // an operand that has to be true up to the known offset
+            if (one ? offset < known : offset <= known) refute(id, position);
+            return;
+        }
+        if (offset != known) return;
+        if (search(id, position, one ? offset : offset + 1)) {
+            changes_.push_back({id, position, known});
+            return;
+        }
+        offsets_[id][position] = known;
+        refute(id, position);
+    }
+
+    void take_back() {
+        for (; !changes_.empty(); changes_.pop_back()) {
+            const Before& before = changes_.back();
+            true_[before.node][before.position] = true;
+            if (!offsets_[before.node].empty())
+                offsets_[before.node][before.position] = before.offset;
+        }
+    }
+
+    const Statement statement_;
+    const ir::Graph& graph_;
+    std::vector<std::vector<bool>> true_;  ///< [node][position]; false also where out of reach
+    /// [node][position] of temporal operators: the offset of the first witness of an until; of a
+    /// release, that of the first true left operand, up to which the window has to hold. Of a
+    /// count: at how many positions of the window the operand is true, or is not.
+    std::vector<std::vector<std::uint64_t>> offsets_;
+    std::vector<std::vector<Parent>> parents_;
+    std::vector<std::uint64_t> first_;  ///< per node: the first and last seen position within reach
+    std::vector<std::uint64_t> final_;
+    std::vector<Before> changes_;
+    std::vector<Evidence> refuted_;  ///< parents not yet notified
+};
 
 bool is_literal(const ir::Node& node) {
     return node.op == ir::Op::predicate || node.op == ir::Op::flag;
@@ -423,39 +485,54 @@ std::vector<std::vector<bool>> supporting_steps(const Subject& subject, const Ju
     return result;
 }
 
-}  // namespace
+/// The samples that support a verdict, and which of them it needs.
+class Support {
+public:
+    /// Considers the samples whose value is at least as far on the side of the status as `least`.
+    Support(const Subject& subject, const Judged& judged, etlmon::Key least)
+        : literals_(literals_of(subject, judged.status)),
+          claim_({subject.graph, subject.root, subject.position, subject.last,
+                  judged.status == Status::satisfied, judged.semantics},
+                 supporting_steps(subject, judged, literals_, least)) {
+        for (std::uint64_t step = 0; step <= subject.last; ++step)
+            for (Index atom = 0; atom < literals_.size(); ++atom)
+                if (!literals({atom, step}).empty()) samples_.push_back({atom, step});
+    }
 
-Support::Support(const Subject& subject, const Judged& judged, etlmon::Key least)
-    : literals_(literals_of(subject, judged.status)),
-      claim_({subject.graph, subject.root, subject.position, subject.last,
-              judged.status == Status::satisfied, judged.semantics},
-             supporting_steps(subject, judged, literals_, least)) {
-    for (std::uint64_t step = 0; step <= subject.last; ++step)
-        for (Index atom = 0; atom < literals_.size(); ++atom)
-            if (!literals({atom, step}).empty()) samples_.push_back({atom, step});
+    /// Returns the samples by step, then atom.
+    const std::vector<Sample>& samples() const { return samples_; }
+
+    /// Returns the literals of a sample that support the status.
+    std::vector<NodeId> literals(Sample sample) const {
+        std::vector<NodeId> result;
+        for (const NodeId literal : literals_[sample.atom])
+            if (claim_.uses(literal, sample.step)) result.push_back(literal);
+        return result;
+    }
+
+    /// Returns whether the status needs one of these literals beside the evidence that is left.
+    bool needs(const std::vector<Evidence>& literals) { return claim_.needs(literals); }
+
+    /// Withdraws the sample unless the status needs it; returns whether it did.
+    bool can_do_without(Sample sample) {
+        std::vector<Evidence> evidence;
+        for (const NodeId literal : literals_[sample.atom])
+            evidence.push_back({literal, sample.step});
+        return claim_.can_do_without(evidence);
+    }
+
+private:
+    std::vector<std::vector<NodeId>> literals_;  ///< per atom, those that depend on its samples
+    Claim claim_;
+    std::vector<Sample> samples_;
+};
+
+std::vector<Sample> in_order(std::vector<Sample> samples) {
+    std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) {
+        return std::pair(a.step, a.atom) < std::pair(b.step, b.atom);
+    });
+    return samples;
 }
-
-std::vector<NodeId> Support::literals(Sample sample) const {
-    std::vector<NodeId> result;
-    for (const NodeId literal : literals_[sample.atom])
-        if (claim_.uses(literal, sample.step)) result.push_back(literal);
-    return result;
-}
-
-std::vector<Evidence> Support::evidence(Sample sample) const {
-    std::vector<Evidence> result;
-    for (const NodeId literal : literals_[sample.atom]) result.push_back({literal, sample.step});
-    return result;
-}
-
-// ---- the smallest change ------------------------------------------------------------------------
-// Finds the smallest change of one measurement that flips a verdict. Candidates are the points at
-// which a literal changes its truth, tried in order of size: by bisection over the floats for an
-// order comparison, at and beside the threshold for == and !=.
-
-namespace {
-
-using etlmon::Key;
 
 class Search {
 public:
@@ -596,6 +673,41 @@ private:
 };
 
 }  // namespace
+
+std::vector<Sample> needed_samples(const Subject& subject, const Judged& judged, Key least,
+                                   const std::optional<Sample>& critical) {
+    Support support(subject, judged, least);
+    std::vector<Sample> order = support.samples();
+    std::reverse(order.begin(), order.end());
+    std::stable_partition(order.begin(), order.end(),
+                          [&](const Sample& sample) { return sample != critical; });
+    std::vector<Sample> kept;
+    for (const Sample& sample : order)
+        if (!support.can_do_without(sample)) kept.push_back(sample);
+    return in_order(std::move(kept));
+}
+
+std::vector<Sample> unknown_samples(const Subject& subject) {
+    const Statement statement{subject.graph, subject.root, subject.position, subject.last};
+    const auto reached = Reach(statement).find();
+    std::vector<Sample> result;
+    for (Index atom = 0; atom < subject.observations.atoms().size(); ++atom)
+        for (std::uint64_t step = 0; step <= subject.last; ++step) {
+            if (!subject.observations.is_looked_at(atom) ||
+                !(subject.observations.is_missing({atom, step}) ||
+                  subject.observations.is_between({atom, step})))
+                continue;
+            bool seen = false;
+            for (NodeId id = 0; id <= subject.root && !seen; ++id) {
+                const ir::Node& node = subject.graph[id];
+                seen = (node.op == ir::Op::predicate || node.op == ir::Op::flag) &&
+                       reached[id][step] &&
+                       subject.observations.atom(node.op == ir::Op::predicate, node.index) == atom;
+            }
+            if (seen) result.push_back({atom, step});
+        }
+    return in_order(std::move(result));
+}
 
 std::optional<Change> smallest_change(const Subject& subject, Judged& judged,
                                       const std::vector<Sample>& samples) {

@@ -1,7 +1,6 @@
 #include "explain/explain.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "etlmon/temporal/shift.hpp"
 #include "explain/claim.hpp"
@@ -97,47 +96,6 @@ private:
     const Sourced root_;
 };
 
-/// Drops the samples that are not needed: the last ones first, the critical one at the very end.
-std::vector<Sample> irreducible(Support& support, const std::optional<Sample>& critical) {
-    std::vector<Sample> order = support.samples();
-    std::reverse(order.begin(), order.end());
-    std::stable_partition(order.begin(), order.end(),
-                          [&](const Sample& sample) { return sample != critical; });
-    std::vector<Sample> kept;
-    for (const Sample& sample : order)
-        if (!support.can_do_without(sample)) kept.push_back(sample);
-    return kept;
-}
-
-std::vector<Sample> in_order(std::vector<Sample> samples) {
-    std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) {
-        return std::pair(a.step, a.atom) < std::pair(b.step, b.atom);
-    });
-    return samples;
-}
-
-/// Returns the samples within reach that are missing or between two thresholds.
-std::vector<Sample> unknown_samples(const Subject& subject) {
-    const auto reached = reach({subject.graph, subject.root, subject.position, subject.last});
-    std::vector<Sample> result;
-    for (Index atom = 0; atom < subject.observations.atoms().size(); ++atom)
-        for (std::uint64_t step = 0; step <= subject.last; ++step) {
-            if (!subject.observations.is_looked_at(atom) ||
-                !(subject.observations.is_missing({atom, step}) ||
-                  subject.observations.is_between({atom, step})))
-                continue;
-            bool seen = false;
-            for (NodeId id = 0; id <= subject.root && !seen; ++id) {
-                const ir::Node& node = subject.graph[id];
-                seen = (node.op == ir::Op::predicate || node.op == ir::Op::flag) &&
-                       reached[id][step] &&
-                       subject.observations.atom(node.op == ir::Op::predicate, node.index) == atom;
-            }
-            if (seen) result.push_back({atom, step});
-        }
-    return in_order(std::move(result));
-}
-
 /// Returns the nodes of the formula and of all formulas in it.
 std::vector<bool> nodes_of(const ir::Program& program, Index formula) {
     std::vector<bool> inside(formula + std::size_t{1});
@@ -180,8 +138,7 @@ Explanation explain(const ir::Program& program, const Observations& observations
         root.key, judged.status == Status::satisfied ? subject.low_shift : subject.high_shift));
     result.critical = judged.values.source(root);
     result.chain = Chain(program, subject, judged).from(monitor.formula);
-    Support support(subject, judged, root.key);
-    result.samples = in_order(irreducible(support, result.critical));
+    result.samples = needed_samples(subject, judged, root.key, result.critical);
     result.change = smallest_change(subject, judged, result.samples);
     return result;
 }

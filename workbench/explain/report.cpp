@@ -11,64 +11,31 @@
 
 namespace etlc::explain {
 
-Report report(const Observations& observations, const ir::Program& program,
-              const Question& question, const etlmon::Verdict& verdict) {
-    Report result{observations, question, verdict.final(),
-                  explain(program, observations, question)};
-    const Status status = verdict.satisfied()  ? Status::satisfied
-                          : verdict.violated() ? Status::violated
-                                               : Status::unknown;
-    if (status != result.explanation.status)
-        throw std::logic_error("an explanation of another verdict than the monitor's");
-    return result;
-}
-
-std::vector<Interval> intervals(const Observations& observations,
-                                const std::vector<Sample>& samples) {
-    std::vector<Sample> order = samples;
-    std::sort(order.begin(), order.end(), [](const Sample& a, const Sample& b) {
-        return std::tie(a.atom, a.step) < std::tie(b.atom, b.step);
-    });
-    std::vector<Interval> result;
-    for (const Sample& sample : order) {
-        const bool holds = observations.value(sample).low >= 0;
-        const bool is_missing = observations.is_missing(sample);
-        const bool goes_on = !result.empty() && result.back().atom == sample.atom &&
-                             result.back().last + 1 == sample.step &&
-                             result.back().holds == holds && result.back().is_missing == is_missing;
-        if (!goes_on) {
-            result.push_back(
-                {sample.atom, sample.step, sample.step, holds, is_missing, sample.step});
-            continue;
-        }
-        Interval& interval = result.back();
-        interval.last = sample.step;
-        if (margin(observations, sample) < margin(observations, {sample.atom, interval.closest}))
-            interval.closest = sample.step;
-    }
-    return result;
-}
+namespace {
 
 std::string name_of(const Observations& observations, Index atom) {
     if (observations.atoms()[atom].is_predicate) return observations.predicate(atom).shown();
     return observations.model().inputs[observations.atoms()[atom].index].name;
 }
 
-const char* word(Status status) {
-    return status == Status::satisfied  ? "satisfied"
-           : status == Status::violated ? "violated"
-                                        : "unknown";
-}
-
+/// Returns the threshold of a predicate that decides a sample: of two, that within which it is
+/// true, or that beyond which it is false.
 float threshold(const Observations& observations, Sample sample) {
     const check::Threshold& of = observations.predicate(sample.atom).threshold;
     return observations.value(sample).high < 0 ? of.value : of.low();
 }
 
+/// Returns the distance of a measurement from its threshold.
 float margin(const Observations& observations, Sample sample) {
     if (!observations.atoms()[sample.atom].is_predicate) return 0;
     return std::abs(observations.measured(sample) - threshold(observations, sample));
 }
+
+/// The nearest row of a distance that takes the minimum.
+struct Nearest {
+    const check::Distance* distance = nullptr;
+    std::uint32_t row = 0;
+};
 
 std::vector<Nearest> nearest(const Observations& observations, Sample sample) {
     std::vector<Nearest> result;
@@ -83,18 +50,20 @@ std::vector<Nearest> nearest(const Observations& observations, Sample sample) {
     return result;
 }
 
-// ---- as text ------------------------------------------------------------------------------------
-// Prints an explanation as text.
+/// What both forms are made of.
+class Printed {
+protected:
+    explicit Printed(const Report& report) : report_(report) {}
 
-namespace {
+    const Report& report_;
+    const Explanation& explained_ = report_.explanation;
+    const Observations& observations_ = report_.observations;
+    const check::Model& model_ = observations_.model();
+};
 
-class Text {
+class Text : Printed {
 public:
-    explicit Text(const Report& report)
-        : observations_(report.observations),
-          model_(report.observations.model()),
-          report_(report),
-          explained_(report.explanation) {}
+    explicit Text(const Report& report) : Printed(report) {}
 
     std::string write() {
         head();
@@ -238,35 +207,17 @@ private:
              observations_.measured(change.sample), when(change.sample.step), then);
     }
 
-    const Observations& observations_;
-    const check::Model& model_;
-    const Report& report_;
-    const Explanation& explained_;
     std::string text_;
 };
-
-}  // namespace
-
-std::string text(const Report& report) {
-    return Text(report).write();
-}
-
-// ---- as JSON ------------------------------------------------------------------------------------
-// Prints an explanation as JSON; docs/explanations.md lists the keys. Infinite numbers are null.
-
-namespace {
 
 std::string number(float value) {
     return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null";
 }
 
-class Json {
+/// Infinite numbers are null.
+class Json : Printed {
 public:
-    explicit Json(const Report& report)
-        : observations_(report.observations),
-          model_(report.observations.model()),
-          report_(report),
-          explained_(report.explanation) {}
+    explicit Json(const Report& report) : Printed(report) {}
 
     std::string write() const {
         const check::Monitor& monitor = model_.monitors[report_.question.monitor];
@@ -391,14 +342,57 @@ private:
             named(change.sample.atom), change.sample.step, measured(change.sample), other,
             word(change.status), change.for_good ? "true" : "false");
     }
-
-    const Observations& observations_;
-    const check::Model& model_;
-    const Report& report_;
-    const Explanation& explained_;
 };
 
 }  // namespace
+
+Report report(const Observations& observations, const ir::Program& program,
+              const Question& question, const etlmon::Verdict& verdict) {
+    Report result{observations, question, verdict.final(),
+                  explain(program, observations, question)};
+    const Status status = verdict.satisfied()  ? Status::satisfied
+                          : verdict.violated() ? Status::violated
+                                               : Status::unknown;
+    if (status != result.explanation.status)
+        throw std::logic_error("an explanation of another verdict than the monitor's");
+    return result;
+}
+
+std::vector<Interval> intervals(const Observations& observations,
+                                const std::vector<Sample>& samples) {
+    std::vector<Sample> order = samples;
+    std::sort(order.begin(), order.end(), [](const Sample& a, const Sample& b) {
+        return std::tie(a.atom, a.step) < std::tie(b.atom, b.step);
+    });
+    std::vector<Interval> result;
+    for (const Sample& sample : order) {
+        const bool holds = observations.value(sample).low >= 0;
+        const bool is_missing = observations.is_missing(sample);
+        const bool goes_on = !result.empty() && result.back().atom == sample.atom &&
+                             result.back().last + 1 == sample.step &&
+                             result.back().holds == holds && result.back().is_missing == is_missing;
+        if (!goes_on) {
+            result.push_back(
+                {sample.atom, sample.step, sample.step, holds, is_missing, sample.step});
+            continue;
+        }
+        Interval& interval = result.back();
+        interval.last = sample.step;
+        if (margin(observations, sample) < margin(observations, {sample.atom, interval.closest}))
+            interval.closest = sample.step;
+    }
+    return result;
+}
+
+const char* word(Status status) {
+    return status == Status::satisfied  ? "satisfied"
+           : status == Status::violated ? "violated"
+                                        : "unknown";
+}
+
+std::string text(const Report& report) {
+    return Text(report).write();
+}
 
 std::string json(const Report& report) {
     return Json(report).write();

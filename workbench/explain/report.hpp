@@ -11,8 +11,8 @@
 #include "explain/explain.hpp"
 
 namespace etlc::explain {
-/// The verdicts of a monitor at every step of a trace.
 
+/// The verdicts of a monitor at every step of a trace.
 struct History {
     std::vector<etlmon::Verdict> verdicts;
     std::vector<std::uint64_t> positions;  ///< the positions they judge
@@ -51,8 +51,6 @@ Report report(const Observations& observations, const ir::Program& program,
 std::string text(const Report& report);
 std::string json(const Report& report);
 
-// ---- what both are made of ----------------------------------------------------------------------
-
 /// Samples of one atom at consecutive steps, all true or all false.
 struct Interval {
     Index atom = 0;
@@ -67,19 +65,6 @@ struct Interval {
 std::vector<Interval> intervals(const Observations& observations,
                                 const std::vector<Sample>& samples);
 
-/// Returns the threshold of a predicate that decides a sample: of two, that within which it is
-/// true, or that beyond which it is false.
-float threshold(const Observations& observations, Sample sample);
-std::string name_of(const Observations& observations, Index atom);
 const char* word(Status status);
-/// Returns the distance of a measurement from its threshold.
-float margin(const Observations& observations, Sample sample);
-
-/// The nearest row of a distance that takes the minimum.
-struct Nearest {
-    const check::Distance* distance = nullptr;
-    std::uint32_t row = 0;
-};
-std::vector<Nearest> nearest(const Observations& observations, Sample sample);
 
 }  // namespace etlc::explain

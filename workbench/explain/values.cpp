@@ -1,6 +1,5 @@
 #include "explain/values.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
