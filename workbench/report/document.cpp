@@ -4,12 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
 #include "check/guarantees/conformal.hpp"
 #include "check/guarantees/guarantees.hpp"
-#include "report/report.hpp"
 
 namespace etlc::report {
 
@@ -73,16 +73,9 @@ Json scores_of(const Material& material, const check::Predicate& predicate) {
     return all;
 }
 
-/// Rates at one threshold.
-struct Operating {
-    double false_positive_rate = 0;
-    double recall = 0;     ///< the true positive rate
-    double precision = 1;  ///< 1 without predictions
-};
-
-Json json_of(const Operating& at) {
-    return Json::array({at.false_positive_rate, at.recall, at.precision});
-}
+/// At one threshold: the rates of false and of true positives, and the precision, 1 without
+/// predictions.
+using Operating = std::array<double, 3>;
 
 /// Returns the labelled frames with finite scores, greatest scores first.
 std::vector<Scored> finite_frames(const evaluate::Judgement& judgement, std::size_t i) {
@@ -118,11 +111,9 @@ Json histogram(const std::vector<Scored>& frames, bool upper_bound) {
 }
 
 bool is_drawn_apart(const Operating& a, const Operating& b) {
-    const auto apart = [](double x, double y) {
-        return std::lround(x * kPicture) != std::lround(y * kPicture);
-    };
-    return apart(a.false_positive_rate, b.false_positive_rate) || apart(a.recall, b.recall) ||
-           apart(a.precision, b.precision);
+    return !std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) {
+        return std::lround(x * kPicture) == std::lround(y * kPicture);
+    });
 }
 
 /// Returns the histogram of the i-th labelled predicate's distances, its ROC and precision-recall
@@ -156,8 +147,8 @@ Json distribution(const evaluate::Judgement& judgement, std::size_t i,
                          predictions == 0 ? 1 : hits / predictions};
     };
     Operating drawn = here();
-    curve.push_back(json_of(drawn));
-    operating = Json(levels.size(), json_of(drawn));
+    curve.push_back(drawn);
+    operating = Json(levels.size(), Json(drawn));
     for (std::size_t k = 0; k < frames.size(); ++k) {
         (frames[k].positive ? hits : false_alarms) += 1;
         const float score = frames[k].score;
@@ -165,13 +156,13 @@ Json distribution(const evaluate::Judgement& judgement, std::size_t i,
         const bool is_last = k + 1 == frames.size();
         if (is_last || is_drawn_apart(drawn, here())) {
             drawn = here();
-            curve.push_back(json_of(drawn));
+            curve.push_back(drawn);
         }
         const float delta = predicate.upper_bound() ? -score : score;
         std::size_t at = 0;
         for (const float level : levels)
             if (Json& point = operating[at++]; check::holds(predicate.comparison, delta, level))
-                point = json_of(here());
+                point = here();
     }
     return with_curve();
 }

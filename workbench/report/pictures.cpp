@@ -15,11 +15,10 @@
 #include "data/files/file.hpp"
 #include "data/text/text.hpp"
 #include "episodes/recording.hpp"
-#include "fit/algebra/dense.hpp"
+#include "fit/collect.hpp"
 #include "plan/plan.hpp"
 #include "recordings/datasets/dataset.hpp"
 #include "recordings/datasets/trace.hpp"
-#include "recordings/frames/frames.hpp"
 #include "recordings/hdf5/hdf5.hpp"
 #include "recordings/open.hpp"
 #include "report/document.hpp"
@@ -443,40 +442,12 @@ TargetPictures pictures_of_targets(const check::Model& model,
 
 namespace {
 
-constexpr std::size_t kMostFrames = 384;
+constexpr std::size_t kMostFrames = 384;  ///< of a point, to find its plane
 constexpr std::size_t kPlaneEpisodes = 24;
 
 using fit::Matrix;
 using fit::Vector;
 using Frames = std::vector<std::vector<float>>;
-
-/// Keeps every n-th frame of a point, and doubles n when there are too many.
-class EvenFrames {
-public:
-    explicit EvenFrames(std::size_t most) : most_(most) {}
-
-    void add(const float* z, std::uint32_t dimension) {
-        if (seen_++ % stride_ != 0) return;
-        frames_.emplace_back(z, z + dimension);
-        if (frames_.size() <= 2 * most_) return;
-        stride_ *= 2;
-        for (std::size_t i = 0; 2 * i < frames_.size(); ++i)
-            if (i > 0) frames_[i] = std::move(frames_[2 * i]);
-        frames_.resize((frames_.size() + 1) / 2);
-    }
-    /// Appends at most `most` of the frames.
-    void move_to(Frames& all) {
-        const std::size_t stride = frames_.size() > most_ ? 2 : 1;
-        for (std::size_t i = 0; i < frames_.size(); i += stride)
-            all.push_back(std::move(frames_[i]));
-    }
-
-private:
-    std::size_t most_;
-    std::size_t seen_ = 0;
-    std::size_t stride_ = 1;
-    Frames frames_;
-};
 
 bool only_angles(const check::Model& model, Index point) {
     return std::all_of(model.distances.begin(), model.distances.end(), [&](const auto& distance) {
@@ -569,15 +540,19 @@ diag::Result<std::vector<Plane>> planes(const check::Model& model,
         auto recording = episodes::Recording::open({&model, measuring.inputs},
                                                    paths[i * paths.size() / read], reading);
         if (!recording) return recording.failure();
-        std::vector<EvenFrames> of_points(points.size(), EvenFrames(kMostFrames / read));
+        std::vector<fit::EvenFrames> of_points(points.size(), {kMostFrames / read, 0});
+        std::uint64_t step = 0;
         const auto done = episodes::replay(*recording, {&follower}, [&] {
             for (std::size_t k = 0; k < points.size(); ++k)
                 if (const float* z = follower.evaluator().point(points[k]))
-                    of_points[k].add(z, model.points[points[k]].dimension);
+                    of_points[k].add(step, {z, z + model.points[points[k]].dimension});
+            ++step;
             return true;
         });
         if (!done) return done.failure();
-        for (std::size_t k = 0; k < points.size(); ++k) of_points[k].move_to(frames[k]);
+        for (std::size_t k = 0; k < points.size(); ++k)
+            for (fit::TakenFrame& taken : of_points[k].take())
+                frames[k].push_back(std::move(taken.values));
     }
     std::vector<Plane> found;
     for (std::size_t k = 0; k < points.size(); ++k) {

@@ -8,23 +8,18 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "artifacts/thresholds.hpp"
 #include "compile.hpp"
 #include "diag/diag.hpp"
 #include "evaluate/evaluate.hpp"
-#include "recordings/open.hpp"
 #include "report/pictures.hpp"
 #include "report/tracks.hpp"
 
 namespace etlc::report {
 
-// Packs the series of an episode into one text of the page, within a number of bytes, which
-// report/page/episode.js unpacks: exact if that fits, else rounded, else reduced to the least and
-// greatest numbers of buckets of steps. Truths and verdicts are never reduced.
-
+/// The series of an episode in one text of the page, which report/page/episode.js unpacks.
 struct Blob {
     std::string text;
     int parts = 0;              ///< a series is rounded to these parts of its span; 0: exact
@@ -35,9 +30,6 @@ std::string base64(std::string_view bytes);
 
 /// Compresses to zlib's format (RFC 1950).
 std::string deflated(std::string_view bytes);
-
-/// Returns the first form of at most `most` bytes, or the smallest.
-Blob blob_of(const Tracks& tracks, std::uint64_t most);
 
 inline constexpr std::uint64_t kUsualMegabytes = 5;
 
@@ -77,24 +69,14 @@ struct Row {
 };
 
 /// A page, whose rows become text as it is written.
-class Page {
-public:
-    /// `head`: what comes before the rows; `tail`: what comes after them.
-    Page(std::string head, std::vector<Row> rows, std::vector<evaluate::EpisodeRow> judged,
-         std::string tail)
-        : head_(std::move(head)),
-          rows_(std::move(rows)),
-          judged_(std::move(judged)),
-          tail_(std::move(tail)) {}
+struct Page {
+    std::string head;  ///< what comes before the rows
+    std::vector<Row> rows;
+    std::vector<evaluate::EpisodeRow> judged;
+    std::string tail;  ///< what comes after the rows
 
     /// Passes the pieces to `take` until it returns false; returns whether it took all.
     bool write(const std::function<bool(std::string_view)>& take) const;
-
-private:
-    std::string head_;
-    std::vector<Row> rows_;
-    std::vector<evaluate::EpisodeRow> judged_;
-    std::string tail_;
 };
 
 /// Returns the page, or nothing after an error, which it reports.

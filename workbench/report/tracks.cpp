@@ -8,7 +8,6 @@
 #include <set>
 
 #include "check/guarantees/guarantees.hpp"
-#include "data/files/file.hpp"
 #include "report/report.hpp"
 #include "source/text.hpp"
 
