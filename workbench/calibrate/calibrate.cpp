@@ -8,7 +8,6 @@
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/conformal.hpp"
 #include "check/guarantees/provenance.hpp"
-#include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
 
@@ -74,7 +73,6 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     }
     if (!episodes::can_be_dealt(request.episodes, request.reading, request.folds, model, sink))
         return std::nullopt;
-    const episodes::Leaks leaks(model, predicates);
     const std::vector<Guaranteed> guarantees = guaranteed(model, false);
     const Watched watched = watched_by(model, guarantees, with_labels(model, predicates),
                                        labelled_anywhere(model, request));
@@ -86,29 +84,24 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     std::vector<Evidence> evidence(predicates.size());
     std::uint64_t frames = 0;
     const bool all_normal = with_labels(model, predicates).empty();
-    const bool all_scored = episodes::over_shared_episodes<Demonstration>(
-        request.episodes, request, sink,
-        [&] {
-            return std::make_unique<Scorer>(model, leaks, predicates, watched, request.reading);
-        },
-        [&](std::size_t, const Demonstration& demonstration) {
-            if (all_normal && !demonstration.outcome.is_demonstration()) {
-                for (Evidence& of : evidence) ++of.failures;
-                return;
-            }
-            demonstrations.add(demonstration);
-            const std::uint32_t group = groups.add(demonstration.group);
-            frames += demonstration.frames;
-            tracks.add(demonstration.track);
-            is_complete &= demonstration.is_complete;
-            is_divided &= demonstration.is_divided;
-            for (std::size_t i = 0; i < predicates.size(); ++i)
-                if (leaves_out(model.predicates[predicates[i]].threshold, demonstration))
-                    ++evidence[i].failures;
-                else
-                    evidence[i].add(demonstration.scores[i], group);
-        });
-    if (!all_scored) return std::nullopt;
+    const auto take = [&](const Demonstration& demonstration) {
+        if (all_normal && !demonstration.outcome.is_demonstration()) {
+            for (Evidence& of : evidence) ++of.failures;
+            return;
+        }
+        demonstrations.add(demonstration);
+        const std::uint32_t group = groups.add(demonstration.group);
+        frames += demonstration.frames;
+        tracks.add(demonstration.track);
+        is_complete &= demonstration.is_complete;
+        is_divided &= demonstration.is_divided;
+        for (std::size_t i = 0; i < predicates.size(); ++i)
+            if (leaves_out(model.predicates[predicates[i]].threshold, demonstration))
+                ++evidence[i].failures;
+            else
+                evidence[i].add(demonstration.scores[i], group);
+    };
+    if (!score_demonstrations(model, predicates, watched, request, take, sink)) return std::nullopt;
     episodes::warn_of_unmarked(demonstrations, sink);
     const thresholds::Allowance allowance =
         episodes::admit(model, demonstrations, {}, request.fitted, request.allow_overlap, sink);

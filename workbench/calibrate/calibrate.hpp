@@ -35,6 +35,12 @@ struct Request {
     episodes::Sharing* sharing = nullptr;
 };
 
+/// Scores the demonstrations, and passes each to `take`, in order. Returns false after an error,
+/// which it reports, and for a shard.
+bool score_demonstrations(const check::Model& model, const std::vector<Index>& predicates,
+                          const Watched& watched, const Request& request,
+                          const std::function<void(const Demonstration&)>& take, diag::Sink& sink);
+
 struct Calibration {
     thresholds::File file;
     std::string report;

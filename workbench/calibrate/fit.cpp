@@ -11,8 +11,6 @@
 #include <utility>
 
 #include "check/guarantees/calibrated.hpp"
-#include "check/guarantees/conformal.hpp"
-#include "episodes/folds.hpp"
 
 namespace etlc::calibrate {
 
@@ -34,91 +32,72 @@ struct HalfF1 {
     }
 };
 
-/// Finds the score that is the best epsilon, from the scores of labelled frames in ascending order.
-class BestF1 {
-public:
-    BestF1(std::uint64_t positives, bool strict) : positives_(positives), strict_(strict) {}
-
-    /// Adds the next score and the numbers of frames that have it.
-    void add(float score, std::uint64_t positives, std::uint64_t negatives) {
-        if (is_best_ && !strict_ && !std::isinf(score)) other_ = score;
-        is_best_ = false;
-        const HalfF1 below{true_positives_, positives_ + frames_};
-        true_positives_ += positives;
-        frames_ += positives + negatives;
-        const HalfF1 here = strict_ ? below : HalfF1{true_positives_, positives_ + frames_};
-        // The first of equals is the strictest.
-        if (!std::isinf(score) && best_ < here) {
-            best_ = here;
-            taken_ = score;
-            is_best_ = true;
-            other_ = strict_ ? before_ : std::nullopt;
-        }
-        before_ = std::isinf(score) ? std::nullopt : std::optional(score);
-    }
-
-    const HalfF1& best() const { return best_; }
-    std::uint64_t frames() const { return frames_; }
-    /// Returns the scores, ascending, between which epsilon makes the same predictions: the one
-    /// taken, and the next above it (for <=) or below it (for <) if that is finite.
-    std::vector<float> gap() const {
-        if (!other_) return {taken_};
-        return strict_ ? std::vector{*other_, taken_} : std::vector{taken_, *other_};
-    }
-    float taken() const { return taken_; }
-
-private:
-    std::uint64_t positives_;
-    bool strict_;
-    std::uint64_t true_positives_ = 0;
-    std::uint64_t frames_ = 0;
-    HalfF1 best_;
-    float taken_ = 0;
-    bool is_best_ = false;  ///< the previous score is the best so far
-    std::optional<float> before_;
-    std::optional<float> other_;
-};
-
-/// Fits a threshold to labelled frames, which are added in the order of their scores.
+/// Finds the score that is the best epsilon. Labelled frames are added in the order of their
+/// scores.
 class F1Fit {
 public:
-    F1Fit(std::uint64_t positives, bool strict)
-        : has_positives_(positives > 0), best_(positives, strict) {}
+    F1Fit(std::uint64_t positives, bool strict) : positives_(positives), strict_(strict) {}
 
     void add(const episodes::Scored& frame) {
         if (frame.score != score_) end_tie();
         score_ = frame.score;
-        ++(frame.positive ? positives_ : negatives_);
+        ++(frame.positive ? tied_positives_ : tied_negatives_);
     }
     /// Returns the fit to all frames.
     Fit result() {
         end_tie();
-        if (!has_positives_) return Refusal::no_positives;
-        if (best_.best().true_positives == 0) return Refusal::no_f1;
+        if (positives_ == 0) return Refusal::no_positives;
+        if (best_.true_positives == 0) return Refusal::no_f1;
         Fitted result;
-        result.n = best_.frames();
-        result.f1 = best_.best().value();
-        result.epsilon = best_.taken();
-        const std::vector<float> ends = best_.gap();
-        result.scores = {static_cast<double>(result.epsilon)};
-        const auto between = ends.size() == 2 ? check::halfway(ends[0], ends[1]) : std::nullopt;
+        result.n = frames_;
+        result.f1 = best_.value();
+        result.epsilon = taken_;
+        result.scores = {static_cast<double>(taken_)};
+        if (!other_) return result;
+        const auto [low, high] = std::minmax(taken_, *other_);
+        const auto between = check::halfway(low, high);
         if (!between) return result;
         result.epsilon = *between;
-        result.scores.assign(ends.begin(), ends.end());
+        result.scores = {static_cast<double>(low), static_cast<double>(high)};
         return result;
     }
 
 private:
+    /// Considers the score of the frames that are not yet counted.
     void end_tie() {
-        if (positives_ + negatives_ > 0) best_.add(score_, positives_, negatives_);
-        positives_ = negatives_ = 0;
+        if (tied_positives_ + tied_negatives_ == 0) return;
+        const bool is_finite = !std::isinf(score_);
+        if (is_best_ && !strict_ && is_finite) other_ = score_;
+        is_best_ = false;
+        const HalfF1 below{true_positives_, positives_ + frames_};
+        true_positives_ += tied_positives_;
+        frames_ += tied_positives_ + tied_negatives_;
+        tied_positives_ = tied_negatives_ = 0;
+        const HalfF1 here = strict_ ? below : HalfF1{true_positives_, positives_ + frames_};
+        // The first of equals is the strictest.
+        if (is_finite && best_ < here) {
+            best_ = here;
+            taken_ = score_;
+            is_best_ = true;
+            other_ = strict_ ? before_ : std::nullopt;
+        }
+        before_ = is_finite ? std::optional(score_) : std::nullopt;
     }
 
-    bool has_positives_;
-    BestF1 best_;
+    std::uint64_t positives_;
+    bool strict_;
     float score_ = 0;  ///< of the frames that are not yet counted
-    std::uint64_t positives_ = 0;
-    std::uint64_t negatives_ = 0;
+    std::uint64_t tied_positives_ = 0;
+    std::uint64_t tied_negatives_ = 0;
+    std::uint64_t true_positives_ = 0;
+    std::uint64_t frames_ = 0;
+    HalfF1 best_;
+    float taken_ = 0;
+    bool is_best_ = false;         ///< the previous score is the best so far
+    std::optional<float> before_;  ///< the previous score if it is finite
+    /// The score next to the one taken, if it is finite: epsilon makes the same predictions
+    /// everywhere between them. It lies above (for <=) or below (for <).
+    std::optional<float> other_;
 };
 
 /// Fits a threshold beyond the score at the rank of alpha; `kth(k)` returns the k-th smallest of n.
@@ -370,69 +349,53 @@ Fit fit(const check::Predicate& predicate, const Aim& aim, const Evidence& evide
 
 namespace {
 
-using check::ThresholdOrigin;
-
 constexpr std::uint32_t kNobody = UINT32_MAX;
 
-/// The thresholds for one error without each group.
+/// The thresholds for one error without each group; the first that is missing gives the reason.
 struct OneSide {
+    const Aim& aim;
+    bool may_be_infinite = false;   ///< all groups together have too few scores
     std::vector<float> thresholds;  ///< per group
-    std::string why;                ///< why one is missing
-};
-
-/// Collects the thresholds; the first that is missing gives the reason.
-class Collected {
-public:
-    /// `may_be_infinite`: all groups together have too few scores.
-    Collected(const Aim& aim, const char* each, std::size_t groups, bool may_be_infinite)
-        : aim_(aim), each_(each), may_be_infinite_(may_be_infinite) {
-        result_.thresholds.resize(groups);
-    }
+    std::string why{};              ///< why one is missing
 
     /// Takes the threshold of one group.
     void take(const Fit& fit, std::uint32_t group) {
         const auto* const fitted = std::get_if<Fitted>(&fit);
         if (fitted == nullptr)
             fail(fit);
-        else if (std::isinf(fitted->epsilon) && !may_be_infinite_)
+        else if (std::isinf(fitted->epsilon) && !may_be_infinite)
             fail(Refusal::too_few);
         else
-            result_.thresholds[group] = fitted->epsilon;
+            thresholds[group] = fitted->epsilon;
     }
     /// Takes the threshold of the groups for which `has(g)` holds.
     template <class Has>
     void take_all(const Fit& fit, const Has& has) {
-        for (std::uint32_t g = 0; g < result_.thresholds.size(); ++g)
+        for (std::uint32_t g = 0; g < thresholds.size(); ++g)
             if (has(g)) take(fit, g);
     }
-    OneSide result() && { return std::move(result_); }
 
 private:
     void fail(const Fit& fit) {
-        if (!result_.why.empty()) return;
+        if (!why.empty()) return;
         if (std::holds_alternative<OutOfRange>(fit))
-            result_.why = "the threshold is out of its range";
+            why = "the threshold is out of its range";
         else if (std::get<Refusal>(fit) == Refusal::too_few)
-            result_.why = fmt::format("too few are left for {} = {}", aim_.rate_name, aim_.rate);
+            why = fmt::format("too few are left for {} = {}", aim.rate_name, aim.rate);
         else if (std::get<Refusal>(fit) == Refusal::always_lost)
-            result_.why = "missing samples alone lose too much";
+            why = "missing samples alone lose too much";
         else if (std::get<Refusal>(fit) == Refusal::not_finite)
-            result_.why = "the score at the rank is infinite";
+            why = "the score at the rank is infinite";
         else
-            result_.why = fmt::format("no {} is left", each_);
+            why = fmt::format("no {} frame is left", aim.of_positives ? "positive" : "negative");
     }
-
-    const Aim& aim_;
-    const char* each_;
-    bool may_be_infinite_;
-    OneSide result_;
 };
 
 /// Takes the thresholds by the rank of one score per group. All groups whose score is among the
 /// best ones leave the same scores at the rank, and so do all others.
 template <class FitWithout>
 void take_by_rank(std::vector<Evidence::Reach> scores, const std::string& rate, std::size_t groups,
-                  const FitWithout& fit_without, Collected& collected) {
+                  const FitWithout& fit_without, OneSide& side) {
     std::sort(scores.begin(), scores.end());
     const std::uint64_t k = scores.empty() ? 0 : check::rank(rate, scores.size() - 1);
     std::vector<std::uint8_t> classes(groups);  // 0: without a score, 1: among the best, 2: others
@@ -442,13 +405,12 @@ void take_by_rank(std::vector<Evidence::Reach> scores, const std::string& rate, 
     const std::uint32_t without[] = {kNobody, best, last};
     for (std::uint8_t c = 0; c < 3; ++c)
         if (std::find(classes.begin(), classes.end(), c) != classes.end())
-            collected.take_all(fit_without(without[c]),
-                               [&](std::uint32_t g) { return classes[g] == c; });
+            side.take_all(fit_without(without[c]),
+                          [&](std::uint32_t g) { return classes[g] == c; });
 }
 
 /// Takes the thresholds by the rank of one score per positive frame, in one pass over the scores.
-void take_by_frames(const check::Predicate& predicate, const Evidence& evidence,
-                    Collected& collected) {
+void take_by_frames(const check::Predicate& predicate, const Evidence& evidence, OneSide& side) {
     struct Group {
         std::uint64_t frames = 0;  ///< its own
         std::uint64_t before = 0;  ///< its own so far
@@ -463,9 +425,9 @@ void take_by_frames(const check::Predicate& predicate, const Evidence& evidence,
     std::priority_queue<Place, std::vector<Place>, std::greater<>> due;
     for (std::uint32_t g = 0; g < groups.size(); ++g) {
         const std::uint64_t others = reaches.size() - groups[g].frames;
-        if (others == 0) return collected.take(Refusal::no_positives, g);
+        if (others == 0) return side.take(Refusal::no_positives, g);
         groups[g].k = check::rank(predicate.threshold.alpha, others);
-        if (groups[g].k > others) return collected.take(Refusal::too_few, g);
+        if (groups[g].k > others) return side.take(Refusal::too_few, g);
         due.emplace(groups[g].k, g);
     }
     std::uint64_t place = 0;
@@ -482,15 +444,14 @@ void take_by_frames(const check::Predicate& predicate, const Evidence& evidence,
             }
             Fit fit = fit_rank({one.reach}, "0.5");  // the threshold beyond this score
             if (auto* fitted = std::get_if<Fitted>(&fit)) mirror(*fitted, predicate.upper_bound());
-            collected.take(fit, g);
+            side.take(fit, g);
         }
     });
 }
 
 /// Takes the thresholds without each of as many parts of the groups.
 void take_by_parts(const check::Predicate& predicate, const Aim& aim, const Evidence& evidence,
-                   const std::vector<std::uint32_t>& part_of, std::uint32_t parts,
-                   Collected& collected) {
+                   const std::vector<std::uint32_t>& part_of, std::uint32_t parts, OneSide& side) {
     std::vector<Fit> fits;
     if (predicate.threshold.origin == ThresholdOrigin::f1) {
         fits = fit_f1_without(evidence.labelled, predicate.strict(), part_of, parts);
@@ -501,7 +462,7 @@ void take_by_parts(const check::Predicate& predicate, const Aim& aim, const Evid
         fits.push_back(
             fit(predicate, aim, evidence, [&](std::uint32_t g) { return part_of[g] != p; }));
     for (std::uint32_t p = 0; p < parts; ++p)
-        collected.take_all(fits[p], [&](std::uint32_t g) { return part_of[g] == p; });
+        side.take_all(fits[p], [&](std::uint32_t g) { return part_of[g] == p; });
 }
 
 }  // namespace
@@ -518,8 +479,8 @@ LeftOut left_out(const check::Predicate& predicate, const Evidence& evidence,
     for (const Aim& aim : aims) {
         const Fit whole = fit(predicate, aim, evidence);
         const auto* const of_all = std::get_if<Fitted>(&whole);
-        Collected collected(aim, aim.of_positives ? "positive frame" : "negative frame",
-                            groups.count(), of_all != nullptr && std::isinf(of_all->epsilon));
+        OneSide& side = sides.emplace_back(aim, of_all != nullptr && std::isinf(of_all->epsilon),
+                                           std::vector<float>(groups.count()));
         const auto fit_without = [&](std::uint32_t one) {
             Fit found = fit(predicate, aim, evidence, [&](std::uint32_t g) { return g != one; });
             auto* const fitted = std::get_if<Fitted>(&found);
@@ -530,14 +491,13 @@ LeftOut left_out(const check::Predicate& predicate, const Evidence& evidence,
         };
         if (by_parts)
             take_by_parts(predicate, aim, evidence,
-                          episodes::folds_of(demonstrations, groups, parts), parts, collected);
+                          episodes::folds_of(demonstrations, groups, parts), parts, side);
         else if (origin == ThresholdOrigin::class_conditional)
-            take_by_frames(predicate, evidence, collected);
+            take_by_frames(predicate, evidence, side);
         else
             take_by_rank(evidence.side(aim.of_positives).worst, aim.rate, groups.count(),
-                         fit_without, collected);
-        sides.push_back(std::move(collected).result());
-        if (result.why.empty()) result.why = sides.back().why;
+                         fit_without, side);
+        if (result.why.empty()) result.why = side.why;
     }
     for (std::uint32_t g = 0; result.why.empty() && g < groups.count(); ++g) {
         Sides one;

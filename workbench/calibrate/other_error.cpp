@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numeric>
 #include <set>
-#include <utility>
 
 #include "check/guarantees/provenance.hpp"
 #include "episodes/admission/admission.hpp"
@@ -196,13 +195,13 @@ void count(const check::Model& model, const std::vector<Guaranteed>& all, const 
     set_intervals(counted);
 }
 
-}  // namespace
-
-check::Both both_of(const check::Threshold& threshold) {
-    return {threshold.value, threshold.inner};
+/// Returns the thresholds of all predicates, and room for those of the guarantees.
+Thresholds thresholds_of(const check::Model& model, std::size_t guarantees) {
+    Thresholds result{{}, std::vector<check::Both>(guarantees)};
+    for (const check::Predicate& predicate : model.predicates)
+        result.predicates.push_back({predicate.threshold.value, predicate.threshold.inner});
+    return result;
 }
-
-namespace {
 
 /// Returns what is left out of the others.
 const char* one_of(const episodes::Groups& groups, const char* otherwise) {
@@ -283,9 +282,7 @@ std::vector<OtherError> other_errors(const check::Model& model, const std::vecto
         if (reads_more && !recorded.is_complete && errors[i].why.empty())
             errors[i].why = "some demonstrations lack an input that the monitor reads";
     }
-    Thresholds thresholds;
-    for (const check::Predicate& predicate : model.predicates)
-        thresholds.predicates.push_back(both_of(predicate.threshold));
+    Thresholds thresholds = thresholds_of(model, all.size());
     count(
         model, all, recorded,
         [&](std::uint32_t group) -> const Thresholds& {
@@ -309,10 +306,7 @@ std::vector<OtherError> other_errors_of_shifts(const check::Model& model,
                 fmt::format("without one {} {}", one_of(recorded.groups, "episode"), out[i].why);
         else if (measures_in_its_truth(model, model.monitors[all[i].monitor]))
             errors[i].why = "its truth measures something that the monitor does not";
-    Thresholds thresholds;
-    for (const check::Predicate& predicate : model.predicates)
-        thresholds.predicates.push_back(both_of(predicate.threshold));
-    thresholds.shifts.resize(all.size());
+    Thresholds thresholds = thresholds_of(model, all.size());
     count(
         model, all, recorded,
         [&](std::uint32_t group) -> const Thresholds& {
@@ -325,7 +319,6 @@ std::vector<OtherError> other_errors_of_shifts(const check::Model& model,
 }
 
 // ---- the lines of a report, and the warning about an empty guarantee ----------------------------
-// The lines of a report about the other errors, and the warning about an empty guarantee.
 
 namespace {
 

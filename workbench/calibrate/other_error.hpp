@@ -81,9 +81,6 @@ std::vector<OtherError> other_errors(const check::Model& model, const std::vecto
                                      const std::vector<Index>& predicates,
                                      const std::vector<LeftOut>& out, const Tracked& recorded);
 
-/// Returns the thresholds of a predicate or monitor.
-check::Both both_of(const check::Threshold& threshold);
-
 /// Returns the error of each monitor that is calibrated as a whole. `out`: per monitor.
 std::vector<OtherError> other_errors_of_shifts(const check::Model& model,
                                                const std::vector<Guaranteed>& all,

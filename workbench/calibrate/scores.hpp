@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/bounds.hpp"
 #include "calibrate/replayer.hpp"
 #include "data/spill/spill.hpp"
 #include "episodes/ranking/auroc.hpp"
@@ -142,33 +141,5 @@ bool is_normal(const check::Threshold& threshold);
 bool leaves_out(const check::Threshold& threshold, const episodes::Recorded& episode);
 /// Returns those predicates whose calibration reads labels.
 std::vector<Index> with_labels(const check::Model& model, std::vector<Index> predicates);
-
-/// Scores one demonstration after the other, on one thread.
-class Scorer {
-public:
-    /// Inputs that only the watched predicates and flags read may be absent, and labels that only
-    /// divide episodes.
-    Scorer(const check::Model& model, const episodes::Leaks& leaks, std::vector<Index> predicates,
-           Watched watched, episodes::ReadOptions reading);
-    Scorer(const Scorer&) = delete;
-    Scorer& operator=(const Scorer&) = delete;
-
-    /// Failures do not name the path.
-    diag::Result<Demonstration> score(const std::string& path);
-
-private:
-    diag::Result<Demonstration> score(const std::string& path, const episodes::Wanted& wanted);
-    void add(Index predicate, episodes::Label label, Scores& scores) const;
-
-    const check::Model& model_;
-    std::vector<Index> predicates_;
-    Watched watched_;
-    plan::Plan plan_;
-    episodes::Follower measured_;
-    PastIntervals pasts_;
-    episodes::Wanted wanted_;
-    episodes::Wanted divided_;  ///< the same with the labels that divide episodes
-    episodes::ReadOptions reading_;
-};
 
 }  // namespace etlc::calibrate

@@ -17,11 +17,9 @@
 #include "check/guarantees/provenance.hpp"
 #include "check/numbers/decimal.hpp"
 #include "compile.hpp"
-#include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
-#include "episodes/recording.hpp"
 
 namespace etlc::calibrate {
 
@@ -68,6 +66,15 @@ std::vector<Index> add_negations(check::Model& model, const check::Model& calibr
     return negations;
 }
 
+/// Plans of the unshifted model and of its ground truth.
+struct MonitorPlans {
+    const plan::Plan& monitors;
+    const plan::Plan& truths;
+    const episodes::GroundTruth& ground_truth;
+    const std::vector<Index>& negations;       ///< per calibrated monitor, the one that negates it
+    const std::vector<std::uint32_t>& within;  ///< per predicate, as in episodes::Wanted
+};
+
 /// Scores the calibrated monitors in one episode after the other, on one thread. The low ends of
 /// rho and of its negation are as low as those of a verdict where samples are missing or between
 /// two thresholds, and as high as in any build otherwise. The arguments must outlive it.
@@ -75,17 +82,112 @@ class MonitorScorer {
 public:
     MonitorScorer(const check::Model& model, const MonitorPlans& plans,
                   const episodes::Leaks& leaks, const std::vector<Index>& monitors,
-                  const Watched& watched, const episodes::ReadOptions& reading);
+                  const Watched& watched, const episodes::ReadOptions& reading)
+        : model_(model),
+          monitors_(monitors),
+          negations_(plans.negations),
+          watched_(watched),
+          reading_(reading),
+          highest_(plans.monitors),
+          measured_(plans.monitors),
+          pasts_(model, plans.monitors),
+          truths_(plans.truths, &plans.ground_truth),
+          wanted_(episodes::wanted(model, {&plans.monitors, &plans.truths},
+                                   episodes::labelled_predicates(plans.ground_truth), leaks)),
+          divided_(wanted_),
+          values_(model.predicates.size()) {
+        for (const Index monitor : timed_monitors(model)) durations_.emplace_back(model, monitor);
+        for (const Index monitor : monitors)
+            has_normal_ |= is_normal(*model.monitors[monitor].calibration);
+        wanted_.within = divided_.within = plans.within;
+        divided_.predicates.clear();
+        std::set_union(wanted_.predicates.begin(), wanted_.predicates.end(),
+                       watched.dividing.begin(), watched.dividing.end(),
+                       std::back_inserter(divided_.predicates));
+        // The low end of a verdict reads the low end of a literal, and the high end of a negated
+        // one; the range of a missing sample stays.
+        execute::Evaluator& highest = highest_.evaluator();
+        highest.after_pasts([&] { pasts_.step(highest); });
+        highest.replace_predicate_values([&](Index p) {
+            const plan::Value value = spread(model_, p, highest, pasts_);
+            values_[p] = {value.low, value.high};
+            return value;
+        });
+    }
     MonitorScorer(const MonitorScorer&) = delete;
     MonitorScorer& operator=(const MonitorScorer&) = delete;
 
     /// Failures do not name the path.
-    diag::Result<MonitorEpisode> score(const std::string& path);
+    diag::Result<MonitorEpisode> score(const std::string& path) {
+        auto divided = score(path, divided_);
+        if (divided || divided_.predicates.size() == wanted_.predicates.size()) return divided;
+        return score(path, wanted_);
+    }
 
 private:
-    diag::Result<MonitorEpisode> score(const std::string& path, const episodes::Wanted& wanted);
-    void note(std::vector<Scores>& scores) const;
-    void add_to_durations(const episodes::Frames& frames);
+    diag::Result<MonitorEpisode> score(const std::string& path, const episodes::Wanted& wanted) {
+        auto recording = episodes::Recording::open(wanted, path, reading_);
+        if (!recording) return recording.failure();
+        std::vector<Scores> scores(monitors_.size());
+        std::string track;
+        const bool is_divided = wanted.predicates.size() == divided_.predicates.size();
+        pasts_.reset();
+        for (DurationScorer& duration : durations_) duration.reset();
+        const auto rest = [&] {
+            note(scores);
+            return true;
+        };
+        const auto frame = [&] {
+            add_step(watched_, highest_.evaluator(), *recording, is_divided, track);
+            add_to_durations(*recording);
+            return rest();
+        };
+        std::vector<episodes::Follower*> followers{&truths_, &highest_};
+        if (has_normal_) followers.push_back(&measured_);
+        const auto done = episodes::replay(*recording, followers, frame, rest);
+        if (!done) return done.failure();
+        MonitorEpisode result{recording->recorded(), std::move(scores), {}, {},
+                              std::move(track),      is_divided};
+        for (DurationScorer& duration : durations_) {
+            const auto found = duration.score();
+            if (!found) return found.failure();
+            result.durations.push_back(*found);
+        }
+        for (const Index predicate : wanted_.predicates)
+            if (recording->from_array(predicate)) result.from_arrays.push_back(predicate);
+        return result;
+    }
+
+    void add_to_durations(const episodes::Frames& frames) {
+        for (DurationScorer& duration : durations_) duration.add(values_, frames);
+        std::fill(values_.begin(), values_.end(), std::nullopt);
+    }
+
+    void note(std::vector<Scores>& scores) const {
+        for (std::size_t i = 0; i < monitors_.size(); ++i) {
+            const Index monitor = monitors_[i];
+            if (!truths_.reports(monitor)) continue;
+            const check::Threshold& shift = *model_.monitors[monitor].calibration;
+            if (is_normal(shift)) {
+                ++scores[i].positives.frames;
+                scores[i].positives.add_normal(
+                    static_cast<double>(highest_.verdict(negations_[i]).lower),
+                    -static_cast<double>(measured_.verdict(monitor).upper));
+                continue;
+            }
+            const etlmon::Verdict& truth = truths_.verdict(monitor);
+            const bool satisfied = truth.satisfied();
+            if (truth.unknown()) {
+                ++scores[i].unlabelled;
+                continue;
+            }
+            SideScores& side = scores[i].side(satisfied);
+            ++side.frames;
+            if (!is_against(shift, satisfied)) continue;
+            const double reach = highest_.verdict(satisfied ? negations_[i] : monitor).robustness;
+            if (reach > -std::numeric_limits<double>::infinity()) side.add(reach, keeps_all(shift));
+        }
+    }
 
     const check::Model& model_;
     const std::vector<Index>& monitors_;
@@ -102,111 +204,6 @@ private:
     std::vector<std::optional<Ends>> values_;  ///< of this step, per measured predicate
     bool has_normal_ = false;                  ///< some monitor learns from normal episodes
 };
-
-MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plans,
-                             const episodes::Leaks& leaks, const std::vector<Index>& monitors,
-                             const Watched& watched, const episodes::ReadOptions& reading)
-    : model_(model),
-      monitors_(monitors),
-      negations_(plans.negations),
-      watched_(watched),
-      reading_(reading),
-      highest_(plans.monitors),
-      measured_(plans.monitors),
-      pasts_(model, plans.monitors),
-      truths_(plans.truths, &plans.ground_truth),
-      wanted_(episodes::wanted(model, {&plans.monitors, &plans.truths},
-                               episodes::labelled_predicates(plans.ground_truth), leaks)),
-      divided_(wanted_),
-      values_(model.predicates.size()) {
-    for (const Index monitor : timed_monitors(model)) durations_.emplace_back(model, monitor);
-    for (const Index monitor : monitors)
-        has_normal_ |= is_normal(*model.monitors[monitor].calibration);
-    wanted_.within = divided_.within = plans.within;
-    divided_.predicates.clear();
-    std::set_union(wanted_.predicates.begin(), wanted_.predicates.end(), watched.dividing.begin(),
-                   watched.dividing.end(), std::back_inserter(divided_.predicates));
-    // The low end of a verdict reads the low end of a literal, and the high end of a negated one;
-    // the range of a missing sample stays.
-    execute::Evaluator& highest = highest_.evaluator();
-    highest.after_pasts([&] { pasts_.step(highest); });
-    highest.replace_predicate_values([&](Index p) {
-        const plan::Value value = spread(model_, p, highest, pasts_);
-        values_[p] = {value.low, value.high};
-        return value;
-    });
-}
-
-diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path) {
-    auto divided = score(path, divided_);
-    if (divided || divided_.predicates.size() == wanted_.predicates.size()) return divided;
-    return score(path, wanted_);
-}
-
-diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path,
-                                                  const episodes::Wanted& wanted) {
-    auto recording = episodes::Recording::open(wanted, path, reading_);
-    if (!recording) return recording.failure();
-    std::vector<Scores> scores(monitors_.size());
-    std::string track;
-    const bool is_divided = wanted.predicates.size() == divided_.predicates.size();
-    pasts_.reset();
-    for (DurationScorer& duration : durations_) duration.reset();
-    const auto rest = [&] {
-        note(scores);
-        return true;
-    };
-    const auto frame = [&] {
-        add_step(watched_, highest_.evaluator(), *recording, is_divided, track);
-        add_to_durations(*recording);
-        return rest();
-    };
-    std::vector<episodes::Follower*> followers{&truths_, &highest_};
-    if (has_normal_) followers.push_back(&measured_);
-    const auto done = episodes::replay(*recording, followers, frame, rest);
-    if (!done) return done.failure();
-    MonitorEpisode result{recording->recorded(), std::move(scores), {}, {},
-                          std::move(track),      is_divided};
-    for (DurationScorer& duration : durations_) {
-        const auto found = duration.score();
-        if (!found) return found.failure();
-        result.durations.push_back(*found);
-    }
-    for (const Index predicate : wanted_.predicates)
-        if (recording->from_array(predicate)) result.from_arrays.push_back(predicate);
-    return result;
-}
-
-void MonitorScorer::add_to_durations(const episodes::Frames& frames) {
-    for (DurationScorer& duration : durations_) duration.add(values_, frames);
-    std::fill(values_.begin(), values_.end(), std::nullopt);
-}
-
-void MonitorScorer::note(std::vector<Scores>& scores) const {
-    for (std::size_t i = 0; i < monitors_.size(); ++i) {
-        const Index monitor = monitors_[i];
-        if (!truths_.reports(monitor)) continue;
-        const check::Threshold& shift = *model_.monitors[monitor].calibration;
-        if (is_normal(shift)) {
-            ++scores[i].positives.frames;
-            scores[i].positives.add_normal(
-                static_cast<double>(highest_.verdict(negations_[i]).lower),
-                -static_cast<double>(measured_.verdict(monitor).upper));
-            continue;
-        }
-        const etlmon::Verdict& truth = truths_.verdict(monitor);
-        const bool satisfied = truth.satisfied();
-        if (truth.unknown()) {
-            ++scores[i].unlabelled;
-            continue;
-        }
-        SideScores& side = scores[i].side(satisfied);
-        ++side.frames;
-        if (!is_against(shift, satisfied)) continue;
-        const double reach = highest_.verdict(satisfied ? negations_[i] : monitor).robustness;
-        if (reach > -std::numeric_limits<double>::infinity()) side.add(reach, keeps_all(shift));
-    }
-}
 
 /// Adds what the entry was computed from.
 thresholds::Entry complete(thresholds::Entry entry, const check::Model& model,
@@ -294,17 +291,6 @@ std::vector<Index> find_labelled(const check::Model& model, const std::vector<In
     return {found.begin(), found.end()};
 }
 
-}  // namespace
-
-std::vector<Index> calibrated_monitors(const check::Model& model) {
-    std::vector<Index> found;
-    for (Index m = 0; m < model.monitors.size(); ++m)
-        if (model.monitors[m].calibration || model.monitors[m].duration) found.push_back(m);
-    return found;
-}
-
-namespace {
-
 std::vector<Index> shifted_monitors(const check::Model& model) {
     std::vector<Index> found = calibrated_monitors(model);
     std::erase_if(found, [&](Index m) { return !model.monitors[m].calibration; });
@@ -321,6 +307,13 @@ std::vector<Index> scored_predicates(const check::Model& model, std::vector<Inde
 }
 
 }  // namespace
+
+std::vector<Index> calibrated_monitors(const check::Model& model) {
+    std::vector<Index> found;
+    for (Index m = 0; m < model.monitors.size(); ++m)
+        if (model.monitors[m].calibration || model.monitors[m].duration) found.push_back(m);
+    return found;
+}
 
 check::Model unshifted(check::Model model) {
     for (check::Monitor& monitor : model.monitors) monitor.calibration.reset();

@@ -14,8 +14,6 @@
 
 #include "calibrate/calibrate.hpp"
 #include "episodes/recording.hpp"
-#include "episodes/truth.hpp"
-#include "plan/plan.hpp"
 
 namespace etlc::calibrate {
 
@@ -24,15 +22,6 @@ std::vector<Index> calibrated_monitors(const check::Model& model);
 
 /// Returns the model without shifts, from which its plan is made.
 check::Model unshifted(check::Model model);
-
-/// Plans of the unshifted model and of its ground truth.
-struct MonitorPlans {
-    const plan::Plan& monitors;
-    const plan::Plan& truths;
-    const episodes::GroundTruth& ground_truth;
-    const std::vector<Index>& negations;       ///< per calibrated monitor, the one that negates it
-    const std::vector<std::uint32_t>& within;  ///< per predicate, as in episodes::Wanted
-};
 
 struct MonitorEpisode : episodes::Recorded {
     std::vector<Scores> scores;      ///< per monitor that is calibrated as a whole
