@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "check/formulas/horizons.hpp"
 #include "check/guarantees/guarantees.hpp"
 #include "check/guarantees/provenance.hpp"
+#include "evaluate/evaluate.hpp"
 #include "plan/plan.hpp"
 
 namespace etlc::evaluate {
@@ -165,190 +167,241 @@ std::vector<Index> unmeasured(const plan::Plan& plan, std::vector<Index> predica
     return predicates;
 }
 
-}  // namespace
+/// Scores one episode after the other, on one thread. Its arguments must outlive it.
+class EpisodeScorer {
+public:
+    EpisodeScorer(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
+                  const episodes::Leaks& leaks, const episodes::ReadOptions& reading,
+                  const std::vector<episodes::Variant>& variants)
+        : plan_(plan),
+          subject_(subject),
+          reading_(reading),
+          variants_(variants),
+          measuring_(plan::measuring(*plan.model, unmeasured(plan, subject.labelled))),
+          monitors_(plan),
+          truths_(truth, &subject.truth),
+          measured_(measuring_),
+          wanted_(episodes::wanted(model(), {&plan, &measuring_}, subject.labelled, leaks)) {}
+    EpisodeScorer(const EpisodeScorer&) = delete;
+    EpisodeScorer& operator=(const EpisodeScorer&) = delete;
 
-EpisodeScorer::EpisodeScorer(const plan::Plan& plan, const plan::Plan& truth,
-                             const Subject& subject, const episodes::Leaks& leaks,
-                             const episodes::ReadOptions& reading,
-                             const std::vector<episodes::Variant>& variants)
-    : plan_(plan),
-      subject_(subject),
-      reading_(reading),
-      variants_(variants),
-      measuring_(plan::measuring(*plan.model, unmeasured(plan, subject.labelled))),
-      monitors_(plan),
-      truths_(truth, &subject.truth),
-      measured_(measuring_),
-      wanted_(episodes::wanted(model(), {&plan, &measuring_}, subject.labelled, leaks)) {}
-
-diag::Result<EpisodeResult> EpisodeScorer::score(const std::string& path) {
-    episodes::KeptFrames kept;
-    Truths truths(variants_.empty() ? 0 : subject_.labelled.size());
-    const auto keep = [&](const episodes::Opener& open) { return kept.keeping(open); };
-    auto recording = episodes::Recording::open(wanted_, path, reading_,
-                                               variants_.empty() ? nullptr : episodes::Wrap(keep));
-    if (!recording) return recording.failure();
-    EpisodeResult result;
-    const std::size_t labelled = subject_.labelled.size();
-    result.predicates.resize(labelled + subject_.lets.size());
-    tracks_.assign(subject_.monitors.size(), {});
-    std::vector<MonitorEpisode> alarms(subject_.monitors.size());
-    const auto rest = [&] {
-        note_alarms(recording->frames() - 1, alarms);
-        note_verdicts();
-        return true;
-    };
-    const auto frame = [&] {
-        for (std::size_t i = 0; i < labelled; ++i) note_frame(*recording, i, result.predicates[i]);
-        for (std::size_t i = 0; i < subject_.lets.size(); ++i)
-            note_let(i, recording->frames() - 1, result.predicates[labelled + i]);
-        for (std::size_t i = 0; i < truths.size(); ++i)
-            truths[i].push_back(recording->label(subject_.labelled[i]));
-        return rest();
-    };
-    const auto done = episodes::replay(*recording, {&monitors_, &truths_, &measured_}, frame, rest);
-    if (!done) return done.failure();
-    for (std::size_t m = 0; m < subject_.monitors.size(); ++m) {
-        MonitorEpisode& monitor =
-            result.monitors.emplace_back(conclude(subject_.monitors[m], tracks_[m]));
-        monitor.alarm = alarms[m].alarm;
-        monitor.least_upper = alarms[m].least_upper;
+    /// Failures do not name the path.
+    diag::Result<EpisodeResult> score(const std::string& path) {
+        episodes::KeptFrames kept;
+        Truths truths(variants_.empty() ? 0 : subject_.labelled.size());
+        const auto keep = [&](const episodes::Opener& open) { return kept.keeping(open); };
+        auto recording = episodes::Recording::open(
+            wanted_, path, reading_, variants_.empty() ? nullptr : episodes::Wrap(keep));
+        if (!recording) return recording.failure();
+        EpisodeResult result;
+        const std::size_t labelled = subject_.labelled.size();
+        result.predicates.resize(labelled + subject_.lets.size());
+        tracks_.assign(subject_.monitors.size(), {});
+        std::vector<MonitorEpisode> alarms(subject_.monitors.size());
+        const auto rest = [&] {
+            note_alarms(recording->frames() - 1, alarms);
+            note_verdicts();
+            return true;
+        };
+        const auto frame = [&] {
+            for (std::size_t i = 0; i < labelled; ++i)
+                note_frame(*recording, i, result.predicates[i]);
+            for (std::size_t i = 0; i < subject_.lets.size(); ++i)
+                note_let(i, recording->frames() - 1, result.predicates[labelled + i]);
+            for (std::size_t i = 0; i < truths.size(); ++i)
+                truths[i].push_back(recording->label(subject_.labelled[i]));
+            return rest();
+        };
+        const auto done =
+            episodes::replay(*recording, {&monitors_, &truths_, &measured_}, frame, rest);
+        if (!done) return done.failure();
+        for (std::size_t m = 0; m < subject_.monitors.size(); ++m) {
+            MonitorEpisode& monitor =
+                result.monitors.emplace_back(conclude(subject_.monitors[m], tracks_[m]));
+            monitor.alarm = alarms[m].alarm;
+            monitor.least_upper = alarms[m].least_upper;
+        }
+        for (std::size_t i = 0; i < labelled; ++i)
+            result.predicates[i].from_array = recording->from_array(subject_.labelled[i]);
+        static_cast<episodes::Recorded&>(result) = recording->recorded();
+        const auto done_too = score_variants(kept, truths, result);
+        if (!done_too) return done_too.failure();
+        return result;
     }
-    for (std::size_t i = 0; i < labelled; ++i)
-        result.predicates[i].from_array = recording->from_array(subject_.labelled[i]);
-    static_cast<episodes::Recorded&>(result) = recording->recorded();
-    const auto done_too = score_variants(kept, truths, result);
-    if (!done_too) return done_too.failure();
-    return result;
-}
 
-/// Runs the monitors and their truths through the variants of an episode that has been read.
-diag::Result<bool> EpisodeScorer::score_variants(const episodes::KeptFrames& kept,
-                                                 const Truths& truths, EpisodeResult& result) {
-    episodes::Wanted wanted = wanted_;
-    wanted.leaks = nullptr;  // the frames are those of the episode
-    for (const episodes::Variant variant : variants_) {
-        const auto orders = episodes::orders(variant, truths, result.frames);
-        result.variants.push_back(orders.size());
-        for (MonitorEpisode& monitor : result.monitors) monitor.variants.emplace_back();
-        for (const episodes::Order& order : orders) {
-            auto recording = episodes::Recording::open(wanted, kept.in_order(order));
-            if (!recording) return recording.failure();
-            tracks_.assign(subject_.monitors.size(), {});
-            const auto step = [&] {
-                note_verdicts();
-                return true;
-            };
-            const auto done = episodes::replay(*recording, {&monitors_, &truths_}, step, step);
-            if (!done) return done;
-            for (std::size_t m = 0; m < subject_.monitors.size(); ++m)
-                result.monitors[m].variants.back().add(verdict(subject_.monitors[m], tracks_[m]));
+private:
+    using Track = std::vector<Label>;
+    using Truths = std::vector<Track>;  ///< per labelled predicate, its label in each frame
+
+    struct Tracks {
+        Track predicted;
+        Track actual;
+        bool predicted_alarm = false;  ///< an alarm at some step
+        bool actual_alarm = false;
+    };
+
+    /// Runs the monitors and their truths through the variants of an episode that has been read.
+    diag::Result<bool> score_variants(const episodes::KeptFrames& kept, const Truths& truths,
+                                      EpisodeResult& result) {
+        episodes::Wanted wanted = wanted_;
+        wanted.leaks = nullptr;  // the frames are those of the episode
+        for (const episodes::Variant variant : variants_) {
+            const auto orders = episodes::orders(variant, truths, result.frames);
+            result.variants.push_back(orders.size());
+            for (MonitorEpisode& monitor : result.monitors) monitor.variants.emplace_back();
+            for (const episodes::Order& order : orders) {
+                auto recording = episodes::Recording::open(wanted, kept.in_order(order));
+                if (!recording) return recording.failure();
+                tracks_.assign(subject_.monitors.size(), {});
+                const auto step = [&] {
+                    note_verdicts();
+                    return true;
+                };
+                const auto done = episodes::replay(*recording, {&monitors_, &truths_}, step, step);
+                if (!done) return done;
+                for (std::size_t m = 0; m < subject_.monitors.size(); ++m)
+                    result.monitors[m].variants.back().add(
+                        verdict(subject_.monitors[m], tracks_[m]));
+            }
+        }
+        return true;
+    }
+
+    float distance(Index predicate) const {
+        return measures(plan_, predicate) ? monitors_.evaluator().distance(predicate)
+                                          : measured_.evaluator().distance(predicate);
+    }
+
+    void note_frame(const episodes::Recording& recording, std::size_t i,
+                    PredicateEpisode& result) const {
+        const check::Predicate& predicate = model().predicates[subject_.labelled[i]];
+        const Label actual = recording.label(subject_.labelled[i]);
+        const float delta = distance(subject_.labelled[i]);
+        const std::optional<bool> called = predicate.called(delta);
+        const Label predicted = !called ? Label::unknown : *called ? Label::yes : Label::no;
+        result.frames.add(predicted, actual);
+        result.truth.add(actual);
+        if (actual == Label::unknown) return;
+        if (is_wrong(predicted, actual) && !result.first_error)
+            result.first_error = recording.frames() - 1;
+        if (std::isnan(delta)) {
+            ++result.unmeasured;
+            return;
+        }
+        const float score = predicate.equality()      ? static_cast<float>(*called)
+                            : predicate.upper_bound() ? -delta
+                                                      : delta;
+        result.scored.push_back({score, 0, actual == Label::yes});
+    }
+
+    void note_let(std::size_t i, std::uint64_t frame, PredicateEpisode& result) const {
+        const Verdict& says = verdict_of(monitors_, subject_.lets[i]);
+        const Label predicted = label_of(says);
+        const Label actual = label_of(verdict_of(truths_, subject_.lets[i]));
+        result.frames.add(predicted, actual);
+        result.truth.add(actual);
+        if (actual == Label::unknown) return;
+        if (is_wrong(predicted, actual) && !result.first_error) result.first_error = frame;
+        if (predicted == Label::unknown)
+            ++result.unmeasured;
+        else
+            result.scored.push_back({says.robustness, 0, actual == Label::yes});
+    }
+
+    void note_alarms(std::uint64_t step, std::vector<MonitorEpisode>& monitors) const {
+        for (std::size_t m = 0; m < monitors.size(); ++m) {
+            const Index monitor = subject_.monitors[m].monitor;
+            if (!monitors_.reports(monitor)) continue;
+            const Verdict& verdict = monitors_.verdict(monitor);
+            monitors[m].least_upper = std::min(monitors[m].least_upper, verdict.upper);
+            if (verdict.alarm() && !monitors[m].alarm) monitors[m].alarm = step;
         }
     }
-    return true;
-}
 
-float EpisodeScorer::distance(Index predicate) const {
-    return measures(plan_, predicate) ? monitors_.evaluator().distance(predicate)
-                                      : measured_.evaluator().distance(predicate);
-}
-
-void EpisodeScorer::note_frame(const episodes::Recording& recording, std::size_t i,
-                               PredicateEpisode& result) const {
-    const check::Predicate& predicate = model().predicates[subject_.labelled[i]];
-    const Label actual = recording.label(subject_.labelled[i]);
-    const float delta = distance(subject_.labelled[i]);
-    const std::optional<bool> called = predicate.called(delta);
-    const Label predicted = !called ? Label::unknown : *called ? Label::yes : Label::no;
-    result.frames.add(predicted, actual);
-    result.truth.add(actual);
-    if (actual == Label::unknown) return;
-    if (is_wrong(predicted, actual) && !result.first_error)
-        result.first_error = recording.frames() - 1;
-    if (std::isnan(delta)) {
-        ++result.unmeasured;
-        return;
+    /// Records the verdicts of a step. Both plans delay a sliding monitor by the horizon of its
+    /// formula as written.
+    void note_verdicts() {
+        for (std::size_t m = 0; m < subject_.monitors.size(); ++m) {
+            const MonitorSubject& subject = subject_.monitors[m];
+            if (subject.truth == kNone || !monitors_.reports(subject.monitor)) continue;
+            tracks_[m].predicted.push_back(label_of(monitors_.verdict(subject.monitor)));
+            tracks_[m].actual.push_back(label_of(truths_.verdict(subject.truth)));
+            if (model().monitors[subject.monitor].restarts == check::Restarts::when_final)
+                follow(m);
+        }
     }
-    const float score = predicate.equality()      ? static_cast<float>(*called)
-                        : predicate.upper_bound() ? -delta
-                                                  : delta;
-    result.scored.push_back({score, 0, actual == Label::yes});
-}
 
-void EpisodeScorer::note_let(std::size_t i, std::uint64_t frame, PredicateEpisode& result) const {
-    const Verdict& says = verdict_of(monitors_, subject_.lets[i]);
-    const Label predicted = label_of(says);
-    const Label actual = label_of(verdict_of(truths_, subject_.lets[i]));
-    result.frames.add(predicted, actual);
-    result.truth.add(actual);
-    if (actual == Label::unknown) return;
-    if (is_wrong(predicted, actual) && !result.first_error) result.first_error = frame;
-    if (predicted == Label::unknown)
-        ++result.unmeasured;
-    else
-        result.scored.push_back({says.robustness, 0, actual == Label::yes});
-}
-
-void EpisodeScorer::note_alarms(std::uint64_t step, std::vector<MonitorEpisode>& monitors) const {
-    for (std::size_t m = 0; m < monitors.size(); ++m) {
-        const Index monitor = subject_.monitors[m].monitor;
-        if (!monitors_.reports(monitor)) continue;
-        const Verdict& verdict = monitors_.verdict(monitor);
-        monitors[m].least_upper = std::min(monitors[m].least_upper, verdict.upper);
-        if (verdict.alarm() && !monitors[m].alarm) monitors[m].alarm = step;
-    }
-}
-
-/// Records the verdicts of a step. Both plans delay a sliding monitor by the horizon of its formula
-/// as written.
-void EpisodeScorer::note_verdicts() {
-    for (std::size_t m = 0; m < subject_.monitors.size(); ++m) {
+    /// Restarts the truth of a repeating monitor with it, so that both judge the same positions.
+    void follow(std::size_t m) {
         const MonitorSubject& subject = subject_.monitors[m];
-        if (subject.truth == kNone || !monitors_.reports(subject.monitor)) continue;
-        tracks_[m].predicted.push_back(label_of(monitors_.verdict(subject.monitor)));
-        tracks_[m].actual.push_back(label_of(truths_.verdict(subject.truth)));
-        if (model().monitors[subject.monitor].restarts == check::Restarts::when_final) follow(m);
+        tracks_[m].predicted_alarm |= monitors_.verdict(subject.monitor).alarm();
+        tracks_[m].actual_alarm |= truths_.verdict(subject.truth).alarm();
+        if (monitors_.verdict(subject.monitor).final()) truths_.restart(subject.truth);
     }
-}
 
-/// Restarts the truth of a repeating monitor with it, so that both judge the same positions.
-void EpisodeScorer::follow(std::size_t m) {
-    const MonitorSubject& subject = subject_.monitors[m];
-    tracks_[m].predicted_alarm |= monitors_.verdict(subject.monitor).alarm();
-    tracks_[m].actual_alarm |= truths_.verdict(subject.truth).alarm();
-    if (monitors_.verdict(subject.monitor).final()) truths_.restart(subject.truth);
-}
-
-MonitorEpisode EpisodeScorer::conclude(const MonitorSubject& subject, const Tracks& tracks) const {
-    MonitorEpisode result;
-    if (tracks.predicted.empty()) return result;
-    for (std::size_t i = 0; i < tracks.predicted.size(); ++i) {
-        result.steps.add(tracks.predicted[i], tracks.actual[i]);
-        result.truth.add(tracks.actual[i]);
-        if (is_wrong(tracks.predicted[i], tracks.actual[i]) && !result.first_error)
-            result.first_error = i;
+    MonitorEpisode conclude(const MonitorSubject& subject, const Tracks& tracks) const {
+        MonitorEpisode result;
+        if (tracks.predicted.empty()) return result;
+        for (std::size_t i = 0; i < tracks.predicted.size(); ++i) {
+            result.steps.add(tracks.predicted[i], tracks.actual[i]);
+            result.truth.add(tracks.actual[i]);
+            if (is_wrong(tracks.predicted[i], tracks.actual[i]) && !result.first_error)
+                result.first_error = i;
+        }
+        result.episode = verdict(subject, tracks);
+        result.turn = turn_of(tracks.predicted, tracks.actual);
+        const auto visited = [&](Index stage) { return truths_.verdict(stage).satisfied(); };
+        if (!subject.stages.empty() &&
+            std::all_of(subject.stages.begin(), subject.stages.end(), visited))
+            result.ordering = result.episode;
+        return result;
     }
-    result.episode = verdict(subject, tracks);
-    result.turn = turn_of(tracks.predicted, tracks.actual);
-    const auto visited = [&](Index stage) { return truths_.verdict(stage).satisfied(); };
-    if (!subject.stages.empty() &&
-        std::all_of(subject.stages.begin(), subject.stages.end(), visited))
-        result.ordering = result.episode;
-    return result;
-}
 
-/// Counts the verdict on the whole episode: the last one, or that a sliding monitor always holds.
-Counts EpisodeScorer::verdict(const MonitorSubject& subject, const Tracks& tracks) const {
-    Counts result;
-    if (tracks.predicted.empty()) return result;
-    const bool sliding = model().monitors[subject.monitor].sliding;
-    const auto of = [&](const Track& track, bool alarm) {
-        if (alarm) return Label::no;
-        return sliding ? *std::min_element(track.begin(), track.end()) : track.back();
-    };
-    result.add(of(tracks.predicted, tracks.predicted_alarm),
-               of(tracks.actual, tracks.actual_alarm));
-    return result;
+    /// Counts the verdict on the whole episode: the last one, or that a sliding monitor always
+    /// holds.
+    Counts verdict(const MonitorSubject& subject, const Tracks& tracks) const {
+        Counts result;
+        if (tracks.predicted.empty()) return result;
+        const bool sliding = model().monitors[subject.monitor].sliding;
+        const auto of = [&](const Track& track, bool alarm) {
+            if (alarm) return Label::no;
+            return sliding ? *std::min_element(track.begin(), track.end()) : track.back();
+        };
+        result.add(of(tracks.predicted, tracks.predicted_alarm),
+                   of(tracks.actual, tracks.actual_alarm));
+        return result;
+    }
+
+    const check::Model& model() const { return *plan_.model; }
+
+    const plan::Plan& plan_;
+    const Subject& subject_;
+    const episodes::ReadOptions& reading_;
+    const std::vector<episodes::Variant>& variants_;
+    plan::Plan measuring_;  ///< measures labelled predicates that no monitor uses
+    episodes::Follower monitors_;
+    episodes::Follower truths_;
+    episodes::Follower measured_;
+    episodes::Wanted wanted_;
+    std::vector<Tracks> tracks_;  ///< per monitor
+};
+
+}  // namespace
+
+bool score_episodes(const Trial& trial, const Subject& subject, const Request& request,
+                    const std::function<void(std::size_t, EpisodeResult)>& take, diag::Sink& sink) {
+    const auto truth = compile(subject.truth.model, {request.limits, check::Values::boolean}, sink);
+    if (!truth) return false;
+    std::vector<std::string> paths;
+    for (const std::size_t e : trial.episodes) paths.push_back(request.episodes[e]);
+    const episodes::Leaks leaks(*trial.spec.model, subject.labelled);
+    return episodes::over_shared_episodes<EpisodeResult>(
+        paths, request, sink,
+        [&] {
+            return std::make_unique<EpisodeScorer>(trial.spec.plan, truth->plan, subject, leaks,
+                                                   request.reading, request.variants);
+        },
+        take);
 }
 
 }  // namespace etlc::evaluate

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
-#include <utility>
 
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
@@ -119,26 +117,6 @@ void add(EpisodeResult result, std::size_t episode, std::size_t fold, Judgement&
     }
 }
 
-/// Scores the episodes of a trial and adds their identities to `own`. Returns false after an error.
-bool score(const Trial& trial, std::size_t fold, const Subject& subject, const Request& request,
-           Judgement& judgement, episodes::Identities& own, diag::Sink& sink) {
-    const auto truth = compile(subject.truth.model, {request.limits, check::Values::boolean}, sink);
-    if (!truth) return false;
-    std::vector<std::string> paths;
-    for (const std::size_t e : trial.episodes) paths.push_back(request.episodes[e]);
-    const episodes::Leaks leaks(*trial.spec.model, subject.labelled);
-    return episodes::over_shared_episodes<EpisodeResult>(
-        paths, request, sink,
-        [&] {
-            return std::make_unique<EpisodeScorer>(trial.spec.plan, truth->plan, subject, leaks,
-                                                   request.reading, request.variants);
-        },
-        [&](std::size_t i, EpisodeResult result) {
-            if (trial.seen || !trial.fitted.episodes.empty()) own.add(result);
-            add(std::move(result), trial.episodes[i], fold, judgement);
-        });
-}
-
 /// Fewer episodes give no reliable interval.
 constexpr std::uint64_t kFewEpisodes = 5;
 
@@ -192,11 +170,15 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
     for (std::size_t t = 0; t < trials.size(); ++t) {
         const Trial& trial = trials[t];
         const check::Model& model = *trial.spec.model;
+        const bool has_seen = trial.seen || !trial.fitted.episodes.empty();
         episodes::Identities own;
-        if (!score(trial, t, subject(model, *labelled), request, result, own, sink))
+        const auto take = [&](std::size_t i, EpisodeResult episode) {
+            if (has_seen) own.add(episode);
+            add(std::move(episode), trial.episodes[i], t, result);
+        };
+        if (!score_episodes(trial, subject(model, *labelled), request, take, sink))
             return std::nullopt;
         thresholds::Allowance allowance;
-        const bool has_seen = trial.seen || !trial.fitted.episodes.empty();
         if (has_seen)
             allowance = episodes::admit_unseen(own, trial.seen.value_or(thresholds::File{}),
                                                trial.fitted, request.allow_overlap, sink);

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -49,6 +48,12 @@ struct Request {
     episodes::Sharing* sharing = nullptr;
 };
 
+/// Scores the episodes of a trial: compares the monitors of `subject` with their ground truth.
+/// `take(i, result)` gets that of its i-th episode, in order. Returns false after an error, which
+/// it reports, and for a shard.
+bool score_episodes(const Trial& trial, const Subject& subject, const Request& request,
+                    const std::function<void(std::size_t, EpisodeResult)>& take, diag::Sink& sink);
+
 /// The variants of one kind.
 struct VariantsMade {
     episodes::Variant variant = episodes::Variant::cut;
@@ -56,8 +61,21 @@ struct VariantsMade {
     std::uint64_t left_out = 0;  ///< episodes that are too short for one
 };
 
+/// What episodes were judged under.
+struct Conditions {
+    struct Fold {
+        std::uint64_t episodes = 0;                             ///< held out
+        std::vector<std::pair<std::string, float>> thresholds;  ///< from the others, by name
+    };
+    std::vector<Fold> folds;                ///< empty without folds
+    std::uint64_t only_trained = 0;         ///< as in the request
+    double step_seconds = 0;                ///< 0: the spec has no rate
+    std::vector<std::string> reservations;  ///< allowances that were used, in words
+    std::vector<VariantsMade> variants;     ///< per requested kind
+};
+
 /// Predictions and truths of all episodes, most of them in temporary files.
-struct Judgement {
+struct Judgement : Conditions {
     struct Predicate {
         std::string name;
         bool adaptive = false;
@@ -70,21 +88,12 @@ struct Judgement {
         bool sequential = false;
         data::Spool<MonitorEpisode> episodes{};
     };
-    struct Fold {
-        std::uint64_t episodes = 0;                             ///< held out
-        std::vector<std::pair<std::string, float>> thresholds;  ///< from the others, by name
-    };
     std::vector<Predicate> predicates;  ///< those with labels, then the lets with a truth
     std::vector<Monitor> monitors;
-    episodes::Identities episodes;          ///< ordered by fold, as those of predicates, monitors
-    episodes::Groups groups;                ///< of the episodes of the request
-    std::vector<std::uint32_t> place;       ///< index in that order, per episode of the request
-    std::vector<std::uint32_t> fold_of;     ///< per episode of the request
-    std::vector<Fold> folds;                ///< empty without folds
-    std::uint64_t only_trained = 0;         ///< as in the request
-    double step_seconds = 0;                ///< 0: the spec has no rate
-    std::vector<std::string> reservations;  ///< allowances that were used, in words
-    std::vector<VariantsMade> variants;     ///< per requested kind
+    episodes::Identities episodes;       ///< ordered by fold, as those of predicates, monitors
+    episodes::Groups groups;             ///< of the episodes of the request
+    std::vector<std::uint32_t> place;    ///< index in that order, per episode of the request
+    std::vector<std::uint32_t> fold_of;  ///< per episode of the request
 
     /// Calls `visit(e, item)` for the item of each episode, in the order of the request.
     template <class T, class Visit>
@@ -169,18 +178,13 @@ struct EpisodeRow {
     std::vector<std::pair<std::string, Counts>> predicates;  ///< by frames
 };
 
-struct Evaluation {
+struct Evaluation : Conditions {
     std::uint64_t episodes = 0;
     std::optional<std::uint64_t> groups;  ///< nothing where no episode has one
     std::uint64_t frames = 0;
     std::uint64_t repeated = 0;     ///< episodes that repeat an earlier one
     std::uint64_t leaked = 0;       ///< episodes with a frame that is a row of a target
     std::uint64_t overlapping = 0;  ///< episodes that share most of their content with another
-    std::vector<std::string> reservations;  ///< allowances that were used, in words
-    double step_seconds = 0;                ///< 0: the spec has no rate
-    std::vector<Judgement::Fold> folds;
-    std::uint64_t only_trained = 0;
-    std::vector<VariantsMade> variants;
     std::vector<PredicateScore> predicates;
     std::vector<MonitorScore> monitors;
     std::vector<EpisodeRow> by_episode;  ///< empty unless requested

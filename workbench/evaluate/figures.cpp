@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <set>
-#include <utility>
 
 namespace etlc::evaluate {
 
@@ -85,37 +84,22 @@ struct Rule {
     double below = std::numeric_limits<double>::infinity();
 };
 
-constexpr Rule kAlwaysTrue{};
-constexpr Rule kAlwaysFalse{0, 0};
-
-/// The quality of a rule, compared lexicographically.
-struct Merit {
-    double f1 = 0;
-    std::uint64_t agreeing = 0;
-
-    bool operator==(const Merit&) const = default;
-    bool operator<(const Merit& other) const {
-        return std::pair(f1, agreeing) < std::pair(other.f1, other.agreeing);
-    }
-};
-
-/// Label counts over all episodes of the numbers between two neighbouring ends of runs.
+/// Label counts over all episodes.
 struct Cell {
     std::uint64_t positives = 0;
     std::uint64_t negatives = 0;
 };
 
-/// The labels that a rule predicts true.
-struct Hits {
-    std::uint64_t right = 0;
-    std::uint64_t wrong = 0;
-};
+/// The quality of a rule, compared lexicographically: F1, then the number that agree.
+using Merit = std::pair<double, std::uint64_t>;
 
-Merit merit(const Cell& all, const Hits& hits) {
-    const std::uint64_t twice_over = all.positives + hits.right + hits.wrong;
-    const double f1 =
-        twice_over == 0 ? 0 : 2 * static_cast<double>(hits.right) / static_cast<double>(twice_over);
-    return {f1, hits.right + all.negatives - hits.wrong};
+/// Returns the merit of predicting true for `inside`, some of `all`.
+Merit merit(const Cell& all, const Cell& inside) {
+    const std::uint64_t twice_over = all.positives + inside.positives + inside.negatives;
+    const double f1 = twice_over == 0 ? 0
+                                      : 2 * static_cast<double>(inside.positives) /
+                                            static_cast<double>(twice_over);
+    return {f1, inside.positives + all.negatives - inside.negatives};
 }
 
 /// The numbers at which the label of some episode changes, and the label counts in between.
@@ -148,25 +132,21 @@ public:
 
     /// Returns the best rule for the labels counted, or nothing where there are none.
     std::optional<Rule> best() const {
-        Cell all;
-        for (const Cell& cell : cells_) {
-            all.positives += cell.positives;
-            all.negatives += cell.negatives;
-        }
+        const Cell all = labels_in({0, cells_.size()});
         if (all.positives + all.negatives == 0) return std::nullopt;
-        Rule rule = kAlwaysTrue;
-        Hits hits{all.positives, all.negatives};
+        Rule rule;  // always true
+        Cell hits = all;
         Merit best = merit(all, hits);
-        if (const Merit none = merit(all, {}); best < none) {
-            best = none;
-            rule = kAlwaysFalse;
+        if (const Merit never = merit(all, {}); best < never) {
+            best = never;
+            rule.below = 0;
         }
         // Dinkelbach, "On nonlinear fractional programming", 1967: among the intervals, the one
         // with the greatest 2 hits - F1 x predictions has a greater F1, until none has.
         bool is_constant = true;
         for (;;) {
             const Stretch found = stretch(all, hits);
-            const Hits inside = hits_in(found);
+            const Cell inside = labels_in(found);
             const Merit here = merit(all, inside);
             if (!(best < here) && (is_constant || here < best)) return rule;
             rule = rule_of(found);
@@ -195,9 +175,9 @@ private:
 
     /// Returns the cells with the greatest 2 hits - F1 x predictions, where F1 is that of `before`,
     /// and of these the ones that agree most.
-    Stretch stretch(const Cell& all, const Hits& before) const {
-        const Wide twice_hits = 2 * Wide{before.right};
-        const Wide twice_over = Wide{all.positives} + before.right + before.wrong;
+    Stretch stretch(const Cell& all, const Cell& before) const {
+        const Wide twice_hits = 2 * Wide{before.positives};
+        const Wide twice_over = Wide{all.positives} + before.positives + before.negatives;
         const auto gain = [&](std::size_t k) {
             const auto& [positives, negatives] = cells_[k];
             return Gain{
@@ -207,14 +187,13 @@ private:
         return greatest_stretch<Gain>(cells_.size(), gain).value_or(Stretch{});
     }
 
-    /// Returns what predicting true in these cells gets.
-    Hits hits_in(const Stretch& of) const {
-        Hits hits;
+    Cell labels_in(const Stretch& of) const {
+        Cell sum;
         for (std::size_t k = of.first; k < of.end; ++k) {
-            hits.right += cells_[k].positives;
-            hits.wrong += cells_[k].negatives;
+            sum.positives += cells_[k].positives;
+            sum.negatives += cells_[k].negatives;
         }
-        return hits;
+        return sum;
     }
 
     /// Returns the rule whose borders are halfway between the labels inside and those outside.
@@ -236,7 +215,7 @@ private:
     }
 
     std::vector<std::uint64_t> borders_;
-    std::vector<Cell> cells_;
+    std::vector<Cell> cells_;  ///< of the numbers between two neighbouring borders
 };
 
 void judge(const LabelRuns& episode, const Rule& rule, Counts& counts) {

@@ -221,7 +221,7 @@ void fill(Object& to, const MonitorScore& m, const Evaluation& evaluation) {
               [&](Object& object) { fill(object, m.detection, evaluation.step_seconds); });
 }
 
-void fill(Object& to, const Judgement::Fold& fold) {
+void fill(Object& to, const Conditions::Fold& fold) {
     to("episodes", fold.episodes);
     to.nested("thresholds", [&](Object& thresholds) {
         for (const auto& [name, threshold] : fold.thresholds)
@@ -312,7 +312,7 @@ void add_rows(std::string& text, const std::string& prefix, const Evaluation& ev
         });
     }
     for (std::size_t k = 0; k < evaluation.folds.size(); ++k) {
-        const Judgement::Fold& fold = evaluation.folds[k];
+        const Conditions::Fold& fold = evaluation.folds[k];
         const std::string number = std::to_string(k + 1);
         rows("fold", number, "")("episodes", fold.episodes);
         for (const auto& [name, threshold] : fold.thresholds)

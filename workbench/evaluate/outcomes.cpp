@@ -100,12 +100,6 @@ Figure warning(const Bootstrap& bootstrap, const std::vector<Judged>& episodes,
     });
 }
 
-/// The failures and successes of one length.
-struct AtLength {
-    std::int64_t failures = 0;
-    std::int64_t successes = 0;
-};
-
 }  // namespace
 
 Interval wilson(std::uint64_t part, std::uint64_t whole) {
@@ -122,10 +116,14 @@ std::vector<bool> alarms_by_duration(const std::vector<Judged>& episodes) {
     for (const Judged& one : episodes) places.emplace(one.frames, 0);
     std::size_t next = 0;
     for (auto& [length, place] : places) place = next++;
-    std::vector<AtLength> lengths(places.size());
-    AtLength all;
+    struct Counted {
+        std::int64_t failures = 0;
+        std::int64_t successes = 0;
+    };
+    std::vector<Counted> lengths(places.size());
+    Counted all;
     const auto add = [&](const Judged& one, std::int64_t times) {
-        for (AtLength* const count : {&lengths[places.at(one.frames)], &all}) {
+        for (Counted* const count : {&lengths[places.at(one.frames)], &all}) {
             count->failures += one.failed() ? times : 0;
             count->successes += one.succeeded() ? times : 0;
         }

@@ -89,6 +89,13 @@ Coverage coverage(const Bootstrap& bootstrap, const std::vector<Counts>& each) {
     return {share(bootstrap, positives), share(bootstrap, negatives)};
 }
 
+/// Returns the verdicts on variants of all kinds.
+Counts on_all_variants(const MonitorEpisode& episode) {
+    Counts sum;
+    for (const Counts& kind : episode.variants) sum.add(kind);
+    return sum;
+}
+
 /// Computes the rates on variants, resampled with their episodes.
 Score of_variants(const Bootstrap& bootstrap, const std::vector<Counts>& each) {
     Score result = score(bootstrap, each, [](const auto&) {});
@@ -144,12 +151,7 @@ MonitorScore monitor_score(const Bootstrap& bootstrap, const Judgement& judgemen
         result.variants.push_back(of_variants(
             bootstrap, of_each([v](const MonitorEpisode& e) { return e.variants[v]; })));
     if (!judgement.variants.empty())
-        result.variants.push_back(of_variants(bootstrap, of_each([](const MonitorEpisode& e) {
-                                                  Counts all;
-                                                  for (const Counts& counts : e.variants)
-                                                      all.add(counts);
-                                                  return all;
-                                              })));
+        result.variants.push_back(of_variants(bootstrap, of_each(on_all_variants)));
     if (monitor.sequential)
         result.ordering = by_verdict(
             of_each([](const MonitorEpisode& e) { return e.ordering.value_or(Counts{}); }));
@@ -212,14 +214,9 @@ std::vector<std::pair<std::string, Rates>> baselines(const Score& score) {
 }
 
 Evaluation summarise(const Judgement& judgement, unsigned jobs) {
-    Evaluation result;
+    Evaluation result{judgement};
     result.episodes = judgement.episodes.size();
     if (judgement.groups.are_named()) result.groups = judgement.groups.count();
-    result.step_seconds = judgement.step_seconds;
-    result.reservations = judgement.reservations;
-    result.folds = judgement.folds;
-    result.only_trained = judgement.only_trained;
-    result.variants = judgement.variants;
     episodes::Identities in_order;  // in the order of the request, unlike the folds
     if (!judgement.folds.empty())
         judgement.for_each(judgement.episodes, [&](std::size_t, const episodes::Recorded& episode) {
@@ -251,11 +248,7 @@ EpisodeCounts counts_by_truth(const Judgement& judgement, std::size_t monitor,
                               Counts MonitorEpisode::*of_episode) {
     const auto& all = judgement.monitors[monitor].episodes;
     return {judgement.each(all, [=](const MonitorEpisode& one) { return one.*of_episode; }),
-            judgement.each(all, [](const MonitorEpisode& one) {
-                Counts sum;
-                for (const Counts& kind : one.variants) sum.add(kind);
-                return sum;
-            })};
+            judgement.each(all, on_all_variants)};
 }
 
 namespace {
@@ -383,17 +376,10 @@ private:
             result.other_truths +=
                 same_truth(first[first_.place[e]], second[second_.place[e]]) ? 0 : 1;
         if (result.other_truths > 0) return result;
-        const std::vector<Counts> of_first = first_.each(first, counts);
-        const std::vector<Counts> of_second = second_.each(second, counts);
+        const EpisodeCounts of_first{first_.each(first, counts), {}};
+        const EpisodeCounts of_second{second_.each(second, counts), {}};
         static_cast<ByRate<Figure>&>(result) = by_rate([&](Rate rate) {
-            const auto of = [rate](const std::vector<Counts>& each) {
-                return [&each, rate](const Weights& weights) {
-                    std::vector<std::optional<double>> values;
-                    for (const Rates& one : rates(each, weights)) values.push_back(one.*rate);
-                    return values;
-                };
-            };
-            return less(bootstrap_, of(of_second), of(of_first));
+            return less(bootstrap_, statistic(of_second, rate), statistic(of_first, rate));
         });
         return result;
     }
