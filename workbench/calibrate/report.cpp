@@ -9,7 +9,6 @@
 
 #include "calibrate/calibrate.hpp"
 #include "calibrate/fit.hpp"
-#include "calibrate/shift.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/conformal.hpp"
 #include "check/guarantees/guarantees.hpp"
@@ -247,8 +246,6 @@ std::string report(const check::Model& model, const std::vector<Index>& predicat
 
 namespace {
 
-using diag::counted;
-
 /// Results of a predicate or monitor over all folds.
 struct HeldOut {
     float least = std::numeric_limits<float>::infinity();  ///< threshold
@@ -286,11 +283,6 @@ struct HeldOut {
         return text + "\n";
     }
 };
-
-std::string heading(std::uint32_t folds) {
-    return fmt::format("\nthresholds without each of {} folds; no guarantee follows from them\n",
-                       folds);
-}
 
 /// Adds the results of the thresholds in the groups of the fold that they were fitted without.
 void judge_frames(const check::Predicate& predicate, const check::Both& both,
@@ -371,14 +363,14 @@ std::string report_of_folds(const std::vector<Subject>& subjects,
                             std::uint32_t folds) {
     if (folds == 0) return "";
     const auto fold_of = episodes::folds_of(episodes, groups, folds);
-    std::string text = heading(folds);
+    std::string text = fmt::format(
+        "\nthresholds without each of {} folds; no guarantee follows from them\n", folds);
     for (const Subject& subject : subjects)
         text += held_out(subject, fold_of, folds).text(subject, folds);
     return text;
 }
 
-// ---- errors where no threshold can be fitted, and warnings --------------------------------------
-// Errors where no threshold can be fitted, and warnings about those that are doubtful.
+// ---- errors where no threshold can be fitted, and warnings about doubtful ones ------------------
 
 namespace {
 
@@ -548,16 +540,15 @@ void warn_of_doubts(const check::Predicate& predicate, const Evidence& evidence,
         return episodes::warn_of_data(diag::Code::doubtful_threshold, std::move(message),
                                       predicate.threshold.span, sink);
     };
-    const auto ranked =
-        episodes::auroc(evidence.labelled, evidence.groups, episodes::Likely::smaller);
+    const auto ranked = episodes::auroc(evidence.labelled, evidence.groups);
     if (episodes::warn_of_labels(predicate, {evidence.positives.frames, evidence.negatives.frames},
                                  ranked, sink))
         return;
-    if (ranked && ranked->interval && ranked->interval->low <= 0.5) {
+    if (ranked.interval && ranked.interval->low <= 0.5) {
         warn(fmt::format("what '{}' measures does not tell its labels apart: the area under the "
                          "ROC curve is {:.2f}, with a 95 % interval from {:.2f} to {:.2f}",
-                         predicate.name, ranked->value, ranked->interval->low,
-                         ranked->interval->high))
+                         predicate.name, *ranked.value, ranked.interval->low,
+                         ranked.interval->high))
             .note("0.5 is chance: check the labels, the embedding and the targets");
         return;
     }

@@ -42,17 +42,6 @@ private:
 
 inline constexpr std::uint32_t kResamples = 1000;
 
-struct Interval {
-    double low = 0;
-    double high = 0;
-};
-
-/// A figure, if it is defined, and its interval, if most resamples define it too.
-struct Figure {
-    std::optional<double> value;
-    std::optional<Interval> interval;
-};
-
 /// Efron's percentile intervals: the 2.5 % and 97.5 % quantiles over kResamples draws with
 /// replacement, of episodes, since frames of one episode are not independent, or of groups of them.
 /// The seed is fixed, so the same data give the same interval on every machine and with any number
@@ -71,8 +60,9 @@ public:
     /// Returns the number of groups, which without names are episodes.
     std::size_t groups() const { return groups_; }
 
-    /// Computes a figure. `statistic(weights)` returns its value for each resample, in order. It is
-    /// called once for `whole()`, and then by several threads at a time.
+    /// Computes a figure, with an interval if most resamples define it. `statistic(weights)`
+    /// returns its value for each resample, in order. It is called once for `whole()`, and then by
+    /// several threads at a time.
     Figure figure(
         const std::function<std::vector<std::optional<double>>(const Weights&)>& statistic) const;
 

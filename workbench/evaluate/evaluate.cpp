@@ -210,13 +210,9 @@ void warn_of_doubts(const check::Model& model, const Evaluation& evaluation, dia
             std::find_if(model.predicates.begin(), model.predicates.end(),
                          [&](const check::Predicate& one) { return one.name == score.name; });
         if (predicate == model.predicates.end()) continue;
-        std::optional<episodes::Auroc> auroc;
-        if (enough && score.auroc.value && score.auroc.interval)
-            auroc = {*score.auroc.value, episodes::Auroc::Interval{score.auroc.interval->low,
-                                                                   score.auroc.interval->high}};
         const Counts& counts = score.frames.counts;
-        if (!episodes::warn_of_labels(*predicate, {counts.positives(), counts.negatives()}, auroc,
-                                      sink) &&
+        if (!episodes::warn_of_labels(*predicate, {counts.positives(), counts.negatives()},
+                                      enough ? score.auroc : Figure{}, sink) &&
             enough)
             warn_of_no_gain(*predicate, score.frames, sink);
     }

@@ -7,12 +7,12 @@
 #include <tuple>
 
 #include "evaluate/evaluate.hpp"
-#include "source/text.hpp"
 
 namespace etlc::evaluate {
 
 namespace {
 
+using episodes::shown;
 using Row = std::vector<std::string>;
 
 constexpr std::size_t kMostEpisodes = 20;  ///< rows of the table by episode
@@ -44,15 +44,6 @@ std::string aligned(const std::vector<Row>& rows) {
     return text;
 }
 
-std::string number(const std::optional<double>& value) {
-    return value ? fmt::format("{:.3f}", *value) : "-";
-}
-
-std::string figure(const Figure& f) {
-    if (!f.interval) return number(f.value);
-    return fmt::format("{} [{:.3f}, {:.3f}]", number(f.value), f.interval->low, f.interval->high);
-}
-
 std::string difference(const Figure& f) {
     if (!f.value) return "-";
     std::string text = fmt::format("{:+.3f}", *f.value);
@@ -72,7 +63,7 @@ Row heading(const std::string& what, const std::string& positive) {
 void add_figures(std::vector<Row>& rows, const std::string& name, const Score& score) {
     const Counts& c = score.counts;
     Row row{name};
-    score.for_each([&](const char*, const Figure& rate) { row.push_back(figure(rate)); });
+    score.for_each([&](const char*, const Figure& rate) { row.push_back(shown(rate)); });
     row.push_back(
         fmt::format("{} of {} ({})", c.positives(), c.total(), percent(c.positives(), c.total())));
     rows.push_back(std::move(row));
@@ -82,7 +73,7 @@ void add_baselines(std::vector<Row>& rows, const Score& score) {
     for (auto [what, blind] : baselines(score)) {
         std::replace(what.begin(), what.end(), '_', ' ');
         Row& baseline = rows.emplace_back(Row{"  " + what});
-        blind.for_each([&](const char*, const auto& rate) { baseline.push_back(number(rate)); });
+        blind.for_each([&](const char*, const auto& rate) { baseline.push_back(shown(rate)); });
     }
 }
 
@@ -106,10 +97,10 @@ public:
         const Counts& c = score.counts;
         any_ |= c.unknown() > 0;
         Row row{name};
-        score.for_each_error([&](const char*, const Figure& rate) { row.push_back(figure(rate)); });
+        score.for_each_error([&](const char*, const Figure& rate) { row.push_back(shown(rate)); });
         if (coverage)
             for (const Figure* share : {&coverage->of_positives, &coverage->of_negatives})
-                row.push_back(figure(*share));
+                row.push_back(shown(*share));
         else
             for (const auto& [right, wrong, unknown] :
                  {std::tuple(c.true_positives, c.false_negatives, c.unknown_positives),
@@ -145,8 +136,8 @@ std::string predicates_part(const Evaluation& evaluation) {
     for (const PredicateScore& p : evaluation.predicates) {
         const std::size_t first = rows.size();
         add(rows, p.name, p.frames);
-        rows[first].push_back(figure(p.auroc));
-        rows[first].push_back(figure(p.coverage.of_positives));
+        rows[first].push_back(shown(p.auroc));
+        rows[first].push_back(shown(p.coverage.of_positives));
         errors.add(p.name, p.frames, &p.coverage);
         add_remarks(remarks, p.name, p.frames.counts, "frame");
         if (p.adaptive)
@@ -214,7 +205,7 @@ std::string ordering_part(const Evaluation& evaluation) {
                               "episodes in order", "in another order"}};
     for (const MonitorScore& m : evaluation.monitors)
         if (m.ordering)
-            rows.push_back({m.name, figure(m.ordering->agreement),
+            rows.push_back({m.name, shown(m.ordering->agreement),
                             std::to_string(m.ordering->counts.positives()),
                             std::to_string(m.ordering->counts.negatives())});
     return rows.size() == 1 ? "" : "\n" + aligned(rows);
@@ -255,7 +246,7 @@ std::string outcomes_part(const Evaluation& evaluation) {
         return steps ? fmt::format("{:.4g}", *steps * step) : "-";
     };
     const auto count = [](std::uint64_t part, std::uint64_t whole, const Figure& of) {
-        return fmt::format("{} of {}, {}", part, whole, figure(of));
+        return fmt::format("{} of {}, {}", part, whole, shown(of));
     };
     std::uint64_t known = 0;
     for (const MonitorScore& m : evaluation.monitors) {
@@ -268,8 +259,8 @@ std::string outcomes_part(const Evaluation& evaluation) {
             warning +=
                 fmt::format(" [{}, {}]", time(median.interval->low), time(median.interval->high));
         rows.push_back({m.name, count(o.false_alarm_count, o.successes, o.false_alarms),
-                        count(o.detected_count, o.failures, o.detected),
-                        figure(o.balanced_accuracy), figure(o.auroc), warning,
+                        count(o.detected_count, o.failures, o.detected), shown(o.balanced_accuracy),
+                        shown(o.auroc), warning,
                         !median.value
                             ? "-"
                             : fmt::format("{} to {}", time(o.warning_lower_quartile.value),
@@ -280,7 +271,7 @@ std::string outcomes_part(const Evaluation& evaluation) {
         if (!m.outcomes) continue;
         for (const auto& [name, blind] : m.outcomes->baselines) {
             Row& row = rows.emplace_back(Row{"  " + name});
-            blind.for_each([&](const char*, const auto& rate) { row.push_back(number(rate)); });
+            blind.for_each([&](const char*, const auto& rate) { row.push_back(shown(rate)); });
         }
         break;  // they are the same for all monitors
     }
@@ -295,9 +286,8 @@ std::string left_out(const Evaluation& evaluation) {
     std::string text;
     for (const MonitorScore& m : evaluation.monitors) {
         if (m.lacking.empty() || m.outcomes) continue;
-        std::string names;
-        for (const std::string& name : m.lacking) names += (names.empty() ? "" : ", ") + name;
-        text += fmt::format("{}: not evaluated, no labels for {}\n", m.name, names);
+        text += fmt::format("{}: not evaluated, no labels for {}\n", m.name,
+                            fmt::join(m.lacking, ", "));
     }
     return text.empty() ? "" : "\n" + text;
 }
@@ -308,7 +298,7 @@ std::string folds_part(const Evaluation& evaluation) {
     for (const auto& [name, threshold] : evaluation.folds[0].thresholds)
         rows[0].push_back(fmt::format("{} of the others", name));
     for (std::size_t k = 0; k < evaluation.folds.size(); ++k) {
-        const Judgement::Fold& fold = evaluation.folds[k];
+        const Conditions::Fold& fold = evaluation.folds[k];
         rows.push_back({std::to_string(k + 1), std::to_string(fold.episodes)});
         for (const auto& [name, threshold] : fold.thresholds)
             rows.back().push_back(fmt::format("{:.7g}", threshold));
@@ -331,8 +321,8 @@ std::string by_episode_part(const Evaluation& evaluation) {
     for (std::size_t i = 0; i < std::min(episodes.size(), kMostEpisodes); ++i) {
         const EpisodeRow& e = episodes[i];
         const Rates of_predictions = rates(e.predictions);
-        rows.push_back({e.path, std::to_string(e.frames), number(of_predictions.f1),
-                        number(of_predictions.agreement),
+        rows.push_back({e.path, std::to_string(e.frames), shown(of_predictions.f1),
+                        shown(of_predictions.agreement),
                         e.first_error
                             ? fmt::format("step {}: {}", e.first_error->step, e.first_error->name)
                             : "-",

@@ -11,8 +11,6 @@
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
 #include "fit/collect.hpp"
-#include "fit/separation.hpp"
-#include "fit/solve.hpp"
 
 namespace etlc::fit {
 
@@ -23,10 +21,5 @@ struct Fit {
 
 /// Returns nothing after an error.
 std::optional<Fit> fit(const check::Model& model, const Request& request, diag::Sink& sink);
-
-/// Reports what was fitted, on which frames, and how well it separates. `solutions`: per fitted
-/// thing.
-std::string report(const check::Model& model, const Collection& collection,
-                   const std::vector<Solution>& solutions, const Separations& separations);
 
 }  // namespace etlc::fit

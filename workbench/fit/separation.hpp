@@ -42,10 +42,10 @@ struct WorstFrame {
 
 struct Separation {
     Index predicate = 0;  ///< the predicate that is measured
-    /// The AUROC of l2 to the mean of the positive frames, in the space of the input; nothing for
+    /// The AUROC of l2 to the mean of the positive frames, in the space of the input; undefined for
     /// several inputs, or without such frames.
-    std::optional<episodes::Auroc> before;
-    std::optional<episodes::Auroc> after;
+    episodes::Figure before;
+    episodes::Figure after;
     std::vector<WorstFrame> worst;  ///< worst first, one per episode
     episodes::Labels labels;        ///< of the frames measured after the fit
 };

@@ -473,8 +473,8 @@ diag::Diagnostic& warn_of_data(diag::Code code, std::string message, source::Spa
     return sink.report(std::move(found));
 }
 
-bool warn_of_labels(const check::Predicate& predicate, Labels labels,
-                    const std::optional<Auroc>& auroc, diag::Sink& sink) {
+bool warn_of_labels(const check::Predicate& predicate, Labels labels, const Figure& auroc,
+                    diag::Sink& sink) {
     const std::uint64_t all = labels.positives + labels.negatives;
     const source::Span span = predicate.threshold.span;
     if (all > 0 && (labels.positives == 0 || labels.negatives == 0)) {
@@ -488,13 +488,13 @@ bool warn_of_labels(const check::Predicate& predicate, Labels labels,
                               holds ? "false" : "true", predicate.name));
         return true;
     }
-    if (!auroc || !auroc->interval || auroc->interval->high >= 0.5) return false;
+    if (!auroc.interval || auroc.interval->high >= 0.5) return false;
     warn_of_data(
         diag::Code::inverted_labels,
         fmt::format("the labels of '{}' are the wrong way round for what it measures: the "
                     "area under the ROC curve is {:.2f}, with a 95 % interval from {:.2f} "
                     "to {:.2f}",
-                    predicate.name, auroc->value, auroc->interval->low, auroc->interval->high),
+                    predicate.name, *auroc.value, auroc.interval->low, auroc.interval->high),
         span, sink)
         .note(
             fmt::format("below 0.5, {} numbers are labelled true: look at its truth or its labels "

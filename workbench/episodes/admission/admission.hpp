@@ -117,8 +117,8 @@ struct Labels {
 };
 
 /// Warns of one-sided or inverted labels; returns whether it did.
-bool warn_of_labels(const check::Predicate& predicate, Labels labels,
-                    const std::optional<Auroc>& auroc, diag::Sink& sink);
+bool warn_of_labels(const check::Predicate& predicate, Labels labels, const Figure& auroc,
+                    diag::Sink& sink);
 
 /// Reports a warning about the data that points into the spec.
 diag::Diagnostic& warn_of_data(diag::Code code, std::string message, source::Span about,

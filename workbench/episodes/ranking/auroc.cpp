@@ -1,5 +1,7 @@
 #include "episodes/ranking/auroc.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -123,9 +125,9 @@ struct Group {
 };
 
 /// `without_one`: the value without each episode.
-Auroc with_interval(double value, const std::vector<double>& without_one) {
+Figure with_interval(double value, const std::vector<double>& without_one) {
     constexpr std::size_t kLeastEpisodes = 5;
-    Auroc result{value, {}};
+    Figure result{value, {}};
     if (without_one.size() < kLeastEpisodes) return result;
     const auto n = static_cast<double>(without_one.size());
     double mean = 0;
@@ -133,18 +135,18 @@ Auroc with_interval(double value, const std::vector<double>& without_one) {
     double squares = 0;
     for (const double one : without_one) squares += (one - mean) * (one - mean);
     const double margin = 1.96 * std::sqrt((n - 1) / n * squares);
-    result.interval = {std::max(0.0, value - margin), std::min(1.0, value + margin)};
+    result.interval = Interval{std::max(0.0, value - margin), std::min(1.0, value + margin)};
     return result;
 }
 
-std::optional<Auroc> auroc_of(const std::vector<Group>& groups) {
+Figure auroc_of(const std::vector<Group>& groups) {
     double ordered = 0;
     double pairs = 0;
     for (const Group& group : groups) {
         ordered += group.all.ordered;
         pairs += group.all.positives * group.all.negatives;
     }
-    if (pairs == 0) return std::nullopt;
+    if (pairs == 0) return {};
 
     std::vector<double> without_one;
     without_one.reserve(groups[0].episodes.size());
@@ -232,7 +234,18 @@ private:
 
 }  // namespace
 
-std::optional<Auroc> auroc(std::vector<std::vector<RankedFrame>>& groups, std::size_t episodes) {
+std::string shown(const Figure& figure) {
+    std::string text = shown(figure.value);
+    if (figure.interval)
+        text += fmt::format(" [{:.3f}, {:.3f}]", figure.interval->low, figure.interval->high);
+    return text;
+}
+
+std::string shown(const std::optional<double>& value) {
+    return value ? fmt::format("{:.3f}", *value) : "-";
+}
+
+Figure auroc(std::vector<std::vector<RankedFrame>>& groups, std::size_t episodes) {
     std::vector<Group> counted;
     for (std::vector<RankedFrame>& frames : groups) {
         std::vector<Pairs> pairs(episodes);
@@ -242,26 +255,21 @@ std::optional<Auroc> auroc(std::vector<std::vector<RankedFrame>>& groups, std::s
         for (const RankedFrame& frame : frames)
             counter.add(frame.score, frame.episode, frame.positive);
         const Pairs all = counter.finish();
+        set_ordered(frames, all);
         counted.push_back({all, std::move(pairs)});
-        set_ordered(frames, counted.back().all);
     }
     return auroc_of(counted);
 }
 
-std::optional<Auroc> auroc(const FramesByScore& frames, std::size_t episodes, Likely likely) {
-    // Negating scores orders pairs as exchanging the classes does.
-    const bool exchanged = likely == Likely::smaller;
+Figure auroc(const FramesByScore& frames, std::size_t episodes) {
+    // Exchanging the classes orders pairs as negating scores does.
     std::vector<Pairs> pairs(episodes);
     std::vector<double> lower_negatives(episodes);
-    PairCounter counter(static_cast<double>(exchanged ? frames.negatives() : frames.positives()),
-                        pairs, lower_negatives);
-    frames.for_each([&](const Scored& frame) {
-        counter.add(frame.score, frame.episode, frame.positive != exchanged);
-    });
+    PairCounter counter(static_cast<double>(frames.negatives()), pairs, lower_negatives);
+    frames.for_each(
+        [&](const Scored& frame) { counter.add(frame.score, frame.episode, !frame.positive); });
     const Pairs all = counter.finish();
-    std::vector<Group> group(1);
-    group[0] = {all, std::move(pairs)};
-    return auroc_of(group);
+    return auroc_of({{all, std::move(pairs)}});
 }
 
 std::vector<std::optional<double>> auroc(const std::vector<FramesByScore>& groups,

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "data/spill/spill.hpp"
@@ -67,6 +68,21 @@ private:
     std::uint64_t positives_ = 0;
 };
 
+struct Interval {
+    double low = 0;
+    double high = 0;
+};
+
+/// A figure, if it is defined, and its 95 % interval over episodes, if they are enough for one.
+struct Figure {
+    std::optional<double> value;
+    std::optional<Interval> interval;
+};
+
+/// Return "0.912 [0.851, 0.953]"; "-" where it is undefined.
+std::string shown(const Figure& figure);
+std::string shown(const std::optional<double>& value);
+
 /// The weight of each episode in every resample. The weights of an episode are adjacent, so that
 /// sums of all resamples take one pass.
 class Weights {
@@ -95,25 +111,14 @@ struct RankedFrame : Scored {
     double ordered = 0;  ///< share of the pairs with this frame that are ordered correctly
 };
 
-struct Auroc {
-    struct Interval {
-        double low = 0;
-        double high = 0;
-    };
-    double value = 0;
-    /// The 95 % interval over episodes, given enough of them. It is a jackknife, which takes one
-    /// pass however many there are.
-    std::optional<Interval> interval;
-};
-
 /// Returns the AUROC; sorts the frames and sets their `ordered`. All frames of an episode are in
-/// one group. Returns nothing where no group has frames of both classes.
-std::optional<Auroc> auroc(std::vector<std::vector<RankedFrame>>& groups, std::size_t episodes);
-/// The scores that indicate a positive frame.
-enum class Likely : std::uint8_t { greater, smaller };
+/// one group. Undefined where no group has frames of both classes. The interval is a jackknife,
+/// which takes one pass however many episodes there are.
+Figure auroc(std::vector<std::vector<RankedFrame>>& groups, std::size_t episodes);
 
-/// Returns the AUROC of one group without per-frame results, in some 50 bytes an episode.
-std::optional<Auroc> auroc(const FramesByScore& frames, std::size_t episodes, Likely likely);
+/// Returns the AUROC of one group in which smaller scores indicate positive frames, without
+/// per-frame results, in some 50 bytes an episode.
+Figure auroc(const FramesByScore& frames, std::size_t episodes);
 
 /// Returns the value of every resample; nothing where a class is empty.
 std::vector<std::optional<double>> auroc(const std::vector<FramesByScore>& groups,

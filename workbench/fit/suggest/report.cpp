@@ -12,17 +12,11 @@ namespace etlc::fit {
 namespace {
 
 using diag::counted;
-
-std::string figure(const episodes::Auroc& auroc) {
-    if (!auroc.interval) return fmt::format("{:.3f}", auroc.value);
-    return fmt::format("{:.3f} [{:.3f}, {:.3f}]", auroc.value, auroc.interval->low,
-                       auroc.interval->high);
-}
+using episodes::shown;
 
 std::string row(const Suggestion& one) {
-    return fmt::format("{} {:20}  {:>10}  {}{}\n", one.ties ? '*' : ' ',
-                       one.auroc ? figure(*one.auroc) : "-", one.elements, one.distance,
-                       one.lines.empty() ? " (as it is)" : "");
+    return fmt::format("{} {:20}  {:>10}  {}{}\n", one.ties ? '*' : ' ', shown(one.auroc),
+                       one.elements, one.distance, one.lines.empty() ? " (as it is)" : "");
 }
 
 /// Prints the lines to paste, if any.
@@ -38,8 +32,8 @@ std::string report(const Suggestions& all) {
         fmt::format("\n{}\n  AUROC                   elements  distance\n", all.predicate);
     for (const Suggestion& one : all.ranked) text += row(one);
     for (const Suggestion& one : all.ranked)
-        if (!one.auroc) text += fmt::format("- {}: {}\n", one.distance, one.why_not);
-    if (!all.ranked.front().auroc) return text;
+        if (!one.auroc.value) text += fmt::format("- {}: {}\n", one.distance, one.why_not);
+    if (!all.ranked.front().auroc.value) return text;
     text += "\nBest:\n" + lines_of(all.ranked.front());
     if (all.recommended != 0)
         text += "\nRecommended, the cheapest of those marked *:\n" +
@@ -47,21 +41,24 @@ std::string report(const Suggestions& all) {
     return text;
 }
 
+std::string number(const std::optional<double>& value) {
+    return value ? fmt::format("{}", *value) : "null";
+}
+
+std::string end_of(const episodes::Figure& figure, double episodes::Interval::*end) {
+    return number(figure.interval ? std::optional((*figure.interval).*end) : std::nullopt);
+}
+
 std::string json(const Suggestion& one, bool recommended) {
     std::vector<std::string> lines;
     for (const std::string& line : one.lines) lines.push_back(source::json_string(line));
-    const auto number = [&](double episodes::Auroc::Interval::*end) {
-        return one.auroc && one.auroc->interval ? fmt::format("{}", (*one.auroc->interval).*end)
-                                                : "null";
-    };
     return fmt::format(
         "{{\"auroc\": {}, \"low\": {}, \"high\": {}, \"ties\": {}, \"recommended\": {}, "
         "\"elements\": {},\n       \"distance\": {},\n       \"lines\": [{}],\n"
         "       \"why_not\": {}}}",
-        one.auroc ? fmt::format("{}", one.auroc->value) : "null",
-        number(&episodes::Auroc::Interval::low), number(&episodes::Auroc::Interval::high), one.ties,
-        recommended, one.elements, source::json_string(one.distance),
-        fmt::join(lines, ",\n                 "),
+        number(one.auroc.value), end_of(one.auroc, &episodes::Interval::low),
+        end_of(one.auroc, &episodes::Interval::high), one.ties, recommended, one.elements,
+        source::json_string(one.distance), fmt::join(lines, ",\n                 "),
         one.why_not.empty() ? "null" : source::json_string(one.why_not));
 }
 
@@ -69,53 +66,14 @@ std::string json(const Suggestions& all) {
     std::vector<std::string> ranked;
     for (std::size_t i = 0; i < all.ranked.size(); ++i)
         ranked.push_back(
-            json(all.ranked[i], i == all.recommended && all.ranked[i].auroc.has_value()));
+            json(all.ranked[i], i == all.recommended && all.ranked[i].auroc.value.has_value()));
     return fmt::format("{{\"predicate\": {}, \"ranked\": [\n      {}]}}",
                        source::json_string(all.predicate), fmt::join(ranked, ",\n      "));
 }
 
-}  // namespace
-
-std::string report(const Suggested& suggested) {
-    if (suggested.of.empty()) return report(suggested.in_time);
-    std::string text = fmt::format(
-        "Tried on {}, {}: the area under the ROC curve by frame, on episodes that were\n"
-        "not fitted on ({}), with the 95 % interval over episodes, and the elements that a\n"
-        "step compares. *: the interval reaches that of the best. contrast: less the same "
-        "distance\n"
-        "to the frames at which the predicate does not hold.\n",
-        counted(suggested.episodes, "episode"), counted(suggested.frames, "frame"),
-        counted(suggested.folds, "fold"));
-    for (const Suggestions& one : suggested.of) text += report(one);
-    return text + report(suggested.in_time);
-}
-
-std::string json(const Suggested& suggested) {
-    std::vector<std::string> all;
-    for (const Suggestions& one : suggested.of) all.push_back(json(one));
-    return fmt::format(
-        "{{\n  \"episodes\": {}, \"frames\": {}, \"folds\": {},\n  \"predicates\": [\n    "
-        "{}],\n  \"in_time\": {}\n}}\n",
-        suggested.episodes, suggested.frames, suggested.folds, fmt::join(all, ",\n    "),
-        json(suggested.in_time));
-}
-
-// Prints suggestions in time as text and as JSON.
-
-namespace {
+// ---- in time ------------------------------------------------------------------------------------
 
 constexpr std::size_t kShown = 12;  ///< candidates in a table for people
-
-std::string shown(const episodes::Figure& figure) {
-    if (!figure.value) return "-";
-    if (!figure.interval) return fmt::format("{:.3f}", *figure.value);
-    return fmt::format("{:.3f} [{:.3f}, {:.3f}]", *figure.value, figure.interval->low,
-                       figure.interval->high);
-}
-
-std::string shown(const std::optional<double>& value) {
-    return value ? fmt::format("{:.3f}", *value) : "-";
-}
 
 std::string row(const InTime& one, const RankedInTime& all) {
     std::string columns;
@@ -181,10 +139,6 @@ std::string text_of_ranking(const RankedInTime& all, std::optional<bool> monitor
     return text;
 }
 
-std::string number(const std::optional<double>& value) {
-    return value ? fmt::format("{}", *value) : "null";
-}
-
 std::string json_of(const InTime& one, const RankedInTime& all) {
     std::string parts;
     for (std::size_t i = 0; i < one.parts.size(); ++i) {
@@ -194,19 +148,13 @@ std::string json_of(const InTime& one, const RankedInTime& all) {
     }
     std::vector<std::string> lines;
     for (const std::string& line : one.lines) lines.push_back(source::json_string(line));
-    const auto end = [&](double episodes::Interval::*which) {
-        return number(one.score.interval ? std::optional((*one.score.interval).*which)
-                                         : std::nullopt);
-    };
     return fmt::format(
         "{{\"score\": {}, \"low\": {}, \"high\": {}, \"ties\": {}, {}"
         "\n       \"formula\": {},\n       \"lines\": [{}]}}",
-        number(one.score.value), end(&episodes::Interval::low), end(&episodes::Interval::high),
-        one.ties, parts, source::json_string(one.formula),
-        fmt::join(lines, ",\n                 "));
+        number(one.score.value), end_of(one.score, &episodes::Interval::low),
+        end_of(one.score, &episodes::Interval::high), one.ties, parts,
+        source::json_string(one.formula), fmt::join(lines, ",\n                 "));
 }
-
-}  // namespace
 
 std::string report(const SuggestedInTime& suggested) {
     if (!suggested.why_not.empty())
@@ -265,6 +213,32 @@ std::string json(const SuggestedInTime& suggested) {
     return fmt::format("{{\"folds\": {}, \"why_not\": {}, \"of\": [\n    {}]}}", suggested.folds,
                        suggested.why_not.empty() ? "null" : source::json_string(suggested.why_not),
                        fmt::join(all, ",\n    "));
+}
+
+}  // namespace
+
+std::string report(const Suggested& suggested) {
+    if (suggested.of.empty()) return report(suggested.in_time);
+    std::string text = fmt::format(
+        "Tried on {}, {}: the area under the ROC curve by frame, on episodes that were\n"
+        "not fitted on ({}), with the 95 % interval over episodes, and the elements that a\n"
+        "step compares. *: the interval reaches that of the best. contrast: less the same "
+        "distance\n"
+        "to the frames at which the predicate does not hold.\n",
+        counted(suggested.episodes, "episode"), counted(suggested.frames, "frame"),
+        counted(suggested.folds, "fold"));
+    for (const Suggestions& one : suggested.of) text += report(one);
+    return text + report(suggested.in_time);
+}
+
+std::string json(const Suggested& suggested) {
+    std::vector<std::string> all;
+    for (const Suggestions& one : suggested.of) all.push_back(json(one));
+    return fmt::format(
+        "{{\n  \"episodes\": {}, \"frames\": {}, \"folds\": {},\n  \"predicates\": [\n    "
+        "{}],\n  \"in_time\": {}\n}}\n",
+        suggested.episodes, suggested.frames, suggested.folds, fmt::join(all, ",\n    "),
+        json(suggested.in_time));
 }
 
 }  // namespace etlc::fit

@@ -3,16 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
 
 #include "check/guarantees/provenance.hpp"
 #include "data/text/text.hpp"
-#include "diag/diag.hpp"
 #include "episodes/admission/admission.hpp"
 #include "fit/separation.hpp"
 #include "plan/budget/budget.hpp"
@@ -23,6 +20,171 @@ namespace {
 
 using check::Predicate;
 using diag::Code;
+
+// The distances to try for a predicate, with the declarations that they need, as lines of a spec.
+// Names are new, and equal declarations are made once.
+
+bool is_word(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+/// Returns all words of a spec, which include its names.
+std::set<std::string> words_of(std::string_view spec) {
+    std::set<std::string> result;
+    auto begin = std::find_if(spec.begin(), spec.end(), is_word);
+    while (begin != spec.end()) {
+        const auto end = std::find_if_not(begin, spec.end(), is_word);
+        result.emplace(begin, end);
+        begin = std::find_if(end, spec.end(), is_word);
+    }
+    return result;
+}
+
+/// Declarations under names that start with a prefix.
+class Declarations {
+public:
+    /// Avoids the names in `taken`, and adds its own to them; `taken` outlives this.
+    Declarations(std::string prefix, std::set<std::string>& taken)
+        : prefix_(std::move(prefix)), taken_(taken) {}
+
+    /// Returns a new name.
+    std::string unused(const std::string& wanted) {
+        std::string result = wanted;
+        for (int number = 2; !taken_.insert(result).second; ++number)
+            result = fmt::format("{}_{}", wanted, number);
+        return result;
+    }
+
+    /// Returns the name of `kind NAME = text;`, and declares it, with the role as its end, if it is
+    /// new.
+    std::string name(const std::string& kind, const std::string& role, const std::string& text) {
+        for (const Declared& one : declared_)
+            if (one.kind == kind && one.text == text) return one.name;
+        declared_.push_back({kind, text, unused(prefix_ + "_" + role)});
+        lines_.push_back(fmt::format("{} {} = {};", kind, declared_.back().name, text));
+        return declared_.back().name;
+    }
+
+    const std::vector<std::string>& lines() const { return lines_; }
+
+private:
+    struct Declared {
+        std::string kind, text, name;
+    };
+
+    std::string prefix_;
+    std::set<std::string>& taken_;
+    std::vector<Declared> declared_;
+    std::vector<std::string> lines_;
+};
+
+/// The parts of a candidate, in words of the language.
+struct Candidate {
+    std::string_view map;       ///< method of the projection; empty: none
+    std::uint32_t r = 0;        ///< its rows
+    bool discriminant = false;  ///< a discriminant of the projection, or of the point
+    std::string_view targets;   ///< method of the targets
+    std::uint32_t k = 0;        ///< their rows; 0: one
+    std::string_view distance;  ///< "mahalanobis": by the fitted metric
+    bool contrast =
+        false;  ///< minus the same distance to the frames at which the predicate does not hold
+};
+
+constexpr std::uint32_t kFew = 16;
+constexpr std::uint32_t kMany = 64;
+/// The largest point for a full metric: a step would compare the square of its elements, and a
+/// discriminant separates as well for far less.
+constexpr std::uint32_t kLargestMetric = 512;
+
+// map, r, discriminant, targets, k, distance, contrast
+constexpr Candidate kCandidates[] = {
+    {"", 0, false, "mean", 0, "l2", false},
+    {"", 0, false, "mean", 0, "l2sq", true},
+    {"", 0, false, "medoids", 8, "l2", false},
+    {"", 0, false, "medoids", 8, "l2", true},
+    {"", 0, false, "kmeans", 32, "l2", true},
+    {"", 0, false, "mean", 0, "cosine", true},
+    {"", 0, false, "medoids", 8, "cosine", false},
+    {"", 0, false, "medoids", 8, "cosine", true},
+    {"", 0, false, "mean", 0, "mahalanobis", false},
+    {"", 0, false, "mean", 0, "mahalanobis", true},
+    {"", 0, true, "mean", 0, "l2", false},
+    {"", 0, true, "mean", 0, "l2sq", true},
+    {"pca", kFew, false, "medoids", 8, "l2", true},
+    {"pca", kFew, false, "kmeans", 32, "l2", true},
+    {"pca", kMany, false, "kmeans", 32, "l2", true},
+    {"whitened_pca", kFew, false, "mean", 0, "l2", false},
+    {"whitened_pca", kFew, false, "medoids", 8, "l2", true},
+    {"whitened_pca", kFew, false, "kmeans", 32, "l2", true},
+    {"whitened_pca", kMany, false, "mean", 0, "l2", false},
+    {"whitened_pca", kMany, false, "medoids", 8, "l2", true},
+    {"whitened_pca", kMany, false, "kmeans", 32, "l2", true},
+    {"pca", kFew, true, "mean", 0, "l2sq", true},
+    {"pca", kMany, true, "mean", 0, "l2sq", true},
+};
+
+/// Returns the candidates that fit a point of this dimension.
+std::vector<Candidate> candidates(std::uint32_t dimension) {
+    std::vector<Candidate> result;
+    for (const Candidate& candidate : kCandidates)
+        if (candidate.r < dimension &&
+            (candidate.distance != "mahalanobis" || dimension <= kLargestMetric))
+            result.push_back(candidate);
+    return result;
+}
+
+std::string distance_to(const Candidate& candidate, const std::string& point,
+                        const std::string& metric, const std::string& targets) {
+    return fmt::format("{}{}({}, {})", candidate.k > 0 ? "min " : "", metric, point, targets);
+}
+
+std::string targets_at(const Candidate& candidate, const std::string& point,
+                       const std::string& where) {
+    return fmt::format("fitted({}, {}of = {}, where = {})", candidate.targets,
+                       candidate.k > 0 ? fmt::format("k = {}, ", candidate.k) : "", point, where);
+}
+
+/// Describes a candidate: "min l2(pca 16(z), 8 medoids), contrast".
+std::string described(const Candidate& candidate, const std::string& point) {
+    std::string from = point;
+    if (!candidate.map.empty()) from = fmt::format("{} {}({})", candidate.map, candidate.r, from);
+    if (candidate.discriminant) from = fmt::format("discriminant({})", from);
+    return distance_to(candidate, from, std::string(candidate.distance),
+                       candidate.k > 0 ? fmt::format("{} {}", candidate.k, candidate.targets)
+                                       : std::string(candidate.targets)) +
+           (candidate.contrast ? ", contrast" : "");
+}
+
+/// Returns the distance of the candidate, from `point`, to frames at which `predicate` holds.
+std::string expression(const Candidate& candidate, const std::string& point,
+                       const std::string& predicate, Declarations& declarations) {
+    std::string from = point;
+    if (!candidate.map.empty())
+        from =
+            fmt::format("{}({})",
+                        declarations.name("projection", "space",
+                                          fmt::format("fitted({}, r = {}, of = {}, where = true)",
+                                                      candidate.map, candidate.r, from)),
+                        from);
+    if (candidate.discriminant)
+        from = fmt::format(
+            "{}({})",
+            declarations.name(
+                "projection", "side",
+                fmt::format("fitted(discriminant, r = 1, of = {}, where = {})", from, predicate)),
+            from);
+    std::string metric(candidate.distance);
+    if (metric == "mahalanobis")
+        metric += fmt::format("(fitted(discriminant, of = {}, where = {}))", from, predicate);
+    const std::string to =
+        distance_to(candidate, from, metric,
+                    declarations.name("target", "inside", targets_at(candidate, from, predicate)));
+    if (!candidate.contrast) return to;
+    return to + " - " +
+           distance_to(candidate, from, metric,
+                       declarations.name("target", "outside",
+                                         targets_at(candidate, from, "!" + predicate)));
+}
 
 std::optional<Index> predicate_named(const check::Model& model, const std::string& name) {
     for (Index i = 0; i < model.predicates.size(); ++i)
@@ -106,10 +268,7 @@ public:
         Suggestions result{own.name, {}, 0};
         result.ranked.push_back({own.text.substr(0, own.text.rfind(' ', own.text.size() - 2)),
                                  {},
-                                 plan::elements_of(model_, predicate),
-                                 {},
-                                 {},
-                                 false});
+                                 plan::elements_of(model_, predicate)});
         measured_.push_back({own.name, own.name});
         const check::Point& point = model_.points[plain_need(model_, predicate)->point];
         Declarations shared(own.name, taken_);
@@ -180,25 +339,20 @@ std::string why_not(const std::vector<Filled>& folds, Index predicate) {
     return "";
 }
 
-double low_end(const episodes::Auroc& auroc) {
-    return auroc.interval ? auroc.interval->low : auroc.value;
-}
-
-double high_end(const episodes::Auroc& auroc) {
-    return auroc.interval ? auroc.interval->high : auroc.value;
+episodes::Interval ends_of(const episodes::Figure& auroc) {
+    return auroc.interval.value_or(episodes::Interval{*auroc.value, *auroc.value});
 }
 
 void rank(Suggestions& all) {
     std::stable_sort(all.ranked.begin(), all.ranked.end(),
                      [](const Suggestion& a, const Suggestion& b) {
-                         if (a.auroc.has_value() != b.auroc.has_value()) return a.auroc.has_value();
-                         if (a.auroc && a.auroc->value != b.auroc->value)
-                             return a.auroc->value > b.auroc->value;
+                         if (a.auroc.value != b.auroc.value) return a.auroc.value > b.auroc.value;
                          return a.elements < b.elements;
                      });
     std::uint64_t cheapest = std::numeric_limits<std::uint64_t>::max();
     for (Suggestion& one : all.ranked) {
-        one.ties = one.auroc && high_end(*one.auroc) >= low_end(*all.ranked.front().auroc);
+        one.ties =
+            one.auroc.value && ends_of(one.auroc).high >= ends_of(all.ranked.front().auroc).low;
         if (one.ties) cheapest = std::min(cheapest, one.elements);
     }
     for (std::size_t i = all.ranked.size(); i-- > 0;)
@@ -247,7 +401,7 @@ std::optional<Separations> measure(const check::Model& spec, const std::vector<M
         suggestion.why_not = reasons[i];
         if (!reasons[i].empty()) continue;
         suggestion.auroc = next++->after;
-        if (!suggestion.auroc) suggestion.why_not = "no fold has frames of both classes";
+        if (!suggestion.auroc.value) suggestion.why_not = "no fold has frames of both classes";
     }
     return found;
 }
@@ -289,135 +443,6 @@ std::optional<Suggested> suggest(const check::Model& model, const CheckText& che
 
 namespace {
 
-constexpr std::uint32_t kFew = 16;
-constexpr std::uint32_t kMany = 64;
-/// The largest point for a full metric: a step would compare the square of its elements, and a
-/// discriminant separates as well for far less.
-constexpr std::uint32_t kLargestMetric = 512;
-
-// map, r, discriminant, targets, k, distance, contrast
-constexpr Candidate kCandidates[] = {
-    {"", 0, false, "mean", 0, "l2", false},
-    {"", 0, false, "mean", 0, "l2sq", true},
-    {"", 0, false, "medoids", 8, "l2", false},
-    {"", 0, false, "medoids", 8, "l2", true},
-    {"", 0, false, "kmeans", 32, "l2", true},
-    {"", 0, false, "mean", 0, "cosine", true},
-    {"", 0, false, "medoids", 8, "cosine", false},
-    {"", 0, false, "medoids", 8, "cosine", true},
-    {"", 0, false, "mean", 0, "mahalanobis", false},
-    {"", 0, false, "mean", 0, "mahalanobis", true},
-    {"", 0, true, "mean", 0, "l2", false},
-    {"", 0, true, "mean", 0, "l2sq", true},
-    {"pca", kFew, false, "medoids", 8, "l2", true},
-    {"pca", kFew, false, "kmeans", 32, "l2", true},
-    {"pca", kMany, false, "kmeans", 32, "l2", true},
-    {"whitened_pca", kFew, false, "mean", 0, "l2", false},
-    {"whitened_pca", kFew, false, "medoids", 8, "l2", true},
-    {"whitened_pca", kFew, false, "kmeans", 32, "l2", true},
-    {"whitened_pca", kMany, false, "mean", 0, "l2", false},
-    {"whitened_pca", kMany, false, "medoids", 8, "l2", true},
-    {"whitened_pca", kMany, false, "kmeans", 32, "l2", true},
-    {"pca", kFew, true, "mean", 0, "l2sq", true},
-    {"pca", kMany, true, "mean", 0, "l2sq", true},
-};
-
-bool is_word(char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-}
-
-std::string distance_to(const Candidate& candidate, const std::string& point,
-                        const std::string& metric, const std::string& targets) {
-    return fmt::format("{}{}({}, {})", candidate.k > 0 ? "min " : "", metric, point, targets);
-}
-
-std::string targets_at(const Candidate& candidate, const std::string& point,
-                       const std::string& where) {
-    return fmt::format("fitted({}, {}of = {}, where = {})", candidate.targets,
-                       candidate.k > 0 ? fmt::format("k = {}, ", candidate.k) : "", point, where);
-}
-
-}  // namespace
-
-std::set<std::string> words_of(std::string_view spec) {
-    std::set<std::string> result;
-    auto begin = std::find_if(spec.begin(), spec.end(), is_word);
-    while (begin != spec.end()) {
-        const auto end = std::find_if_not(begin, spec.end(), is_word);
-        result.emplace(begin, end);
-        begin = std::find_if(end, spec.end(), is_word);
-    }
-    return result;
-}
-
-std::string Declarations::unused(const std::string& wanted) {
-    std::string result = wanted;
-    for (int number = 2; !taken_.insert(result).second; ++number)
-        result = fmt::format("{}_{}", wanted, number);
-    return result;
-}
-
-std::string Declarations::name(const std::string& kind, const std::string& role,
-                               const std::string& text) {
-    for (const Declared& one : declared_)
-        if (one.kind == kind && one.text == text) return one.name;
-    declared_.push_back({kind, text, unused(prefix_ + "_" + role)});
-    lines_.push_back(fmt::format("{} {} = {};", kind, declared_.back().name, text));
-    return declared_.back().name;
-}
-
-std::vector<Candidate> candidates(std::uint32_t dimension) {
-    std::vector<Candidate> result;
-    for (const Candidate& candidate : kCandidates)
-        if (candidate.r < dimension &&
-            (candidate.distance != "mahalanobis" || dimension <= kLargestMetric))
-            result.push_back(candidate);
-    return result;
-}
-
-std::string described(const Candidate& candidate, const std::string& point) {
-    std::string from = point;
-    if (!candidate.map.empty()) from = fmt::format("{} {}({})", candidate.map, candidate.r, from);
-    if (candidate.discriminant) from = fmt::format("discriminant({})", from);
-    return distance_to(candidate, from, std::string(candidate.distance),
-                       candidate.k > 0 ? fmt::format("{} {}", candidate.k, candidate.targets)
-                                       : std::string(candidate.targets)) +
-           (candidate.contrast ? ", contrast" : "");
-}
-
-std::string expression(const Candidate& candidate, const std::string& point,
-                       const std::string& predicate, Declarations& declarations) {
-    std::string from = point;
-    if (!candidate.map.empty())
-        from =
-            fmt::format("{}({})",
-                        declarations.name("projection", "space",
-                                          fmt::format("fitted({}, r = {}, of = {}, where = true)",
-                                                      candidate.map, candidate.r, from)),
-                        from);
-    if (candidate.discriminant)
-        from = fmt::format(
-            "{}({})",
-            declarations.name(
-                "projection", "side",
-                fmt::format("fitted(discriminant, r = 1, of = {}, where = {})", from, predicate)),
-            from);
-    std::string metric(candidate.distance);
-    if (metric == "mahalanobis")
-        metric += fmt::format("(fitted(discriminant, of = {}, where = {}))", from, predicate);
-    const std::string to =
-        distance_to(candidate, from, metric,
-                    declarations.name("target", "inside", targets_at(candidate, from, predicate)));
-    if (!candidate.contrast) return to;
-    return to + " - " +
-           distance_to(candidate, from, metric,
-                       declarations.name("target", "outside",
-                                         targets_at(candidate, from, "!" + predicate)));
-}
-
-namespace {
-
-using check::Index;
 using check::Model;
 
 /// Returns the durations to try, in steps, ascending.
@@ -463,16 +488,12 @@ std::vector<Formula> over_two(const Model& model, const std::string& p, Index ot
     return all;
 }
 
-bool is_part_of_word(char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-}
-
 /// Replaces whole words.
 std::string replaced(const std::string& text, const std::map<std::string, std::string>& words) {
     std::string result;
     for (std::size_t at = 0; at < text.size();) {
         std::size_t end = at;
-        while (end < text.size() && is_part_of_word(text[end])) ++end;
+        while (end < text.size() && is_word(text[end])) ++end;
         if (end == at) {
             result += text[at++];
             continue;
