@@ -61,7 +61,7 @@ struct VariantsMade {
     std::uint64_t left_out = 0;  ///< episodes that are too short for one
 };
 
-/// What episodes were judged under.
+/// The conditions under which episodes were judged.
 struct Conditions {
     struct Fold {
         std::uint64_t episodes = 0;                             ///< held out

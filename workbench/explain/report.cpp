@@ -50,7 +50,7 @@ std::vector<Nearest> nearest(const Observations& observations, Sample sample) {
     return result;
 }
 
-/// What both forms are made of.
+/// The report that both forms print.
 class Printed {
 protected:
     explicit Printed(const Report& report) : report_(report) {}
