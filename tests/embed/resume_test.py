@@ -206,18 +206,6 @@ def what_changed_is_encoded_again():
     check(STEPS, "an episode that is not there")
 
 
-def leftovers_are_removed():
-    ended = subprocess.Popen(["true"])
-    ended.wait()
-    used = pathlib.Path(f"kept/.etlc-{os.getpid()}-0.part")
-    left = pathlib.Path(f"kept/.etlc-{ended.pid}-0.part")
-    for path in (used, left):
-        path.write_text("half an episode")
-    call(words("kept", data="three"))
-    assert used.exists() and not left.exists()
-    used.unlink()
-
-
 def errors_leave_the_episodes_before():
     call(words("all"))
     whole = content("all")
@@ -292,7 +280,6 @@ with tempfile.TemporaryDirectory() as place:
     interrupted_calls_go_on()
     episodes_appear_one_by_one()
     what_changed_is_encoded_again()
-    leftovers_are_removed()
     errors_leave_the_episodes_before()
     few_descriptors_are_enough()
     arrays_are_hashed_too()

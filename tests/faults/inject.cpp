@@ -1,13 +1,11 @@
 // A library to preload that makes system calls of a program fail on demand. It reads
 // ETLC_INJECT=CALL:FIRST:COUNT:ACTION from the environment. CALL is one of kCalls; its calls number
-// FIRST (from 1) to FIRST + COUNT - 1 after the beginning of main() get ACTION: an error number,
-// `short` (only half of the bytes are written), `kill` or `killed` (the process dies before or
-// after the call). ETLC_INJECT_COUNTS names a file that receives, at the end of main(), the number
-// of calls of each kind.
+// FIRST (from 1) to FIRST + COUNT - 1 after the beginning of main() get ACTION: an error number, or
+// `short` (only half of the bytes are written). ETLC_INJECT_COUNTS names a file that receives, at
+// the end of main(), the number of calls of each kind.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
-#include <signal.h>
 #include <spawn.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -30,7 +28,6 @@ enum Call {
     kClose,
     kLink,
     kRename,
-    kUnlink,
     kDup,
     kLock,
     kChange,
@@ -39,11 +36,10 @@ enum Call {
     kPipe,
     kCalls
 };
-constexpr const char* kNames[kCalls] = {"malloc", "write",  "open", "close", "link",
-                                        "rename", "unlink", "dup",  "lock",  "change",
-                                        "thread", "spawn",  "pipe"};
+constexpr const char* kNames[kCalls] = {"malloc", "write", "open",   "close",  "link",  "rename",
+                                        "dup",    "lock",  "change", "thread", "spawn", "pipe"};
 
-enum class Action { none, fail, halve, kill, kill_after };
+enum class Action { none, fail, halve };
 
 struct Injection {
     int call = kCalls;
@@ -64,15 +60,8 @@ Action next(Call call) {
     const bool hit =
         call == injection.call && n >= injection.first && n < injection.first + injection.count;
     if (!hit) return Action::none;
-    if (injection.action == Action::kill) ::kill(::getpid(), SIGKILL);
     if (injection.action == Action::fail) errno = injection.error;
     return injection.action;
-}
-
-template <class Result>
-Result done(Action action, Result result) {
-    if (action == Action::kill_after) ::kill(::getpid(), SIGKILL);
-    return result;
 }
 
 template <class Function>
@@ -92,10 +81,7 @@ void read_wish() {
                      [&](const char* name) { return std::strcmp(name, call) == 0; }) -
         kNames);
     injection.error = std::atoi(action);
-    injection.action = std::strcmp(action, "short") == 0    ? Action::halve
-                       : std::strcmp(action, "kill") == 0   ? Action::kill
-                       : std::strcmp(action, "killed") == 0 ? Action::kill_after
-                                                            : Action::fail;
+    injection.action = std::strcmp(action, "short") == 0 ? Action::halve : Action::fail;
 }
 
 void write_counts() {
@@ -151,7 +137,7 @@ ssize_t write(int file, const void* bytes, std::size_t n) {
     const Action action = next(kWrite);
     if (action == Action::fail) return -1;
     if (action == Action::halve) n = std::max<std::size_t>(1, n / 2);
-    return done(action, ::syscall(SYS_write, file, bytes, n));
+    return ::syscall(SYS_write, file, bytes, n);
 }
 
 int openat(int folder, const char* path, int flags, ...) {
@@ -159,9 +145,8 @@ int openat(int folder, const char* path, int flags, ...) {
     va_start(rest, flags);
     const mode_t mode = va_arg(rest, mode_t);
     va_end(rest);
-    const Action action = next(kOpen);
-    if (action == Action::fail) return -1;
-    return done(action, static_cast<int>(::syscall(SYS_openat, folder, path, flags, mode)));
+    if (next(kOpen) == Action::fail) return -1;
+    return static_cast<int>(::syscall(SYS_openat, folder, path, flags, mode));
 }
 
 int open(const char* path, int flags, ...) {
@@ -180,33 +165,19 @@ int close(int file) {
     const Action action = next(kClose);
     const int result =
         static_cast<int>(::syscall(SYS_close, file));  // which is closed even after an error
-    if (action != Action::fail) return done(action, result);
+    if (action != Action::fail) return result;
     errno = injection.error;
     return -1;
 }
 
 int linkat(int from_folder, const char* from, int folder, const char* to, int flags) {
-    const Action action = next(kLink);
-    if (action == Action::fail) return -1;
-    return done(action,
-                static_cast<int>(::syscall(SYS_linkat, from_folder, from, folder, to, flags)));
-}
-
-int renameat2(int from_folder, const char* from, int folder, const char* to, unsigned flags) {
-    const Action action = next(kRename);
-    if (action == Action::fail) return -1;
-    return done(action,
-                static_cast<int>(::syscall(SYS_renameat2, from_folder, from, folder, to, flags)));
+    if (next(kLink) == Action::fail) return -1;
+    return static_cast<int>(::syscall(SYS_linkat, from_folder, from, folder, to, flags));
 }
 
 int renameat(int from_folder, const char* from, int folder, const char* to) {
-    return renameat2(from_folder, from, folder, to, 0);
-}
-
-int unlinkat(int folder, const char* path, int flags) {
-    const Action action = next(kUnlink);
-    if (action == Action::fail) return -1;
-    return done(action, static_cast<int>(::syscall(SYS_unlinkat, folder, path, flags)));
+    if (next(kRename) == Action::fail) return -1;
+    return static_cast<int>(::syscall(SYS_renameat, from_folder, from, folder, to));
 }
 
 int fcntl(int file, int command, ...) {

@@ -40,8 +40,8 @@ bool fits(const Files& files) {
            asked_for(header->second) == checksum(targets->second);
 }
 
-/// Returns the defects of the files after a run.
-std::string wrong_files(const Command& command, const Files& files, bool killed) {
+/// Returns the defects of the files after a run. `between`: it may have ended between two renames.
+std::string wrong_files(const Command& command, const Files& files, bool between) {
     for (const std::string& name : command.files) {
         const auto file = files.find(name);
         if (file == files.end()) return name + " is gone";
@@ -49,7 +49,7 @@ std::string wrong_files(const Command& command, const Files& files, bool killed)
             return name + " is damaged";
     }
     const bool mixed = files != command.before && files != command.after;
-    if (mixed && !killed) return "files of this call lie beside earlier ones";
+    if (mixed && !between) return "files of this call lie beside earlier ones";
     if (command.name == "compile" && mixed && fits(files) && asked_for(files.at("dock.hpp")) == 0)
         return "the header has no checksum";
     const bool both = files.contains("dock.hpp") && files.contains("dock.targets.bin");
@@ -58,12 +58,6 @@ std::string wrong_files(const Command& command, const Files& files, bool killed)
                         (files.at("dock.targets.bin") == command.after.at("dock.targets.bin"))))
         return "a header and targets of different calls fit, or those of one call do not";
     return "";
-}
-
-/// Returns whether a process may have been killed while files had temporary names.
-bool while_names_change(const Surroundings& around) {
-    const std::string call = around.injection.substr(0, around.injection.find(':'));
-    return around.killed_after || call == "link" || call == "rename" || call == "unlink";
 }
 
 /// Returns whether writes to standard error may be among the failing ones.
@@ -117,18 +111,14 @@ void Judge::judge(const Scene& scene, const Command& command, const Surroundings
                                         command.name, what, finding, outcome.status, outcome.signal,
                                         outcome.error));
     };
-    const bool wanted = around.killed_after || around.injection.find("kill") != std::string::npos;
-    const bool killed = wanted && outcome.signal == SIGKILL;
+    const bool killed = around.killed_after && outcome.signal == SIGKILL;
     if (killed) ++killed_;
     if (outcome.signal != 0 && !killed) return find("ended by a signal");
-    if (const std::string wrong = wrong_files(command, files, killed); !wrong.empty())
+    const bool between = killed || around.injection.starts_with("rename:");
+    if (const std::string wrong = wrong_files(command, files, between); !wrong.empty())
         return find(wrong);
-    for (const std::string& name : left) {
-        const bool temporary = name.starts_with(".etlc-") && name.ends_with(".part");
-        if (!killed || !temporary || !while_names_change(around)) return find("leaves " + name);
-        ++left_by_kills_;
-    }
     if (killed) return;
+    if (!left.empty()) return find("leaves " + left.front());
     if (const std::string wrong = wrong_ending(command, around, outcome, files); !wrong.empty())
         find(wrong);
 }

@@ -2,9 +2,9 @@
 // - it ends by a signal only if it was sent SIGKILL;
 // - exit status 0 means that all outputs exist, complete and correct; otherwise it is 1, with a
 //   message;
-// - each file is old or new; if the process could end by itself, all files are old, or all are new
-//   and only diagnostics were lost;
-// - no temporary file remains, except if the process was killed while it exchanged names;
+// - each file is old or new; if the process ended by itself, all files are old, or all are new and
+//   only diagnostics were lost, except where it cannot rename one file after another;
+// - no temporary file remains, unless the process was killed;
 // - a header and a targets file of different calls do not match.
 #pragma once
 
@@ -25,13 +25,11 @@ public:
     const std::vector<std::string>& findings() const { return findings_; }
     long runs() const { return runs_; }
     long killed() const { return killed_; }
-    long left_by_kills() const { return left_by_kills_; }
 
 private:
     std::vector<std::string> findings_;
     long runs_ = 0;
     long killed_ = 0;
-    long left_by_kills_ = 0;
 };
 
 }  // namespace etlc::faults

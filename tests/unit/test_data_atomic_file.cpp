@@ -8,7 +8,6 @@
 
 #include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include "data/files/atomic_file.hpp"
@@ -150,39 +149,10 @@ TEST(AtomicWrite, AKilledWriterLeavesNothing) {
     EXPECT_EQ(files_beside(file.path()), 1U);
 }
 
-/// Returns the name of a temporary file of a process that has ended.
-std::string name_of_ended() {
-    const pid_t ended = ::fork();
-    if (ended == 0) ::_exit(0);
-    ::waitpid(ended, nullptr, 0);
-    return ".etlc-" + std::to_string(ended) + "-0.part";
-}
-
-TEST(AtomicWrite, WhatKilledWritersLeftGoesWithTheNextCall) {
-    const TemporaryPath folder("");
-    const auto put = [&](const std::string& name) {
-        std::ofstream(folder.path() + name) << "x";
-        return folder.path() + name;
-    };
-    const std::string left = put(name_of_ended());
-    const std::string held = put(name_of_ended());  // in another container, by one of its processes
-    const Descriptor holds(::open(held.c_str(), O_RDONLY | O_CLOEXEC));
-    ASSERT_EQ(::flock(*holds, LOCK_EX), 0);
-    const std::string at_work = put(".etlc-" + std::to_string(::getpid()) + "-7.part");
-    const std::string others = put("x" + name_of_ended());
-    EXPECT_FALSE(write_file_atomically(folder.path() + "out", "new", Code::unreadable_trace));
-    EXPECT_FALSE(std::filesystem::exists(left));
-    for (const std::string& kept : {held, at_work, others, folder.path() + "out"})
-        EXPECT_TRUE(std::filesystem::exists(kept)) << kept;
-}
-
-/// Files of a folder, the last of which cannot take its name, because a folder has it by then.
+/// Two files of a folder.
 class SeveralFiles : public ::testing::Test {
 protected:
-    void create(bool with_old) {
-        if (with_old) {
-            EXPECT_FALSE(write_file_atomically(path("a"), "old", Code::unreadable_trace));
-        }
+    void create() {
         for (const char* name : {"a", "b"}) {
             auto file = AtomicFile::create(path(name), Code::unreadable_trace);
             ASSERT_TRUE(file);
@@ -198,33 +168,26 @@ protected:
 };
 
 TEST_F(SeveralFiles, AllTakeTheirNames) {
-    create(true);
+    EXPECT_FALSE(write_file_atomically(path("a"), "old", Code::unreadable_trace));
+    create();
     EXPECT_FALSE(commit());
     EXPECT_EQ(file_bytes(path("a")), "new");
     EXPECT_EQ(file_bytes(path("b")), "new");
     EXPECT_EQ(files_beside(path("a")), 2U);
 }
 
-TEST_F(SeveralFiles, OrNoneDoes) {
-    for (const bool with_old : {false, true}) {
-        files_.clear();
-        create(with_old);
-        std::filesystem::create_directory(path("b"));
-        const auto uncommitted = commit();
-        ASSERT_TRUE(uncommitted);
-        EXPECT_EQ(uncommitted->file, 1U);
-        std::filesystem::remove(path("b"));
-        files_.clear();
-        EXPECT_EQ(std::filesystem::exists(path("a")), with_old);
-        if (with_old) {
-            EXPECT_EQ(file_bytes(path("a")), "old");
-        }
-        EXPECT_EQ(files_beside(path("a")), with_old ? 1U : 0U);
-    }
+TEST_F(SeveralFiles, AFailureNamesTheFileAndLeavesNoOther) {
+    create();
+    std::filesystem::create_directory(path("b"));
+    const auto uncommitted = commit();
+    ASSERT_TRUE(uncommitted);
+    EXPECT_EQ(uncommitted->file, 1U);
+    files_.clear();
+    EXPECT_EQ(files_beside(path("a")), 2U);
 }
 
 TEST_F(SeveralFiles, NothingHangsOnTheLock) {
-    create(false);
+    create();
     const int folder = ::open(folder_.path().c_str(), O_RDONLY | O_DIRECTORY);
     ::flock(folder, LOCK_EX);
     EXPECT_FALSE(commit());

@@ -81,7 +81,6 @@ public:
 
     std::optional<Progress> make() {
         if (!has_cameras()) return std::nullopt;
-        data::remove_left_over(request_.folder);
         add_all();
         // An error keeps the episodes before it, however far the encoders had got.
         for (const auto& [index, encoder] : encoders_) {

@@ -1,18 +1,14 @@
 #include "data/files/atomic_file.hpp"
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <climits>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <utility>
 
 #include "data/files/file.hpp"
@@ -43,53 +39,12 @@ std::string temporary_name(unsigned number) {
     return fmt::format(".etlc-{}-{}.part", ::getpid(), number);
 }
 
-struct CloseFolder {
-    void operator()(DIR* folder) const { ::closedir(folder); }
-};
-
-/// Returns the process in a temporary name; 0 for any other name.
-pid_t process_in(const std::string& name) {
-    int process = 0;
-    unsigned number = 0;
-    if (std::sscanf(name.c_str(), ".etlc-%d-%u.part", &process, &number) != 2) return 0;
-    return name == fmt::format(".etlc-{}-{}.part", process, number) ? process : 0;
-}
-
-/// Locks a temporary file, so that processes in other containers see that it is in use.
-void hold(int file) {
-    static_cast<void>(::flock(file, LOCK_EX | LOCK_NB));
-}
-
-/// Returns whether the process has ended and nobody holds the lock.
-bool is_left_over(int folder, const std::string& name) {
-    const pid_t process = process_in(name);
-    if (process <= 0 || ::kill(process, 0) == 0 || errno != ESRCH) return false;
-    const Descriptor file(uninterrupted([&] {
-        return ::openat(folder, name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    }));
-    return file && ::flock(*file, LOCK_EX | LOCK_NB) == 0;
-}
-
-/// Removes the temporary files of killed processes from a folder.
-void clear(int folder) {
-    const int copy =
-        uninterrupted([&] { return ::openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC); });
-    if (copy < 0) return;
-    const std::unique_ptr<DIR, CloseFolder> entries(::fdopendir(copy));
-    if (!entries) {
-        ::close(copy);
-        return;
-    }
-    while (const dirent* const entry = ::readdir(entries.get()))
-        if (is_left_over(folder, entry->d_name)) ::unlinkat(folder, entry->d_name, 0);
-}
-
 /// Returns whether a path ends in "/", "." or "..", so that it cannot name a file.
 bool names_no_file(const fs::path& path) {
     return !path.has_filename() || path.filename() == "." || path.filename() == "..";
 }
 
-/// A lock on a folder while names in it are exchanged.
+/// A lock on a folder while files take their names in it.
 class Turn {
 public:
     /// Waits for a second at most.
@@ -97,20 +52,18 @@ public:
         : folder_(uninterrupted(
               [&] { return ::openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC); })) {
         for (int i = 0; folder_ && i < kMostTurns; ++i) {
-            is_held_ = ::flock(*folder_, LOCK_EX | LOCK_NB) == 0;
-            is_others_ = !is_held_ && (errno == EWOULDBLOCK || errno == EINTR);
+            is_others_ = ::flock(*folder_, LOCK_EX | LOCK_NB) != 0 &&
+                         (errno == EWOULDBLOCK || errno == EINTR);
             if (!is_others_) return;
             ::usleep(kTurnMicroseconds);
         }
     }
 
-    bool is_held() const { return is_held_; }
     /// Returns whether another process has the lock; false too where there are no locks.
     bool is_others() const { return is_others_; }
 
 private:
     Descriptor folder_;
-    bool is_held_ = false;
     bool is_others_ = false;
 };
 
@@ -119,16 +72,8 @@ private:
 AtomicFile::AtomicFile(std::string name, Descriptor folder, Descriptor file, diag::Code code)
     : name_(std::move(name)), folder_(std::move(folder)), file_(std::move(file)), code_(code) {}
 
-AtomicFile::AtomicFile(AtomicFile&& other) noexcept
-    : state_(std::exchange(other.state_, State::direct)),
-      name_(std::move(other.name_)),
-      temporary_(std::move(other.temporary_)),
-      folder_(std::move(other.folder_)),
-      file_(std::move(other.file_)),
-      code_(other.code_) {}
-
 AtomicFile::~AtomicFile() {
-    take_back();
+    if (folder_ && !temporary_.empty()) ::unlinkat(*folder_, temporary_.c_str(), 0);
 }
 
 diag::Result<AtomicFile> AtomicFile::create(const std::string& path, diag::Code code) {
@@ -173,7 +118,6 @@ bool AtomicFile::take_temporary_name(const Create& create) {
     for (unsigned i = 0; i < kMostNames; ++i) {
         std::string name = temporary_name(i);
         if (create(name.c_str())) {
-            state_ = State::temporary;
             temporary_ = std::move(name);
             return true;
         }
@@ -189,14 +133,10 @@ bool AtomicFile::open_temporary(mode_t mode) {
     };
     // A nameless file gets its name through /proc.
     if (::access("/proc/self/fd", X_OK) == 0) file_ = Descriptor(open(".", O_TMPFILE));
-    state_ = State::nameless;
-    if (file_) return true;
-    const bool made = take_temporary_name([&](const char* name) {
-        file_ = Descriptor(open(name, O_CREAT | O_EXCL));
-        return static_cast<bool>(file_);
-    });
-    if (made) hold(*file_);
-    return made;
+    return file_ || take_temporary_name([&](const char* name) {
+               file_ = Descriptor(open(name, O_CREAT | O_EXCL));
+               return static_cast<bool>(file_);
+           });
 }
 
 void AtomicFile::copy_permissions(const struct stat& of) {
@@ -229,50 +169,22 @@ std::optional<diag::Failure> AtomicFile::sync() {
     return {};
 }
 
-bool AtomicFile::link_as(const char* name) {
+std::optional<diag::Failure> AtomicFile::name() {
+    if (is_direct() || !temporary_.empty()) return {};
     const std::string nameless = fmt::format("/proc/self/fd/{}", *file_);
-    return ::linkat(AT_FDCWD, nameless.c_str(), *folder_, name, AT_SYMLINK_FOLLOW) == 0;
-}
-
-std::optional<diag::Failure> AtomicFile::place() {
-    if (state_ == State::direct) return {};
-    if (state_ == State::nameless && link_as(name_.c_str())) {
-        state_ = State::made;
-        return {};
-    }
-    if (state_ == State::nameless) {
-        if (errno != EEXIST) return failed(errno);
-        hold(*file_);
-        if (!take_temporary_name([&](const char* name) { return link_as(name); }))
-            return failed(errno);
-    }
-    struct stat status {};
-    const bool exists = ::fstatat(*folder_, name_.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0;
-    if (exists && S_ISDIR(status.st_mode))
-        return failed(EISDIR);  // with which a name could be exchanged, too
-    if (::renameat2(*folder_, temporary_.c_str(), *folder_, name_.c_str(), RENAME_EXCHANGE) == 0) {
-        state_ = State::exchanged;
-        return {};
-    }
-    // The name is free, or the file system cannot exchange names.
-    if (::renameat(*folder_, temporary_.c_str(), *folder_, name_.c_str()) != 0)
-        return failed(errno);
-    state_ = exists ? State::kept : State::made;
+    const bool named = take_temporary_name([&](const char* name) {
+        return ::linkat(AT_FDCWD, nameless.c_str(), *folder_, name, AT_SYMLINK_FOLLOW) == 0;
+    });
+    if (!named) return failed(errno);
     return {};
 }
 
-void AtomicFile::keep() {
-    if (state_ == State::exchanged) ::unlinkat(*folder_, temporary_.c_str(), 0);
-    if (state_ != State::direct) state_ = State::kept;
-}
-
-void AtomicFile::take_back() {
-    if (state_ == State::exchanged &&
-        ::renameat2(*folder_, temporary_.c_str(), *folder_, name_.c_str(), RENAME_EXCHANGE) == 0)
-        state_ = State::temporary;
-    if (state_ == State::temporary) ::unlinkat(*folder_, temporary_.c_str(), 0);
-    if (state_ == State::made) ::unlinkat(*folder_, name_.c_str(), 0);
-    state_ = State::direct;
+std::optional<diag::Failure> AtomicFile::place() {
+    if (is_direct()) return {};
+    if (::renameat(*folder_, temporary_.c_str(), *folder_, name_.c_str()) != 0)
+        return failed(errno);
+    temporary_.clear();
+    return {};
 }
 
 std::optional<diag::Failure> AtomicFile::commit(const StillRight& is_right) {
@@ -282,9 +194,8 @@ std::optional<diag::Failure> AtomicFile::commit(const StillRight& is_right) {
 
 std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files,
                                       const StillRight& is_right) {
-    std::size_t n = 0;
     const auto all = [&](auto step) -> std::optional<Uncommitted> {
-        for (n = 0; n < files.size(); ++n)
+        for (std::size_t n = 0; n < files.size(); ++n)
             if (auto failure = (files[n]->*step)()) return Uncommitted{n, *failure};
         return {};
     };
@@ -299,21 +210,8 @@ std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files,
             0,
             {files[0]->code_, "cannot be written: another program has locked its folder (flock)"}};
     if (auto why = is_right ? is_right() : std::nullopt) return Uncommitted{0, *why};
-    if (turn.is_held()) clear(folder);
-    if (auto uncommitted = all(&AtomicFile::place)) {
-        while (n > 0) files[--n]->take_back();
-        return uncommitted;
-    }
-    for (AtomicFile* file : files) file->keep();
-    return {};
-}
-
-void remove_left_over(const std::string& folder) {
-    const Descriptor place(
-        uninterrupted([&] { return ::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC); }));
-    if (!place) return;
-    const Turn turn(*place);
-    if (turn.is_held()) clear(*place);
+    if (auto uncommitted = all(&AtomicFile::name)) return uncommitted;
+    return all(&AtomicFile::place);
 }
 
 std::optional<diag::Failure> write_file_atomically(const std::string& path, std::string_view bytes,

@@ -2,16 +2,15 @@
 // Takes: a path and bytes. Gives: a file of that name with these bytes, or a Failure with the
 // caller's code; its message does not repeat the path: `in_file` (data/files/file.hpp) adds it.
 // Keeps true: a failed write leaves the old file, and no other. So does a process that is killed:
-// until it is complete a file has no name, where the file system supports such files. Only during
-// the few system calls that exchange names, and on file systems without nameless files, a kill
-// leaves `.etlc-PROCESS-NUMBER.part`, until the next call that writes into that folder. A replaced
-// file keeps its permissions, and its owner and group where the system permits. Only
+// until it is complete a file has no name, where the file system supports such files. Elsewhere,
+// and between the two system calls that name it, a kill leaves `.etlc-PROCESS-NUMBER.part`.
+// A replaced file keeps its permissions, and its owner and group where the system permits. Only
 // write_file_durably waits for the disk: elsewhere a power failure loses what is not yet stored.
 #pragma once
 
 #include <sys/stat.h>
 
-#include <cstdint>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -42,9 +41,9 @@ class AtomicFile {
 public:
     static diag::Result<AtomicFile> create(const std::string& path, diag::Code code);
 
-    AtomicFile(AtomicFile&& other) noexcept;
+    AtomicFile(AtomicFile&&) noexcept = default;
     AtomicFile& operator=(AtomicFile&&) = delete;
-    ~AtomicFile();  ///< undoes what was not committed
+    ~AtomicFile();  ///< removes what was not committed
 
     std::optional<diag::Failure> write(std::string_view bytes);
     /// Waits until the disk has what was written.
@@ -63,39 +62,28 @@ private:
     void copy_permissions(const struct stat& of);
     /// Returns the errors that a file system reports only on close, such as a full disk.
     std::optional<diag::Failure> finish();
-    /// Puts the file under its name; the old file survives until keep().
-    std::optional<diag::Failure> place();
-    bool link_as(const char* name);
     template <class Create>
     bool take_temporary_name(const Create& create);
-    void keep();
-    void take_back();
+    /// Gives a nameless file its temporary name.
+    std::optional<diag::Failure> name();
+    /// Replaces the old file.
+    std::optional<diag::Failure> place();
+    bool is_direct() const { return name_.empty(); }
 
-    enum class State : std::uint8_t {
-        direct,     ///< written in place
-        nameless,   ///< without any name
-        temporary,  ///< under its temporary name
-        made,       ///< under its name, which was free
-        exchanged,  ///< under its name; the old file has the temporary name
-        kept
-    };
-    State state_ = State::direct;
-    std::string name_;  ///< name in its folder
-    std::string temporary_;
+    std::string name_;       ///< name in its folder; empty: written in place
+    std::string temporary_;  ///< empty: the file is nameless, or has its name
     Descriptor folder_;
     Descriptor file_;
     diag::Code code_;
 };
 
-/// Gives all files their names in this order, or none: a failure undoes the earlier ones.
-/// Processes that commit to the folder of the last file, pipes and devices aside, take turns, so
-/// that their files do not mix. With `is_right`, about the first file, nothing is committed where
-/// another process has the folder's lock for more than a second.
+/// Gives all files their names in this order. No file is replaced before all are complete and on
+/// the file system, so a full disk leaves all old files; where the system then fails to replace
+/// one, those before it are new. Processes that commit to the folder of the last file, pipes and
+/// devices aside, take turns, so that their files do not mix. With `is_right`, about the first
+/// file, nothing is committed where another process has the folder's lock for more than a second.
 std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files,
                                       const StillRight& is_right = nullptr);
-
-/// Removes the temporary files of killed processes from a folder.
-void remove_left_over(const std::string& folder);
 
 /// Writes `bytes` as the whole content of `path`.
 std::optional<diag::Failure> write_file_atomically(const std::string& path, std::string_view bytes,

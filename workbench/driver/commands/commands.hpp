@@ -1,6 +1,6 @@
 // The commands of etlc, each a function from a spec and a request to files and findings.
-// Takes: the text of the spec, or its plan. Keeps true: all output files of a command appear or
-// none, each whole; a function that returns false or nothing has reported why.
+// Takes: the text of the spec, or its plan. Keeps true: output files appear whole, when all of a
+// command are complete; a function that returns false or nothing has reported why.
 #pragma once
 
 #include <cstddef>

@@ -171,8 +171,7 @@ bool OutputFiles::commit(const data::StillRight& is_right) {
     for (File& file : files_) files.push_back(&file.file);
     const auto uncommitted = data::commit_all(files, is_right);
     if (!uncommitted) return true;
-    return report(uncommitted->failure,
-                  std::next(files_.begin(), static_cast<long>(uncommitted->file))->path);
+    return report(uncommitted->failure, files_[uncommitted->file].path);
 }
 
 bool print(std::string_view text, diag::Sink& sink) {

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <functional>
-#include <list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -59,8 +58,8 @@ inline std::function<void(std::size_t done, std::size_t total)> episodes_progres
 }
 
 // The output files of a call, and its standard output.
-// Keeps true: all files of a call appear or none, each whole; write errors are reported; no output
-// is a file that the call reads, and no two outputs are the same file.
+// Keeps true: a file appears whole, and only when all files of the call are complete; write errors
+// are reported; no output is a file that the call reads, and no two outputs are the same file.
 
 /// The path that stands for standard output.
 inline constexpr std::string_view kStandardOutput = "-";
@@ -81,8 +80,7 @@ public:
     bool add(const std::string& path, std::string_view bytes) {
         return begin(path) && write(bytes);
     }
-    /// Gives all files their names, in the order in which they were begun, or none. `is_right`: as
-    /// for data::commit_all.
+    /// Gives all files their names, in the order in which they were begun; see data::commit_all.
     bool commit(const data::StillRight& is_right = nullptr);
 
 private:
@@ -93,7 +91,7 @@ private:
         data::AtomicFile file;
     };
     diag::Sink& sink_;
-    std::list<File> files_;
+    std::vector<File> files_;
 };
 
 /// Writes to standard output at once; reports an error and returns false where that fails.
