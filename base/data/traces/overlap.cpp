@@ -274,24 +274,8 @@ void KnownEpisodes::add(std::uint64_t hash, const EpisodeContent& content) {
         *this = std::move(mine);
         if (all_ == nullptr) all_ = std::make_shared<All>();
     }
-    const std::string bytes = packed(content);
-    const std::uint64_t at = all_->contents.append(packed(bytes.size()));
-    all_->contents.append(bytes);
-    all_->places.add({hash, at});
-}
-
-EpisodeContent KnownEpisodes::read(const SpillFile& contents, std::uint64_t at) {
-    const auto bytes = [&](std::size_t n) {
-        std::string result(n, '\0');
-        contents.read(at, result.data(), n);
-        at += n;
-        return result;
-    };
-    const auto size = unpacked<std::size_t>(bytes(packed(std::size_t{}).size()));
-    const bool fits = size && *size <= contents.size() - at;
-    auto content = fits ? unpacked<EpisodeContent>(bytes(*size)) : std::nullopt;
-    if (!content) throw SpillError("a temporary file was changed by another program");
-    return std::move(*content);
+    all_->places.add({hash, all_->contents.size()});
+    all_->contents.add(content);
 }
 
 void KnownEpisodes::for_each(const Visit& visit) const {
@@ -299,7 +283,7 @@ void KnownEpisodes::for_each(const Visit& visit) const {
     const std::shared_ptr<All> all = all_;  // which `visit` may change
     std::optional<Place> last;
     const auto pass_on = [&] {
-        if (last) visit(last->hash, read(all->contents, last->at));
+        if (last) visit(last->hash, all->contents[last->at]);
     };
     all->places.for_each([&](const Place& place) {
         if (last && last->hash != place.hash) pass_on();

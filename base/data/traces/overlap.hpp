@@ -176,8 +176,8 @@ std::optional<double> share(const Sketch& a, const Sketch& b, std::size_t least 
 
 // The contents of many episodes by their hashes.
 // Takes: hashes and contents, in any order. Gives: them in ascending order of the hashes, each
-// once, the last that was added. Keeps true: contents are in temporary files, and memory does not
-// grow with their number; a copy costs nothing until one of the two changes. Not thread-safe.
+// once, the last that was added. Keeps true: contents are in temporary files, and memory is 8 bytes
+// for each; a copy costs nothing until one of the two changes. Not thread-safe.
 
 class KnownEpisodes {
 public:
@@ -195,17 +195,15 @@ public:
 private:
     struct Place {
         std::uint64_t hash;
-        std::uint64_t at;  ///< place of its length, which precedes the content
+        std::uint64_t at;  ///< its place in `contents`
         bool operator<(const Place& other) const {
             return hash != other.hash ? hash < other.hash : at < other.at;
         }
     };
     struct All {
-        SpillFile contents;
+        Spool<EpisodeContent> contents;
         Sorted<Place> places;
     };
-
-    static EpisodeContent read(const SpillFile& contents, std::uint64_t at);
 
     std::shared_ptr<All> all_;  ///< shared by copies until one of them changes
 };
