@@ -115,7 +115,7 @@ constexpr auto kSaidMembers = [](auto& archive, auto& said) {
 };
 
 diag::Result<Said> said_in(const std::string& path) {
-    const auto archive = data::Archive::open({path, {}, false});
+    const auto archive = data::Archive::open(path);
     if (!archive) return Said{};  // reading its arrays reports what is wrong
     if (!archive->has_file(kKind.member)) return Said{};
     Said said;
@@ -164,13 +164,8 @@ std::string default_path(const std::string& spec_path) {
 }
 
 diag::Result<File> read(const std::string& path) {
-    return data::within_memory([&] {
-        return artifacts::read_archive<File>(kKind, {path, {}, false}, path, kMembers);
-    });
-}
-
-diag::Result<File> parse(std::string_view bytes, const std::string& path) {
-    return artifacts::read_archive<File>(kKind, {{}, bytes, true}, path, kMembers);
+    return data::within_memory(
+        [&] { return artifacts::read_archive<File>(kKind, path, kMembers); });
 }
 
 std::string write(const File& file) {

@@ -70,10 +70,9 @@ struct File {
 /// Returns the default path of a spec's embeddings: SPEC.embedded.npz beside SPEC.etl.
 std::string default_path(const std::string& spec_path);
 
-/// Read a file of embeddings, from disk or from memory. Failures have E04 and E10 codes; their
-/// messages name the key, and `data::in_file` (data/files/file.hpp) adds the path.
+/// Reads a file of embeddings. Failures have E04 and E10 codes; their messages name the key, and
+/// `data::in_file` (data/files/file.hpp) adds the path.
 diag::Result<File> read(const std::string& path);
-diag::Result<File> parse(std::string_view bytes, const std::string& path);
 
 /// Returns the bytes of the archive: embedded.json, and float32 arrays "references-1", ..., of
 /// encoders, and "rows-1", ..., of entries.

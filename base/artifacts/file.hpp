@@ -68,9 +68,8 @@ void group_members(Archive& archive, auto& groups) {
 
 /// Reads an archive whose description `members(archive, file)` describes.
 template <class File, class Members>
-diag::Result<File> read_archive(const Kind& kind, const data::ArchivePlace& place,
-                                const std::string& path, const Members& members) {
-    const auto archive = data::Archive::open(place);
+diag::Result<File> read_archive(const Kind& kind, const std::string& path, const Members& members) {
+    const auto archive = data::Archive::open(path);
     if (!archive) return archive.failure();
     File file;
     file.path = path;

@@ -108,13 +108,8 @@ std::string default_path(const std::string& spec_path) {
 }
 
 diag::Result<File> read(const std::string& path) {
-    return data::within_memory([&] {
-        return artifacts::read_archive<File>(kKind, {path, {}, false}, path, kMembers);
-    });
-}
-
-diag::Result<File> parse(std::string_view bytes, const std::string& path) {
-    return artifacts::read_archive<File>(kKind, {{}, bytes, true}, path, kMembers);
+    return data::within_memory(
+        [&] { return artifacts::read_archive<File>(kKind, path, kMembers); });
 }
 
 std::string write(const File& file) {

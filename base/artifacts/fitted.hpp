@@ -51,10 +51,9 @@ std::string content_hash(const Entry& entry);
 /// Returns the default path of a spec's fitted file: SPEC.fitted.npz beside SPEC.etl.
 std::string default_path(const std::string& spec_path);
 
-/// Read a fitted file, from disk or from memory. Failures have E04 and E06 codes; their messages
-/// name the key, and `data::in_file` (data/files/file.hpp) adds the path.
+/// Reads a fitted file. Failures have E04 and E06 codes; their messages name the key, and
+/// `data::in_file` (data/files/file.hpp) adds the path.
 diag::Result<File> read(const std::string& path);
-diag::Result<File> parse(std::string_view bytes, const std::string& path);
 
 /// Returns the bytes of the archive: fitted.json, and float32 arrays. The array of a projection or
 /// target has its name, and its offset that name and "-offset"; metrics are "metric-1", "metric-2".

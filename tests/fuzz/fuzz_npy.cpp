@@ -1,10 +1,11 @@
-// Reads .npy from memory: any bytes give an array that matches its shape, or an error.
+// Reads .npy: any bytes give an array that matches its shape, or an error.
 #include "data/arrays/array.hpp"
 #include "fuzz_target.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     namespace fuzz = etlc::fuzz;
-    const auto array = etlc::data::parse_npy(fuzz::text(data, size));
+    const fuzz::File file(fuzz::text(data, size));
+    const auto array = etlc::data::read_npy(file.path());
     if (!array) {
         fuzz::require_printable(array.failure().message);
         return 0;

@@ -1,4 +1,4 @@
-// Reads .npz from memory, as an array and as a trace.
+// Reads .npz, as an array and as a trace.
 #include "data/arrays/array.hpp"
 #include "data/traces/trace_formats.hpp"
 #include "fuzz_target.hpp"
@@ -8,9 +8,9 @@ namespace {
 using namespace etlc;
 using Kind = data::Channel::Kind;
 
-void load(std::string_view bytes) {
+void load(const std::string& path) {
     for (const char* key : {"", "z", "g"}) {
-        const auto array = data::parse_npz(bytes, key);
+        const auto array = data::read_npz(path, key);
         if (!array) {
             fuzz::require_printable(array.failure().message);
             continue;
@@ -22,8 +22,8 @@ void load(std::string_view bytes) {
     }
 }
 
-void step_through(std::string_view bytes, const std::vector<data::Channel>& channels) {
-    auto trace = data::open_npz_trace({{}, bytes, true}, channels);
+void step_through(const std::string& path, const std::vector<data::Channel>& channels) {
+    auto trace = data::open_npz_trace(path, channels);
     if (!trace) return fuzz::require_printable(trace.failure().message);
     data::Sample sample;
     for (std::uint64_t steps = 0;; ++steps) {
@@ -42,9 +42,10 @@ void step_through(std::string_view bytes, const std::vector<data::Channel>& chan
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-    const std::string_view text = fuzz::text(bytes, size);
-    load(text);
-    step_through(text, {{"z", Kind::vector, 2}});
-    step_through(text, {{"z", Kind::vector, 2}, {"g", Kind::scalar, 1}, {"b", Kind::boolean, 1}});
+    const fuzz::File file(fuzz::text(bytes, size));
+    load(file.path());
+    step_through(file.path(), {{"z", Kind::vector, 2}});
+    step_through(file.path(),
+                 {{"z", Kind::vector, 2}, {"g", Kind::scalar, 1}, {"b", Kind::boolean, 1}});
     return 0;
 }

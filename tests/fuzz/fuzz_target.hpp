@@ -3,10 +3,14 @@
 // which is a finding.
 #pragma once
 
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 #include <string_view>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
@@ -16,6 +20,23 @@ namespace etlc::fuzz {
 inline std::string_view text(const std::uint8_t* data, std::size_t size) {
     return {reinterpret_cast<const char*>(data), size};
 }
+
+/// A file in memory, for readers that take a path.
+class File {
+public:
+    explicit File(std::string_view bytes) : number_(::memfd_create("fuzz", MFD_CLOEXEC)) {
+        if (::write(number_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
+            std::abort();
+    }
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+    ~File() { ::close(number_); }
+
+    std::string path() const { return "/proc/self/fd/" + std::to_string(number_); }
+
+private:
+    int number_;
+};
 
 /// Checks in every kind of build, unlike assert.
 inline void require(bool promise, const char* words) {

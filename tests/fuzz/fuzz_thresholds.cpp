@@ -15,13 +15,13 @@ namespace {
 
 using namespace etlc;
 
-/// Checks that the result of `parse` for `bytes` is an error, or survives writing and reading.
-template <class Parse>
-void read_archive(const std::vector<data::ArchiveMember>& members, Parse parse) {
-    const auto file = parse(data::npz_bytes(members), "x");
+/// Checks that the result of `read` for `bytes` is an error, or survives writing and reading.
+template <class Read>
+void read_archive(const std::vector<data::ArchiveMember>& members, Read read) {
+    const auto file = read(fuzz::File(data::npz_bytes(members)).path());
     if (!file) return fuzz::require_printable(file.failure().message);
     const std::string written = write(*file);
-    const auto again = parse(written, "x");
+    const auto again = read(fuzz::File(written).path());
     fuzz::require(static_cast<bool>(again), "what is written can be read");
     fuzz::require(write(*again) == written, "writing what was read changes nothing");
 }
@@ -30,13 +30,13 @@ void read_fitted(const std::string& description) {
     read_archive({{"fitted.json", description},
                   {"Q.npy", data::npy_bytes({2, 2}, {1, 2, 3, 4})},
                   {"Q-offset.npy", data::npy_bytes({2}, {1, 2})}},
-                 fitted::parse);
+                 fitted::read);
 }
 
 void read_embedded(const std::string& description) {
     read_archive(
         {{"embedded.json", description}, {"rows-1.npy", data::npy_bytes({2, 2}, {1, 2, 3, 4})}},
-        embedded::parse);
+        embedded::read);
 }
 
 }  // namespace

@@ -100,4 +100,12 @@ std::string file_bytes(const std::string& path) {
     return bytes.str();
 }
 
+diag::Result<data::Array> parse_npy(const std::string& bytes) {
+    return data::read_npy(TemporaryPath("array.npy", bytes).path());
+}
+
+diag::Result<data::Array> parse_npz(const std::string& bytes, const std::string& key) {
+    return data::read_npz(TemporaryPath("arrays.npz", bytes).path(), key);
+}
+
 }  // namespace etlc::tests

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "data/arrays/array.hpp"
+
 namespace etlc::tests {
 
 /// Returns a header dictionary as numpy writes it.
@@ -56,5 +58,9 @@ private:
 };
 
 std::string file_bytes(const std::string& path);
+
+/// Read the array in a file of these bytes.
+diag::Result<data::Array> parse_npy(const std::string& bytes);
+diag::Result<data::Array> parse_npz(const std::string& bytes, const std::string& key);
 
 }  // namespace etlc::tests

@@ -91,7 +91,8 @@ TEST(Memory, LongNpz) {
     for (const bool fortran : {false, true}) {
         const std::string bytes = long_archive(fortran);
         EXPECT_LT(bytes.size(), kMiB);
-        auto trace = open_npz_trace({"run.npz", bytes, true}, {{"z", Kind::vector, 32}});
+        const tests::TemporaryPath file("run.npz", bytes);
+        auto trace = open_npz_trace(file.path(), {{"z", Kind::vector, 32}});
         ASSERT_TRUE(trace) << trace.failure().message;
         const auto [steps, grown] = read_all(**trace);
         EXPECT_EQ(steps, 393'216U);
@@ -107,8 +108,8 @@ TEST(Memory, HeadersThatLie) {
         tests::patched(tests::zip_of({{"z.npy", lie, false}}), tests::little_endian(lie.size(), 4),
                        tests::little_endian(lie.size() - 8 + 400'000'000, 4));
     const std::uint64_t before = resident_bytes();
-    EXPECT_FALSE(parse_npz(bytes, "z"));
-    EXPECT_FALSE(parse_npy(lie));
+    EXPECT_FALSE(tests::parse_npz(bytes, "z"));
+    EXPECT_FALSE(tests::parse_npy(lie));
     EXPECT_LT(resident_bytes() - std::min(before, resident_bytes()), 8 * kMiB);
 }
 

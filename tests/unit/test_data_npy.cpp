@@ -16,6 +16,7 @@ using tests::floats;
 using tests::npy;
 using tests::npy_dictionary;
 using tests::npy_raw;
+using tests::parse_npy;
 
 const std::string kFolder = ETLC_SOURCE_DIR "/tests/unit/data/";
 

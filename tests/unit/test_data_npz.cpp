@@ -11,6 +11,7 @@ namespace {
 using diag::Code;
 using tests::floats;
 using tests::npy;
+using tests::parse_npz;
 using tests::patched;
 using tests::zip_of;
 

@@ -16,6 +16,7 @@ using diag::Code;
 using Kind = Channel::Kind;
 using tests::floats;
 using tests::npy;
+using tests::TemporaryPath;
 using tests::zip_of;
 
 const std::string kTraces = ETLC_SOURCE_DIR "/tests/unit/data/";
@@ -166,9 +167,9 @@ std::vector<BrokenTrace> broken_traces() {
 }
 
 /// Returns the first failure, on opening or on any step.
-std::optional<diag::Failure> first_failure(const ArchivePlace& place,
+std::optional<diag::Failure> first_failure(const std::string& path,
                                            const std::vector<Channel>& channels) {
-    auto trace = open_npz_trace(place, channels);
+    auto trace = open_npz_trace(path, channels);
     if (!trace) return trace.failure();
     Sample sample;
     for (;;) {
@@ -182,7 +183,7 @@ TEST(NpzTrace, EveryFaultHasItsMessage) {
     for (const BrokenTrace& one : broken_traces()) {
         const std::string bytes =
             zip_of(one.members.empty() ? std::vector<tests::Member>{{"x", "x"}} : one.members);
-        const auto failure = first_failure({"run.npz", bytes, true}, one.channels);
+        const auto failure = first_failure(TemporaryPath("run.npz", bytes).path(), one.channels);
         ASSERT_TRUE(failure) << one.what;
         EXPECT_EQ(failure->code, one.code) << one.what;
         EXPECT_EQ(failure->message, one.message) << one.what;
@@ -190,7 +191,7 @@ TEST(NpzTrace, EveryFaultHasItsMessage) {
 }
 
 TEST(NpzTrace, NotAnArchive) {
-    const auto failure = first_failure({"run.npz", "no zip", true}, kScalar);
+    const auto failure = first_failure(TemporaryPath("run.npz", "no zip").path(), kScalar);
     ASSERT_TRUE(failure);
     EXPECT_EQ(failure->code, Code::malformed_trace_array);
     EXPECT_EQ(failure->message, "is no .npz file: not a zip archive");
@@ -201,7 +202,7 @@ TEST(NpzTrace, DamageIsFoundAtTheEndOfTheArray) {
         const std::string whole =
             zip_of({{"z.npy", npy("<f4", "(2, 2)", floats({1, 2, 3, 4}), fortran), false}});
         const std::string bytes = tests::patched(whole, floats({3, 4}), floats({3, 5}));
-        const auto failure = first_failure({"run.npz", bytes, true}, kVector);
+        const auto failure = first_failure(TemporaryPath("run.npz", bytes).path(), kVector);
         ASSERT_TRUE(failure) << fortran;
         EXPECT_EQ(failure->code, Code::malformed_trace_array);
         EXPECT_EQ(failure->message, "array 'z': archive is damaged: CRC error");
@@ -224,7 +225,8 @@ TEST(NpzTrace, FortranOrderInBlocks) {
         }
     }
     const std::string bytes = zip_of({{"z.npy", npy("<u2", "(700, 3000)", data, true)}});
-    auto trace = open_npz_trace({"run.npz", bytes, true}, {{"z", Kind::vector, kColumns}});
+    const TemporaryPath file("run.npz", bytes);
+    auto trace = open_npz_trace(file.path(), {{"z", Kind::vector, kColumns}});
     ASSERT_TRUE(trace) << trace.failure().message;
     Sample sample;
     for (std::uint64_t t = 0; t < kRows; ++t) {
@@ -236,16 +238,17 @@ TEST(NpzTrace, FortranOrderInBlocks) {
 }
 
 TEST(NpzTrace, WithoutATemporaryFolderFortranOrderSaysSo) {
+    const std::string rows(std::size_t{2} << 20U, '\0');  // more than stays in memory
+    const TemporaryPath file("run.npz", zip_of({{"z.npy", npy("<f4", "(262144, 2)", rows, true)}}));
     const std::string before = std::getenv("TMPDIR") != nullptr ? std::getenv("TMPDIR") : "";
     ::setenv("TMPDIR", "/no/such/folder", 1);
-    const auto failure =
-        first_failure({kTraces + "trace_stored.npz", {}, false}, {{"z_turned", Kind::vector, 3}});
+    const auto failure = first_failure(file.path(), kVector);
     before.empty() ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", before.c_str(), 1);
     ASSERT_TRUE(failure);
     EXPECT_EQ(failure->code, Code::unreadable_trace);
     EXPECT_EQ(failure->message,
-              "array 'z_turned': a Fortran-ordered array needs a temporary file: No such file or "
-              "directory; save it in C order, or set TMPDIR to a folder with room for it");
+              "array 'z': is in Fortran order, and a temporary file in /no/such/folder cannot be "
+              "made: no such file; TMPDIR names another folder; in C order it needs none");
 }
 
 }  // namespace

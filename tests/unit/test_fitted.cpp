@@ -9,9 +9,14 @@
 
 #include "data/arrays/archive.hpp"
 #include "data/arrays/array.hpp"
+#include "npy_bytes.hpp"
 
 namespace etlc::fitted {
 namespace {
+
+diag::Result<File> parse(const std::string& bytes) {
+    return read(tests::TemporaryPath("x.fitted.npz", bytes).path());
+}
 
 using diag::Code;
 
@@ -72,7 +77,7 @@ std::string archive(const std::string& description) {
 }
 
 File whole() {
-    const auto file = parse(archive(kDescription), "x.fitted.npz");
+    const auto file = parse(archive(kDescription));
     EXPECT_TRUE(file) << file.failure().message;
     return *file;
 }
@@ -85,7 +90,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 /// Replaces `from` by `to` in the description.
 diag::Failure failure_of(const std::string& from, const std::string& to) {
-    const auto file = parse(archive(replaced(kDescription, from, to)), "x.fitted.npz");
+    const auto file = parse(archive(replaced(kDescription, from, to)));
     EXPECT_FALSE(file) << to;
     return file ? diag::Failure{} : file.failure();
 }
@@ -118,7 +123,7 @@ TEST(Fitted, ReadsArraysAndWhereTheyComeFrom) {
 
 TEST(Fitted, WritesTheSameDescriptionAndTheSameBytes) {
     const std::string written = write(whole());
-    EXPECT_EQ(written, write(*parse(written, "x")));
+    EXPECT_EQ(written, write(*parse(written)));
     EXPECT_NE(written.find(kDescription), std::string::npos) << "members are stored as they are";
 }
 
@@ -168,14 +173,14 @@ TEST(Fitted, FaultsNameTheKeyWhatIsThereAndWhatIsExpected) {
 }
 
 TEST(Fitted, OtherArchivesSayWhatIsExpected) {
-    const auto other = parse(data::npz_bytes({{"z.npy", data::npy_bytes({1}, {1})}}), "x");
+    const auto other = parse(data::npz_bytes({{"z.npy", data::npy_bytes({1}, {1})}}));
     ASSERT_FALSE(other);
     EXPECT_EQ(other.failure().code, Code::malformed_fitted);
     EXPECT_EQ(other.failure().message,
               "has no member 'fitted.json', expected a file that 'etlc fit' wrote");
     std::string damaged = archive(kDescription);
     damaged[damaged.find("anchors")] = 'b';
-    const auto read = parse(damaged, "x");
+    const auto read = parse(damaged);
     ASSERT_FALSE(read);
     EXPECT_EQ(read.failure().code, Code::malformed_archive);
 }

@@ -51,10 +51,6 @@ Opened open_csv(const std::string& path, const std::vector<Channel>& channels) {
     return open_csv_trace(std::move(*source), channels);
 }
 
-Opened open_npz(const std::string& path, const std::vector<Channel>& channels) {
-    return open_npz_trace({path, {}, false}, channels);
-}
-
 Opened open_hdf5(const std::string& path, const std::vector<Channel>& channels) {
     const std::string file = trace_file(path);
     return open_hdf5_trace(file, group_in(path, file), channels);
@@ -67,7 +63,7 @@ struct Format {
 };
 
 constexpr Format kFormats[] = {
-    {".csv", open_csv}, {".npz", open_npz}, {".h5", open_hdf5}, {".hdf5", open_hdf5}};
+    {".csv", open_csv}, {".npz", open_npz_trace}, {".h5", open_hdf5}, {".hdf5", open_hdf5}};
 
 /// Finds the format of a file; null for other endings.
 const Format* format_of(const std::string& file) {
@@ -249,7 +245,7 @@ diag::Result<std::string> camera_in(const Archive& archive, const std::string& n
 
 diag::Result<std::unique_ptr<FrameSource>> open_npz(const std::string& path,
                                                     const std::string& name, Grey grey) {
-    const auto archive = Archive::open({path, {}, false});
+    const auto archive = Archive::open(path);
     if (!archive) return of_trace(archive.failure());
     const auto camera = camera_in(*archive, name);
     if (!camera) return camera.failure();

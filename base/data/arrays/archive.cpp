@@ -34,6 +34,10 @@ Failure malformed(std::string message) {
     return {Code::malformed_archive, std::move(message)};
 }
 
+Failure no_archive() {
+    return malformed("is no .npz file: not a zip archive");
+}
+
 /// Describes an error code of libzip.
 std::string words(int code) {
     zip_error_t error;
@@ -49,7 +53,7 @@ std::string words(int code) {
 
 Failure damaged(int code) {
     if (code == ZIP_ER_MEMORY) throw std::bad_alloc();
-    if (code == ZIP_ER_NOZIP) return malformed("is no .npz file: not a zip archive");
+    if (code == ZIP_ER_NOZIP) return no_archive();
     return malformed(fmt::format("archive is damaged: {}", words(code)));
 }
 
@@ -80,148 +84,6 @@ private:
     std::uint64_t size_;
 };
 
-zip_t* open_file_archive(const std::string& path, int& code) {
-    return zip_open(path.c_str(), ZIP_RDONLY, &code);
-}
-
-zip_t* open_memory_archive(std::string_view bytes, int& code) {
-    zip_error_t error;
-    zip_error_init(&error);
-    zip_t* handle = nullptr;
-    if (zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error)) {
-        handle = zip_open_from_source(source, ZIP_RDONLY, &error);
-        if (handle == nullptr) zip_source_free(source);
-    }
-    code = zip_error_code_zip(&error);
-    zip_error_fini(&error);
-    return handle;
-}
-
-diag::Result<std::vector<ZipMember>> layout_of(std::string_view bytes) {
-    return read_zip_layout(bytes.size(), [&](std::uint64_t at, char* to, std::size_t n) {
-        return at <= bytes.size() && bytes.substr(at).copy(to, n) == n;
-    });
-}
-
-diag::Result<std::vector<ZipMember>> layout_of(const std::string& path) {
-    if (auto why = why_unreadable(path)) return Failure{Code::unreadable_data_file, *why};
-    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-    struct stat status {};
-    if (!file || ::fstat(*file, &status) != 0)
-        return Failure{Code::unreadable_data_file,
-                       fmt::format("cannot be read: {}", error_words(errno))};
-    return read_zip_layout(
-        static_cast<std::uint64_t>(status.st_size),
-        [&](std::uint64_t at, char* to, std::size_t n) { return read_all_at(*file, at, to, n); });
-}
-
-/// Returns whether libzip, which has its own rules for the end of an archive, finds these members.
-bool holds(zip_t* archive, const std::vector<ZipMember>& members) {
-    if (zip_get_num_entries(archive, 0) != static_cast<zip_int64_t>(members.size())) return false;
-    for (std::size_t i = 0; i < members.size(); ++i) {
-        zip_stat_t status;
-        const char* const name = zip_get_name(archive, i, ZIP_FL_ENC_RAW);
-        if (name == nullptr || name != members[i].name ||
-            zip_stat_index(archive, i, 0, &status) != 0)
-            return false;
-        if (status.crc != members[i].crc || status.comp_size != members[i].packed_bytes)
-            return false;
-    }
-    return true;
-}
-
-std::optional<Failure> check_method(const zip_stat_t& status) {
-    if (status.encryption_method != ZIP_EM_NONE)
-        return malformed("is encrypted, expected plain members");
-    if (status.comp_method != ZIP_CM_STORE && status.comp_method != ZIP_CM_DEFLATE)
-        return malformed(fmt::format(
-            "is packed by zip method {}, expected 0 (stored) or 8 (deflated)", status.comp_method));
-    return {};
-}
-
-}  // namespace
-
-Archive::Archive(std::shared_ptr<zip> handle) : handle_(std::move(handle)) {
-    const zip_int64_t n = zip_get_num_entries(handle_.get(), 0);
-    for (zip_int64_t i = 0; i < n; ++i) {
-        const auto index = static_cast<zip_uint64_t>(i);
-        const char* name = zip_get_name(handle_.get(), index, 0);
-        if (name == nullptr || !std::string_view(name).ends_with(kEnding)) continue;
-        const std::string_view all = name;
-        keys_.emplace_back(all.substr(0, all.size() - kEnding.size()));
-        indices_.push_back(index);
-    }
-}
-
-diag::Result<Archive> Archive::open(const ArchivePlace& place) {
-    const auto layout = place.in_memory ? layout_of(place.bytes) : layout_of(place.path);
-    if (!layout) return layout.failure();
-    int code = ZIP_ER_OK;
-    zip_t* opened = place.in_memory ? open_memory_archive(place.bytes, code)
-                                    : open_file_archive(place.path, code);
-    if (opened == nullptr) return damaged(code);
-    std::shared_ptr<zip> handle(opened, zip_discard);
-    if (!holds(opened, *layout)) return malformed("archive can be read in two ways");
-    return Archive(std::move(handle));
-}
-
-Failure Archive::missing(const std::string& key) const {
-    if (keys_.empty())
-        return {Code::no_such_array, fmt::format("holds no arrays, expected {}", in_quotes(key))};
-    const std::string whole = key.substr(0, key.rfind('['));
-    if (key.ends_with(']') && std::find(keys_.begin(), keys_.end(), whole) != keys_.end())
-        return {Code::no_such_array,
-                fmt::format("has no array {}, but {}, of which no single elements are taken: save "
-                            "the element as a separate array",
-                            in_quotes(key), in_quotes(whole))};
-    std::string message =
-        fmt::format("has no array {}; it holds {}", in_quotes(key), listed(keys_));
-    std::vector<std::string> candidates = keys_;
-    candidates.resize(std::min(candidates.size(), kCandidates));
-    message += suggestion(key, candidates);
-    return {Code::no_such_array, message};
-}
-
-diag::Result<std::unique_ptr<ByteSource>> Archive::member(const std::string& key) const {
-    const auto found = std::find(keys_.begin(), keys_.end(), key);
-    if (found == keys_.end()) return missing(key);
-    if (std::find(found + 1, keys_.end(), key) != keys_.end())
-        return Failure{Code::malformed_archive,
-                       fmt::format("holds two arrays named {}", in_quotes(key))};
-    const std::uint64_t index = indices_[static_cast<std::size_t>(found - keys_.begin())];
-    auto member = open_member(index);
-    if (!member) return in_array(member.failure(), key);
-    return member;
-}
-
-bool Archive::has_file(const std::string& name) const {
-    return zip_name_locate(handle_.get(), name.c_str(), ZIP_FL_ENC_RAW) >= 0;
-}
-
-diag::Result<std::unique_ptr<ByteSource>> Archive::file(const std::string& name,
-                                                        std::uint64_t limit) const {
-    const zip_int64_t index = zip_name_locate(handle_.get(), name.c_str(), ZIP_FL_ENC_RAW);
-    if (index < 0)
-        return Failure{Code::no_such_array, fmt::format("has no member {}", in_quotes(name))};
-    auto member = open_member(static_cast<std::uint64_t>(index));
-    if (member && (*member)->size() > limit)
-        return malformed(fmt::format("member {} takes {} bytes, at most {} are read",
-                                     in_quotes(name), (*member)->size(), limit));
-    return member;
-}
-
-diag::Result<std::unique_ptr<ByteSource>> Archive::open_member(std::uint64_t index) const {
-    zip_stat_t status;
-    if (zip_stat_index(handle_.get(), index, 0, &status) != 0)
-        return damaged(zip_error_code_zip(zip_get_error(handle_.get())));
-    if (auto failure = check_method(status)) return *failure;
-    zip_file_t* file = zip_fopen_index(handle_.get(), index, 0);
-    if (file == nullptr) return damaged(zip_error_code_zip(zip_get_error(handle_.get())));
-    return std::unique_ptr<ByteSource>(std::make_unique<Member>(handle_, file, status.size));
-}
-
-namespace {
-
 constexpr std::string_view kLocal = "PK\x03\x04";
 constexpr std::string_view kEntry = "PK\x01\x02";
 constexpr std::string_view kEnd = "PK\x05\x06";
@@ -238,20 +100,12 @@ constexpr std::uint64_t kIn64 =
     0xffffffff;  ///< marks a 32-bit field whose value is stored elsewhere, in 64 bits
 constexpr std::uint64_t kCountIn64 = 0xffff;
 
-Failure damaged(std::string message) {
-    return {Code::malformed_archive, std::move(message)};
-}
-
-Failure no_archive() {
-    return damaged("is no .npz file: not a zip archive");
-}
-
 Failure damaged() {
-    return damaged("archive is damaged: its directory makes no sense");
+    return malformed("archive is damaged: its directory makes no sense");
 }
 
 Failure not_one_archive(std::string_view where) {
-    return damaged(fmt::format("has bytes {}, expected one archive and nothing else", where));
+    return malformed(fmt::format("has bytes {}, expected one archive and nothing else", where));
 }
 
 /// Returns the little-endian number of `n` bytes at `at`, which must exist.
@@ -262,10 +116,24 @@ std::uint64_t number(std::string_view bytes, std::size_t at, std::size_t n) {
     return value;
 }
 
+/// An entry of the directory of a zip archive.
+struct ZipMember {
+    std::string name;
+    std::uint32_t crc = 0;
+    std::uint64_t packed_bytes = 0;
+    std::uint64_t offset = 0;   ///< of its header
+    bool sizes_follow = false;  ///< its header was written before its size was known
+};
+
+/// The layout of an archive, restricted to what all readers read alike: the members begin at the
+/// file's first byte and follow each other without a gap, then the directory, then the record that
+/// ends the file. So there is no second archive before, after or between them, which another reader
+/// might take for the archive. Source: PKWARE, APPNOTE.TXT 6.3.10, section 4.3.
 class Layout {
 public:
-    Layout(std::uint64_t size, const ReadAt& read) : size_(size), read_(read) {}
+    Layout(const Descriptor& file, std::uint64_t size) : file_(file), size_(size) {}
 
+    /// Returns the entries of the directory, in its order.
     diag::Result<std::vector<ZipMember>> members() {
         if (auto failure = find_directory()) return *failure;
         if (auto failure = read_directory()) return *failure;
@@ -296,7 +164,7 @@ private:
         if (auto failure = find_directory64(end)) return failure;
         if (directory_ > directory_end_ || directory_bytes_ > directory_end_) return damaged();
         if (directory_bytes_ > kMostDirectoryBytes)
-            return damaged("has a directory that is too large");
+            return malformed("has a directory that is too large");
         if (directory_ + directory_bytes_ != directory_end_)
             return not_one_archive("around its directory");
         return {};
@@ -398,8 +266,8 @@ private:
         const auto again = read(member.offset + kLocalBytes, name);
         if (!again) return unreadable();
         if (*again != member.name)
-            return damaged(fmt::format("has a member that is {} in one place and {} in another",
-                                       in_quotes(*again), in_quotes(member.name)));
+            return malformed(fmt::format("has a member that is {} in one place and {} in another",
+                                         in_quotes(*again), in_quotes(member.name)));
         // The data are followed by their checksum and sizes, in 32 or 64 bits, perhaps signed.
         const std::uint64_t behind = room - before - member.packed_bytes;
         const bool descriptor = behind == 12 || behind == 16 || behind == 20 || behind == 24;
@@ -410,14 +278,14 @@ private:
 
     std::optional<std::string> read(std::uint64_t at, std::uint64_t n) const {
         std::string bytes(n, '\0');
-        if (!read_(at, bytes.data(), bytes.size())) return {};
+        if (!read_all_at(*file_, at, bytes.data(), bytes.size())) return {};
         return bytes;
     }
 
     static Failure unreadable() { return {Code::unreadable_data_file, "cannot be read"}; }
 
+    const Descriptor& file_;
     std::uint64_t size_;
-    const ReadAt& read_;
     std::uint64_t entries_ = 0;
     std::uint64_t directory_ = 0;  ///< its offset
     std::uint64_t directory_bytes_ = 0;
@@ -425,10 +293,118 @@ private:
     std::vector<ZipMember> members_;
 };
 
+diag::Result<std::vector<ZipMember>> layout_of(const std::string& path) {
+    if (auto why = why_unreadable(path)) return Failure{Code::unreadable_data_file, *why};
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    struct stat status {};
+    if (!file || ::fstat(*file, &status) != 0)
+        return Failure{Code::unreadable_data_file,
+                       fmt::format("cannot be read: {}", error_words(errno))};
+    return Layout(file, static_cast<std::uint64_t>(status.st_size)).members();
+}
+
+/// Returns whether libzip, which has its own rules for the end of an archive, finds these members.
+bool holds(zip_t* archive, const std::vector<ZipMember>& members) {
+    if (zip_get_num_entries(archive, 0) != static_cast<zip_int64_t>(members.size())) return false;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        zip_stat_t status;
+        const char* const name = zip_get_name(archive, i, ZIP_FL_ENC_RAW);
+        if (name == nullptr || name != members[i].name ||
+            zip_stat_index(archive, i, 0, &status) != 0)
+            return false;
+        if (status.crc != members[i].crc || status.comp_size != members[i].packed_bytes)
+            return false;
+    }
+    return true;
+}
+
+std::optional<Failure> check_method(const zip_stat_t& status) {
+    if (status.encryption_method != ZIP_EM_NONE)
+        return malformed("is encrypted, expected plain members");
+    if (status.comp_method != ZIP_CM_STORE && status.comp_method != ZIP_CM_DEFLATE)
+        return malformed(fmt::format(
+            "is packed by zip method {}, expected 0 (stored) or 8 (deflated)", status.comp_method));
+    return {};
+}
+
 }  // namespace
 
-diag::Result<std::vector<ZipMember>> read_zip_layout(std::uint64_t size, const ReadAt& read) {
-    return Layout(size, read).members();
+Archive::Archive(std::shared_ptr<zip> handle) : handle_(std::move(handle)) {
+    const zip_int64_t n = zip_get_num_entries(handle_.get(), 0);
+    for (zip_int64_t i = 0; i < n; ++i) {
+        const auto index = static_cast<zip_uint64_t>(i);
+        const char* name = zip_get_name(handle_.get(), index, 0);
+        if (name == nullptr || !std::string_view(name).ends_with(kEnding)) continue;
+        const std::string_view all = name;
+        keys_.emplace_back(all.substr(0, all.size() - kEnding.size()));
+        indices_.push_back(index);
+    }
+}
+
+diag::Result<Archive> Archive::open(const std::string& path) {
+    const auto layout = layout_of(path);
+    if (!layout) return layout.failure();
+    int code = ZIP_ER_OK;
+    zip_t* opened = zip_open(path.c_str(), ZIP_RDONLY, &code);
+    if (opened == nullptr) return damaged(code);
+    std::shared_ptr<zip> handle(opened, zip_discard);
+    if (!holds(opened, *layout)) return malformed("archive can be read in two ways");
+    return Archive(std::move(handle));
+}
+
+Failure Archive::missing(const std::string& key) const {
+    if (keys_.empty())
+        return {Code::no_such_array, fmt::format("holds no arrays, expected {}", in_quotes(key))};
+    const std::string whole = key.substr(0, key.rfind('['));
+    if (key.ends_with(']') && std::find(keys_.begin(), keys_.end(), whole) != keys_.end())
+        return {Code::no_such_array,
+                fmt::format("has no array {}, but {}, of which no single elements are taken: save "
+                            "the element as a separate array",
+                            in_quotes(key), in_quotes(whole))};
+    std::string message =
+        fmt::format("has no array {}; it holds {}", in_quotes(key), listed(keys_));
+    std::vector<std::string> candidates = keys_;
+    candidates.resize(std::min(candidates.size(), kCandidates));
+    message += suggestion(key, candidates);
+    return {Code::no_such_array, message};
+}
+
+diag::Result<std::unique_ptr<ByteSource>> Archive::member(const std::string& key) const {
+    const auto found = std::find(keys_.begin(), keys_.end(), key);
+    if (found == keys_.end()) return missing(key);
+    if (std::find(found + 1, keys_.end(), key) != keys_.end())
+        return Failure{Code::malformed_archive,
+                       fmt::format("holds two arrays named {}", in_quotes(key))};
+    const std::uint64_t index = indices_[static_cast<std::size_t>(found - keys_.begin())];
+    auto member = open_member(index);
+    if (!member) return in_array(member.failure(), key);
+    return member;
+}
+
+bool Archive::has_file(const std::string& name) const {
+    return zip_name_locate(handle_.get(), name.c_str(), ZIP_FL_ENC_RAW) >= 0;
+}
+
+diag::Result<std::unique_ptr<ByteSource>> Archive::file(const std::string& name,
+                                                        std::uint64_t limit) const {
+    const zip_int64_t index = zip_name_locate(handle_.get(), name.c_str(), ZIP_FL_ENC_RAW);
+    if (index < 0)
+        return Failure{Code::no_such_array, fmt::format("has no member {}", in_quotes(name))};
+    auto member = open_member(static_cast<std::uint64_t>(index));
+    if (member && (*member)->size() > limit)
+        return malformed(fmt::format("member {} takes {} bytes, at most {} are read",
+                                     in_quotes(name), (*member)->size(), limit));
+    return member;
+}
+
+diag::Result<std::unique_ptr<ByteSource>> Archive::open_member(std::uint64_t index) const {
+    zip_stat_t status;
+    if (zip_stat_index(handle_.get(), index, 0, &status) != 0)
+        return damaged(zip_error_code_zip(zip_get_error(handle_.get())));
+    if (auto failure = check_method(status)) return *failure;
+    zip_file_t* file = zip_fopen_index(handle_.get(), index, 0);
+    if (file == nullptr) return damaged(zip_error_code_zip(zip_get_error(handle_.get())));
+    return std::unique_ptr<ByteSource>(std::make_unique<Member>(handle_, file, status.size));
 }
 
 namespace {

@@ -1,12 +1,11 @@
 // The zip archive around the arrays of an .npz file.
-// Takes: a path, or bytes in memory. Gives: the keys, and each array's bytes as a stream that is
+// Takes: a path. Gives: the keys, and each array's bytes as a stream that is
 // unpacked while it is read. Keeps true: members are stored or deflated and not encrypted; sizes
 // are compared before anything is unpacked, checksums at the end of a member; failures have E04
 // codes and messages that do not name the file.
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -19,16 +18,9 @@ struct zip;
 
 namespace etlc::data {
 
-/// The location of an archive: a file, or bytes that outlive the archive.
-struct ArchivePlace {
-    std::string path;
-    std::string_view bytes;
-    bool in_memory = false;
-};
-
 class Archive {
 public:
-    static diag::Result<Archive> open(const ArchivePlace& place);
+    static diag::Result<Archive> open(const std::string& path);
 
     /// Returns the names of the .npy members, without that ending, in the order of the archive.
     const std::vector<std::string>& keys() const { return keys_; }
@@ -52,27 +44,6 @@ private:
     std::vector<std::string> keys_;
     std::vector<std::uint64_t> indices_;  ///< places of the keys in the archive
 };
-
-// The layout of a zip archive, restricted to what all readers read alike.
-// Takes: the bytes. Gives: the entries of its directory, or why it is refused. Keeps true: the
-// members begin at the file's first byte and follow each other without a gap, then the directory,
-// then the record that ends the file. So there is no second archive before, after or between them,
-// which another reader might take for the archive. Source: PKWARE, APPNOTE.TXT 6.3.10, section 4.3.
-
-/// Reads `n` bytes at `at`; false where they cannot be read.
-using ReadAt = std::function<bool(std::uint64_t at, char* to, std::size_t n)>;
-
-/// An entry of the directory.
-struct ZipMember {
-    std::string name;
-    std::uint32_t crc = 0;
-    std::uint64_t packed_bytes = 0;
-    std::uint64_t offset = 0;   ///< of its header
-    bool sizes_follow = false;  ///< its header was written before its size was known
-};
-
-/// Reads the directory of a file of `size` bytes, in its order. Failures: E0407.
-diag::Result<std::vector<ZipMember>> read_zip_layout(std::uint64_t size, const ReadAt& read);
 
 // Writes arrays and texts as .npy and .npz files, like numpy.save and numpy.savez.
 // Keeps true: the same members give the same bytes, on every machine and at any time.

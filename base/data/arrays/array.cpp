@@ -104,10 +104,6 @@ diag::Result<Array> read_npy(const std::string& path) {
     return read_npy_from(**source);
 }
 
-diag::Result<Array> parse_npy(std::string_view bytes) {
-    return read_npy_from(*from_memory(bytes));
-}
-
 namespace {
 
 /// Returns the requested key; without one, the only key.
@@ -121,8 +117,10 @@ diag::Result<std::string> choose(const Archive& archive, const std::string& key)
     return archive.keys().front();
 }
 
-diag::Result<Array> read_from(const ArchivePlace& place, const std::string& key) {
-    const auto archive = Archive::open(place);
+}  // namespace
+
+diag::Result<Array> read_npz(const std::string& path, const std::string& key) {
+    const auto archive = Archive::open(path);
     if (!archive) return archive.failure();
     const auto chosen = choose(*archive, key);
     if (!chosen) return chosen.failure();
@@ -131,16 +129,6 @@ diag::Result<Array> read_from(const ArchivePlace& place, const std::string& key)
     auto array = read_npy_from(**member);
     if (!array) return in_array(array.failure(), *chosen);
     return array;
-}
-
-}  // namespace
-
-diag::Result<Array> read_npz(const std::string& path, const std::string& key) {
-    return read_from({path, {}, false}, key);
-}
-
-diag::Result<Array> parse_npz(std::string_view bytes, const std::string& key) {
-    return read_from({{}, bytes, true}, key);
 }
 
 diag::Result<Array> read_array(const std::string& path, const std::string& key) {

@@ -35,14 +35,10 @@ struct Array {
 /// Failures of this header are E04; their messages do not repeat the path: `in_file`
 /// (data/files/file.hpp) adds it.
 diag::Result<Array> read_npy(const std::string& path);
-/// Reads a .npy file from memory.
-diag::Result<Array> parse_npy(std::string_view bytes);
 
 /// Reads an array of an .npz file, stored or deflated. An empty key takes the only array, and is an
 /// error where there are several.
 diag::Result<Array> read_npz(const std::string& path, const std::string& key);
-/// Reads an array of an .npz file from memory.
-diag::Result<Array> parse_npz(std::string_view bytes, const std::string& key);
 
 /// Reads an .npy or .npz file, by its ending. An .npy file takes no key.
 diag::Result<Array> read_array(const std::string& path, const std::string& key);

@@ -1,16 +1,10 @@
 #include "data/traces/trace.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <span>
@@ -21,6 +15,7 @@
 
 #include "data/arrays/array.hpp"
 #include "data/files/file.hpp"
+#include "data/spill/spill.hpp"
 #include "data/text/text.hpp"
 #include "data/traces/trace_formats.hpp"
 
@@ -144,33 +139,25 @@ private:
     std::vector<double> values_;
 };
 
-/// Opens a file without a name, which disappears when it is closed.
-Descriptor nameless_file() {
-    const char* const named = std::getenv("TMPDIR");
-    const std::string folder = named != nullptr && *named != '\0' ? named : "/tmp";
-    Descriptor file(::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600));
-    if (file) return file;
-    std::string path =
-        folder + "/etlc.XXXXXX";  // on file systems where every file begins with a name
-    file = Descriptor(::mkostemp(path.data(), O_CLOEXEC));
-    if (file) ::unlink(path.c_str());
-    return file;
-}
-
-Failure temporary_failed(int error) {
-    return {Code::unreadable_data_file,
-            fmt::format("a Fortran-ordered array needs a temporary file: {}; save it in C order, "
-                        "or set TMPDIR to a folder with room for it",
-                        std::strerror(error))};
+/// Returns what `work` returns, or a Failure where its temporary file fails.
+template <class Work>
+auto in_temporary_file(const Work& work) -> decltype(work()) {
+    try {
+        return work();
+    } catch (const SpillError& error) {
+        return Failure{
+            Code::unreadable_data_file,
+            fmt::format("is in Fortran order, and {}; in C order it needs none", error.what())};
+    }
 }
 
 class FortranRows final : public Rows {
 public:
     static diag::Result<std::unique_ptr<Rows>> open(ByteSource& source, NpyHeader header,
                                                     std::uint64_t rows, std::uint32_t width) {
-        Descriptor file = nameless_file();
-        if (!file) return temporary_failed(errno);
-        if (auto failure = unpack(source, header, file)) return *failure;
+        SpillFile file;
+        if (auto failure = in_temporary_file([&] { return unpack(source, header, file); }))
+            return *failure;
         return std::unique_ptr<Rows>(
             new FortranRows(std::move(file), std::move(header), rows, width));
     }
@@ -178,14 +165,14 @@ public:
     diag::Result<const double*> next() override {
         const std::uint64_t in_block = done_ % block_rows_;
         if (in_block == 0)
-            if (auto failure = fill()) return *failure;
+            if (auto failure = in_temporary_file([&] { return fill(); })) return *failure;
         for (std::uint32_t d = 0; d < width_; ++d) row_[d] = columns_[d * block_rows_ + in_block];
         ++done_;
         return row_.data();
     }
 
 private:
-    FortranRows(Descriptor file, NpyHeader header, std::uint64_t rows, std::uint32_t width)
+    FortranRows(SpillFile file, NpyHeader header, std::uint64_t rows, std::uint32_t width)
         : file_(std::move(file)),
           header_(std::move(header)),
           rows_(rows),
@@ -198,7 +185,7 @@ private:
     }
 
     static std::optional<Failure> unpack(ByteSource& source, const NpyHeader& header,
-                                         const Descriptor& file) {
+                                         SpillFile& file) {
         std::vector<char> buffer(kBlockBytes);
         std::uint64_t total = header.header_bytes;
         for (;;) {
@@ -207,7 +194,7 @@ private:
             total += *got;
             if (total > header.header_bytes + header.data_bytes())
                 break;  // more than promised: not to be stored
-            if (!write_all(*file, {buffer.data(), *got})) return temporary_failed(errno);
+            file.append({buffer.data(), *got});
             if (*got < buffer.size()) break;
         }
         return check_size(header, total);
@@ -217,8 +204,7 @@ private:
         const std::uint64_t n = std::min(block_rows_, rows_ - done_);
         for (std::uint32_t d = 0; d < width_; ++d) {
             const std::uint64_t at = (d * rows_ + done_) * element_bytes_;
-            if (!read_all_at(*file_, at, bytes_.data(), n * element_bytes_))
-                return temporary_failed(errno);
+            file_.read(at, bytes_.data(), n * element_bytes_);
             const std::size_t sound =
                 decode(header_.element, bytes_.data(), n, columns_.data() + d * block_rows_);
             if (sound < n) return unsound_boolean(bytes_[sound], done_ + sound);
@@ -226,7 +212,7 @@ private:
         return {};
     }
 
-    Descriptor file_;
+    SpillFile file_;
     NpyHeader header_;
     std::uint64_t rows_;
     std::uint32_t width_;
@@ -358,8 +344,8 @@ Failure of_channel(const Failure& failure, const Channel& channel) {
     return of_trace(in_array(failure, channel.name));
 }
 
-diag::Result<Feed> open_feed(const ArchivePlace& place, const Channel& channel) {
-    const auto archive = Archive::open(place);
+diag::Result<Feed> open_feed(const std::string& path, const Channel& channel) {
+    const auto archive = Archive::open(path);
     if (!archive) return of_trace(archive.failure());
     const auto& keys = archive->keys();
     if (channel.optional && std::find(keys.begin(), keys.end(), channel.name) == keys.end())
@@ -396,11 +382,11 @@ diag::Failure of_trace(Failure failure) {
     return failure;
 }
 
-diag::Result<std::unique_ptr<Trace>> open_npz_trace(const ArchivePlace& place,
+diag::Result<std::unique_ptr<Trace>> open_npz_trace(const std::string& path,
                                                     const std::vector<Channel>& channels) {
     std::vector<Feed> feeds;
     for (const Channel& channel : channels) {
-        auto feed = open_feed(place, channel);
+        auto feed = open_feed(path, channel);
         if (!feed) return feed.failure();
         if (are_times(channel) && (feeds.empty() || feed->steps != feeds.front().steps))
             feed->rows = nullptr;

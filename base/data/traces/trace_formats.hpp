@@ -29,7 +29,7 @@ diag::Result<std::unique_ptr<Trace>> open_csv_trace(std::unique_ptr<ByteSource> 
                                                     const std::vector<Channel>& channels);
 
 /// Opens the archive once per channel, so that all arrays are unpacked in step.
-diag::Result<std::unique_ptr<Trace>> open_npz_trace(const ArchivePlace& place,
+diag::Result<std::unique_ptr<Trace>> open_npz_trace(const std::string& path,
                                                     const std::vector<Channel>& channels);
 
 /// Turns the E04 codes of archives and arrays into their E08 counterparts for traces.
