@@ -46,11 +46,7 @@ std::string explain_code(std::string_view code) {
 
 int explain_code_command(std::string_view code) {
     const std::string text = explain_code(code);
-    diag::Sink sink;
-    if (!text.empty()) {
-        print(text, sink);
-        return sink.refused() ? kFailed : kDone;
-    }
+    if (!text.empty()) return print_text(text);
     std::vector<std::string> codes;
     for (const diag::CodeInfo& info : diag::all_codes()) codes.emplace_back(info.code);
     const auto nearest = diag::nearest_name(code, codes);

@@ -1,4 +1,4 @@
-// The code that the manual page and the completion script share, and the calls that print them.
+// What the pages and the completion script share, and the calls that print them.
 
 #include "driver/manual/manual.hpp"
 
@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <set>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -36,70 +38,40 @@ std::vector<std::string> names_of(const Option& option) {
     return names;
 }
 
-OptionHelp help_of(const Option& option) {
+/// Returns "FILE" or "text|json".
+std::string value_of(const Option& option) {
     const Takes& takes = option.takes;
-    OptionHelp help;
-    help.names = names_of(option);
-    help.value = takes.value;
-    help.words = takes.choices;
-    help.usual = takes.usual;
-    help.text = option.help;
-    help.is_flag = takes.is_flag || !takes.set;  // --help and --version set nothing
-    help.repeats = takes.repeats;
-    help.is_required = option.need == Option::Need::required;
-    return help;
+    return takes.choices.empty() ? takes.value : fmt::format("{}", fmt::join(takes.choices, "|"));
 }
 
-}  // namespace
+/// --help and --version set nothing.
+bool is_flag(const Option& option) {
+    return option.takes.is_flag || !option.takes.set;
+}
 
+bool is_required(const Option& option) {
+    return option.need == Option::Need::required;
+}
+
+struct CommandHelp {
+    std::string word;  ///< "run"; empty for etlc without a command
+    CommandText text;
+    std::vector<const Option*> options;
+};
+
+/// Returns the help of all commands, that of etlc itself first.
 std::vector<CommandHelp> all_help() {
     std::vector<CommandHelp> all;
     for (std::size_t i = 0; i < kCommandCount; ++i) {
         const auto command = static_cast<Command>(i);
-        CommandText text = text_of(command);
-        all.push_back({std::move(text.name), std::move(text.summary), std::move(text.footer), {}});
+        all.push_back({i == 0 ? "" : command_names()[i - 1], text_of(command), {}});
         for (const Option& option : options())
-            if (option.commands.has(command)) all.back().options.push_back(help_of(option));
+            if (option.commands.has(command)) all.back().options.push_back(&option);
     }
     return all;
 }
 
-Paths paths_of(const OptionHelp& option) {
-    const std::string& value = option.value;
-    if (value == "SPEC.etl") return Paths::specs;
-    if (value == "FOLDER") return Paths::folders;
-    for (const char* const path : {"FILE", "PART...", "PATH"})
-        if (value.rfind(path, 0) == 0) return Paths::files;
-    return Paths::none;
-}
-
-std::string word_of(const CommandHelp& command) {
-    const std::size_t blank = command.name.find(' ');
-    return blank == std::string::npos ? "" : command.name.substr(blank + 1);
-}
-
-namespace {
-
-int print_text(const std::string& text) {
-    diag::Sink sink;
-    print(text, sink);
-    return sink.refused() ? kFailed : kDone;
-}
-
 }  // namespace
-
-int completion_command(const std::string& shell) {
-    const std::string mistake = mistake_in_word(shell, {"bash"});
-    if (!mistake.empty()) {
-        print_error(fmt::format("etlc: --completion: {}\n", mistake));
-        return kWrongCall;
-    }
-    return print_text(completion_of_bash(all_help()));
-}
-
-int manual_command() {
-    return print_text(manual_page(all_help(), library::kVersion));
-}
 
 // The page docs/command_line.md.
 
@@ -139,19 +111,20 @@ std::string wrapped(const std::string& text) {
     return result;
 }
 
-std::string form_of(const OptionHelp& option) {
-    const std::string words = fmt::format("{}", fmt::join(option.words, "|"));
-    const std::string& value = option.words.empty() ? option.value : words;
-    if (option.names.empty()) return value;
-    std::string form = fmt::format("{}", fmt::join(option.names, ", "));
+std::string form_of(const Option& option) {
+    const std::string value = value_of(option);
+    const std::vector<std::string> names = names_of(option);
+    if (names.empty()) return value;
+    const std::string form = fmt::format("{}", fmt::join(names, ", "));
     if (value.empty()) return form;
-    return option.is_flag ? fmt::format("{}[={}]", form, value) : fmt::format("{} {}", form, value);
+    return is_flag(option) ? fmt::format("{}[={}]", form, value)
+                           : fmt::format("{} {}", form, value);
 }
 
-std::string row(const OptionHelp& option) {
-    std::string text = cell(option.text);
-    if (!option.usual.empty()) text += fmt::format(" (default: {})", option.usual);
-    if (option.is_required) text += " (required)";
+std::string row(const Option& option) {
+    std::string text = cell(option.help);
+    if (!option.takes.usual.empty()) text += fmt::format(" (default: {})", option.takes.usual);
+    if (is_required(option)) text += " (required)";
     return fmt::format("| `{}` | {} |\n", cell(form_of(option)), text);
 }
 
@@ -162,8 +135,8 @@ constexpr int kSeveral = 3;  ///< so many commands have an option in common
 std::vector<std::pair<std::string, int>> counted(const std::vector<CommandHelp>& commands) {
     std::vector<std::pair<std::string, int>> rows;
     for (const CommandHelp& command : commands)
-        for (const OptionHelp& option : command.options) {
-            const std::string text = row(option);
+        for (const Option* const option : command.options) {
+            const std::string text = row(*option);
             const auto same = [&](const auto& other) { return other.first == text; };
             const auto found = std::find_if(rows.begin(), rows.end(), same);
             if (found == rows.end())
@@ -175,18 +148,19 @@ std::vector<std::pair<std::string, int>> counted(const std::vector<CommandHelp>&
 }
 
 std::string section(const CommandHelp& command, const std::set<std::string>& shared) {
-    const std::string about = command.text.substr(0, command.text.find("\nOther commands:"));
+    const std::string& summary = command.text.summary;
+    const std::string about = summary.substr(0, summary.find("\nOther commands:"));
     std::vector<std::string> also;
     std::string own;
-    for (const OptionHelp& option : command.options) {
-        const std::string text = row(option);
+    for (const Option* const option : command.options) {
+        const std::string text = row(*option);
+        const std::vector<std::string> names = names_of(*option);
         if (shared.count(text) == 0)
             own += text;
         else
-            also.push_back(
-                fmt::format("`{}`", option.names.empty() ? option.value : option.names.back()));
+            also.push_back(fmt::format("`{}`", names.empty() ? option->takes.value : names.back()));
     }
-    std::string text = fmt::format("\n## {}\n\n{}\n", command.name, wrapped(about));
+    std::string text = fmt::format("\n## {}\n\n{}\n", command.text.name, wrapped(about));
     if (!own.empty()) text += "\n| option | |\n| --- | --- |\n" + own;
     return text + '\n' + wrapped(fmt::format("Also {}.", fmt::join(also, ", "))) + '\n';
 }
@@ -252,64 +226,59 @@ std::string lines_of(const std::string& text) {
     return result;
 }
 
-std::string value_of(const OptionHelp& option) {
-    if (!option.words.empty()) return fmt::format("{}", fmt::join(option.words, "|"));
-    return option.value;
-}
-
-std::string item(const OptionHelp& option) {
+std::string item(const Option& option) {
     std::string text = ".TP\n";
     std::string names;
-    for (const std::string& name : option.names)
+    for (const std::string& name : names_of(option))
         names += fmt::format("{}\\fB{}\\fR", names.empty() ? "" : ", ", escaped(name));
     const std::string value = value_of(option);
     const std::string shown = value.empty() ? "" : fmt::format("\\fI{}\\fR", escaped(value));
     if (names.empty())
         text += shown;
-    else if (option.is_flag && !value.empty())
+    else if (is_flag(option) && !value.empty())
         text += fmt::format("{}[={}]", names, shown);
     else
         text += names + (shown.empty() ? "" : " " + shown);
-    if (option.repeats && !value.ends_with("...")) text += " ...";
-    text += "\n" + lines_of(option.text);
-    if (!option.usual.empty()) text += fmt::format("(default: {})\n", escaped(option.usual));
-    if (option.is_required && !option.names.empty()) text += "(required)\n";
+    if (option.takes.repeats && !value.ends_with("...")) text += " ...";
+    text += "\n" + lines_of(option.help);
+    const std::string& usual = option.takes.usual;
+    if (!usual.empty()) text += fmt::format("(default: {})\n", escaped(usual));
+    if (is_required(option) && !names.empty()) text += "(required)\n";
     return text;
 }
 
 std::string synopsis(const CommandHelp& command) {
-    std::string text = fmt::format(".br\n\\fB{}\\fR", escaped(command.name));
-    for (const OptionHelp& option : command.options) {
-        if (!option.is_required) continue;
+    std::string text = fmt::format(".br\n\\fB{}\\fR", escaped(command.text.name));
+    for (const Option* const option : command.options) {
+        if (!is_required(*option)) continue;
+        const std::vector<std::string> names = names_of(*option);
+        const std::string value = value_of(*option);
         const std::string name =
-            option.names.empty() ? "" : fmt::format("\\fB{}\\fR ", escaped(option.names.back()));
-        const bool goes_on = option.repeats && !value_of(option).ends_with("...");
-        text +=
-            fmt::format(" {}\\fI{}\\fR{}", name, escaped(value_of(option)), goes_on ? " ..." : "");
+            names.empty() ? "" : fmt::format("\\fB{}\\fR ", escaped(names.back()));
+        const bool goes_on = option->takes.repeats && !value.ends_with("...");
+        text += fmt::format(" {}\\fI{}\\fR{}", name, escaped(value), goes_on ? " ..." : "");
     }
     return text + " [\\fIoptions\\fR]\n";
 }
 
 std::string items(const CommandHelp& command) {
     std::string text;
-    for (const OptionHelp& option : command.options) text += item(option);
+    for (const Option* const option : command.options) text += item(*option);
     return text;
 }
 
-}  // namespace
-
-std::string manual_page(const std::vector<CommandHelp>& commands, const std::string& version) {
-    const CommandHelp& compiles = commands.front();
+std::string manual_page(const std::vector<CommandHelp>& commands) {
+    const CommandText& compiles = commands.front().text;
     std::string text = fmt::format(
         ".\\\" Made by etlc --man.\n.TH ETLC 1 \"\" \"etlc {}\" \"User Commands\"\n"
         ".SH NAME\netlc \\- compiler for Embedding Temporal Logic\n.SH SYNOPSIS\n",
-        version);
+        library::kVersion);
     for (const CommandHelp& command : commands) text += synopsis(command);
     text += ".br\n\\fBetlc \\-\\-explain\\fR \\fICODE\\fR\n";
     text += ".br\n\\fBetlc \\-\\-completion bash\\fR\n";
     text += ".br\n\\fBetlc \\-\\-man\\fR\n";
-    text += ".SH DESCRIPTION\n" + lines_of(compiles.text.substr(0, compiles.text.find('\n')));
-    text += ".SH OPTIONS\n" + items(compiles);
+    text += ".SH DESCRIPTION\n" + lines_of(compiles.summary.substr(0, compiles.summary.find('\n')));
+    text += ".SH OPTIONS\n" + items(commands.front());
     text +=
         ".TP\n\\fB\\-\\-explain\\fR \\fICODE\\fR\nin place of a spec: what the code of a "
         "diagnostic "
@@ -318,17 +287,21 @@ std::string manual_page(const std::vector<CommandHelp>& commands, const std::str
         "the command line of etlc\n"
         ".TP\n\\fB\\-\\-man\\fR\nin place of a spec: this page\n.SH COMMANDS\n";
     for (const CommandHelp& command : commands)
-        if (!word_of(command).empty())
-            text += fmt::format(".SS {}\n{}{}", escaped(command.name), lines_of(command.text),
-                                items(command));
+        if (!command.word.empty())
+            text += fmt::format(".SS {}\n{}{}", escaped(command.text.name),
+                                lines_of(command.text.summary), items(command));
     constexpr std::string_view kStatus = "Exit status: ";
-    const std::string footer = compiles.footer;
-    const std::size_t begin = footer.rfind(kStatus, 0) == 0 ? kStatus.size() : 0;
-    text += ".SH EXIT STATUS\n" + lines_of(footer.substr(begin));
+    text += ".SH EXIT STATUS\n" + lines_of(compiles.footer.substr(kStatus.size()));
     text +=
         ".SH SEE ALSO\nThe pages of the documentation: README.md and docs/ of etlc, "
         "which are installed in share/doc/etlc.\n";
     return text;
+}
+
+}  // namespace
+
+int manual_command() {
+    return print_text(manual_page(all_help()));
 }
 
 // The completion script for bash.
@@ -336,41 +309,45 @@ std::string manual_page(const std::vector<CommandHelp>& commands, const std::str
 namespace {
 
 /// Returns the pattern of an option in a case statement: 'run --values' | 'run --values='.
-std::string pattern(const CommandHelp& command, const OptionHelp& option) {
+std::string pattern(const CommandHelp& command, const Option& option) {
     std::vector<std::string> words;
-    for (const std::string& name : option.names) {
-        if (!option.is_flag) words.push_back(fmt::format("'{} {}'", word_of(command), name));
-        if (name.starts_with("--"))
-            words.push_back(fmt::format("'{} {}='", word_of(command), name));
+    for (const std::string& name : names_of(option)) {
+        if (!is_flag(option)) words.push_back(fmt::format("'{} {}'", command.word, name));
+        if (name.starts_with("--")) words.push_back(fmt::format("'{} {}='", command.word, name));
     }
     return fmt::format("{}", fmt::join(words, " | "));
 }
 
+/// Returns the pattern of the files that an option takes, empty for folders; nothing for no paths.
+std::optional<std::string> paths_of(const Option& option) {
+    const std::string& value = option.takes.value;
+    if (value == "SPEC.etl") return "*.etl";
+    if (value == "FOLDER") return "";
+    for (const char* const path : {"FILE", "PART...", "PATH"})
+        if (value.starts_with(path)) return "*";
+    return std::nullopt;
+}
+
 /// Returns the function that completes the value of an option.
-std::string values_of(const OptionHelp& option) {
-    if (!option.words.empty()) return fmt::format("_etlc_words '{}'", fmt::join(option.words, " "));
-    switch (paths_of(option)) {
-        case Paths::specs: return "_etlc_paths '*.etl'";
-        case Paths::files: return "_etlc_paths '*'";
-        case Paths::folders: return "_etlc_paths ''";
-        case Paths::none: break;
-    }
-    return ":";  // no completion
+std::string values_of(const Option& option) {
+    const Takes::Words& words = option.takes.choices;
+    if (!words.empty()) return fmt::format("_etlc_words '{}'", fmt::join(words, " "));
+    const auto paths = paths_of(option);
+    return paths ? fmt::format("_etlc_paths '{}'", *paths) : ":";  // no completion
 }
 
 std::string options_of(const CommandHelp& command) {
     std::string words;
-    for (const OptionHelp& option : command.options)
-        for (const std::string& name : option.names) words += " " + name;
-    if (word_of(command).empty())
-        for (const char* const own : kOwnWords) words += fmt::format(" {}", own);
+    for (const Option* const option : command.options)
+        for (const std::string& name : names_of(*option)) words += " " + name;
+    if (command.word.empty()) words += " --completion --man";  // which are not in the table
     return words.substr(1);
 }
 
 /// Returns the pattern of positional arguments: specs, or other files.
-const char* positional(const CommandHelp& command) {
-    for (const OptionHelp& option : command.options)
-        if (option.names.empty()) return paths_of(option) == Paths::specs ? "*.etl" : "*";
+std::string positional(const CommandHelp& command) {
+    for (const Option* const option : command.options)
+        if (names_of(*option).empty()) return paths_of(*option).value_or("*");
     return "";
 }
 
@@ -400,18 +377,16 @@ _etlc() {
     COMPREPLY=()
 )";
 
-}  // namespace
-
 std::string completion_of_bash(const std::vector<CommandHelp>& commands) {
     std::string values, options, others;
     std::vector<std::string> names;
     for (const CommandHelp& command : commands) {
-        const std::string word = word_of(command);
+        const std::string& word = command.word;
         if (!word.empty()) names.push_back(word);
-        for (const OptionHelp& option : command.options)
-            if (!option.names.empty() && !(option.is_flag && option.words.empty()))
-                values += fmt::format("        {}) {}; return ;;\n", pattern(command, option),
-                                      values_of(option));
+        for (const Option* const option : command.options)
+            if (!names_of(*option).empty() && !(is_flag(*option) && option->takes.choices.empty()))
+                values += fmt::format("        {}) {}; return ;;\n", pattern(command, *option),
+                                      values_of(*option));
         options +=
             fmt::format("            '{}') _etlc_words '{}' ;;\n", word, options_of(command));
         others += fmt::format("            '{}') _etlc_paths '{}' ;;\n", word, positional(command));
@@ -434,6 +409,15 @@ std::string completion_of_bash(const std::vector<CommandHelp>& commands) {
     return text;
 }
 
+}  // namespace
+
+int completion_command(const std::string& shell) {
+    const std::string mistake = mistake_in_word(shell, {"bash"});
+    if (mistake.empty()) return print_text(completion_of_bash(all_help()));
+    print_error(fmt::format("etlc: --completion: {}\n", mistake));
+    return kWrongCall;
+}
+
 // The table of options as a module of the Python package: python/etlc/_options.py.
 
 namespace {
@@ -445,19 +429,6 @@ std::string_view manner_of(const Option& option) {
     if (takes.may_be_empty) return "any";
     if (takes.is_flag) return takes.choices.empty() ? "flag" : "word";
     return takes.repeats ? "several" : "one";
-}
-
-/// Returns "--output" for "-o,--output" and "--standalone" for "--standalone{portable}".
-std::string long_name(const Option& option) {
-    const std::string all = option.names.substr(0, option.names.find('{'));
-    return all.substr(all.find(',') + 1);
-}
-
-/// Returns "run"; "compile" for etlc without a command.
-std::string name_of(Command command) {
-    const std::string name = text_of(command).name;
-    const std::size_t blank = name.find(' ');
-    return blank == std::string::npos ? "compile" : name.substr(blank + 1);
 }
 
 }  // namespace
@@ -489,13 +460,15 @@ class Option(NamedTuple):
 #: The options of each command, without those that only print help.
 OPTIONS: dict[str, tuple[Option, ...]] = {
 )";
-    for (std::size_t i = 0; i < kCommandCount; ++i) {
-        const auto command = static_cast<Command>(i);
-        text += fmt::format("    \"{}\": (\n", name_of(command));
-        for (const Option& option : options())
-            if (option.takes.set && option.commands.has(command))
-                text += fmt::format("        Option(\"{}\", \"{}\", \"{}\"),\n", long_name(option),
-                                    option.takes.value, manner_of(option));
+    for (const CommandHelp& command : all_help()) {
+        text += fmt::format("    \"{}\": (\n", command.word.empty() ? "compile" : command.word);
+        for (const Option* const option : command.options) {
+            if (!option->takes.set) continue;
+            const std::vector<std::string> names = names_of(*option);
+            text += fmt::format("        Option(\"{}\", \"{}\", \"{}\"),\n",
+                                names.empty() ? option->names : names.back(), option->takes.value,
+                                manner_of(*option));
+        }
         text += "    ),\n";
     }
     return text + "}\n";

@@ -49,9 +49,7 @@ CLI::Option* add(CLI::App& app, const Option& option) {
 int fulfil(const CLI::App& app, const CLI::Success& wish) {
     std::ostringstream text;
     app.exit(wish, text, text);
-    diag::Sink sink;
-    print(text.str(), sink);
-    return conclude("text", source::File(), sink);
+    return print_text(text.str());
 }
 
 }  // namespace

@@ -148,6 +148,15 @@ bool check_outputs(const std::vector<std::string>& outputs, const std::vector<st
     return sound;
 }
 
+bool make_folder(const std::string& folder, diag::Sink& sink) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (!error) return true;
+    sink.report(data::in_file(
+        {Code::unwritable_output, fmt::format("cannot be made: {}", error.message())}, folder));
+    return false;
+}
+
 bool OutputFiles::report(const diag::Failure& failure, const std::string& path) {
     sink_.report(data::in_file(failure, words(path, false)));
     return false;
@@ -177,6 +186,12 @@ bool OutputFiles::commit(const data::StillRight& is_right) {
 bool print(std::string_view text, diag::Sink& sink) {
     OutputFiles files(sink);
     return files.add(std::string(kStandardOutput), text) && files.commit();
+}
+
+int print_text(std::string_view text) {
+    diag::Sink sink;
+    print(text, sink);
+    return conclude("text", source::File(), sink);
 }
 
 }  // namespace etlc::driver

@@ -69,6 +69,9 @@ inline constexpr std::string_view kStandardOutput = "-";
 bool check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
                    diag::Sink& sink);
 
+/// Makes a folder and those above it; reports an error and returns false where that fails.
+bool make_folder(const std::string& folder, diag::Sink& sink);
+
 class OutputFiles {
 public:
     explicit OutputFiles(diag::Sink& sink) : sink_(sink) {}
@@ -96,5 +99,7 @@ private:
 
 /// Writes to standard output at once; reports an error and returns false where that fails.
 bool print(std::string_view text, diag::Sink& sink);
+/// Writes a text that is all that a call asks for, such as --help, and returns the exit status.
+int print_text(std::string_view text);
 
 }  // namespace etlc::driver
