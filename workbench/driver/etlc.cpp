@@ -79,7 +79,6 @@ int on_plan(Call& call) {
 }
 
 int compile_spec(Call& call) {
-    if (call.explains) call.values = check::Values::sourced;
     call.check.allow_missing = call.check_only;
     return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
         if (call.check_only)
@@ -89,11 +88,18 @@ int compile_spec(Call& call) {
     });
 }
 
-/// Returns false, with a message, where this etlc lacks what pages are made of.
-bool can_make_pages() {
-    const std::string missing = report::what_is_missing();
+/// Says what this etlc lacks; returns whether that is nothing.
+bool has_all(const std::string& missing) {
     if (!missing.empty()) print_error(fmt::format("etlc: {}\n", missing));
     return missing.empty();
+}
+
+bool can_make_pages() {
+    return has_all(report::what_is_missing());
+}
+
+bool can_serve_pages() {
+    return has_all(label::what_serving_lacks()) && can_make_pages();
 }
 
 int run_trace(Call& call) {
@@ -109,31 +115,16 @@ int make_report(Call& call) {
 }
 
 int make_labels(Call& call) {
-    const std::string missing = call.label.proposals ? "" : label::what_serving_lacks();
-    if (!missing.empty()) print_error(fmt::format("etlc: {}\n", missing));
-    if (!missing.empty() || (!call.label.proposals && !can_make_pages())) return kFailed;
-    return on_spec<label>(call);
+    return call.label.proposals || can_serve_pages() ? on_spec<label>(call) : kFailed;
 }
 
 /// Steps before and after an alarm, and incidents that may be open at a time.
 const plan::RecorderRequest kUsualRecorder = {{150, false, "150"}, {60, false, "60"}, 4};
 
 int watch_source(Call& call) {
-    const std::string missing = call.watch.has_page ? label::what_serving_lacks() : "";
-    if (!missing.empty()) print_error(fmt::format("etlc: {}\n", missing));
-    if (!missing.empty() || (call.watch.has_page && !can_make_pages())) return kFailed;
+    if (call.watch.has_page && !can_serve_pages()) return kFailed;
     if (!call.watch.record.empty() && !call.recorder) call.recorder = kUsualRecorder;
     return on_plan<watch>(call);
-}
-
-int prove_class(Call& call) {
-    if (call.explains) call.values = check::Values::sourced;
-    return on_plan<prove>(call);
-}
-
-int make_dossier(Call& call) {
-    if (call.explains) call.values = check::Values::sourced;
-    return on_plan<dossier>(call);
 }
 
 int annotate_set(Call& call) {
@@ -163,14 +154,15 @@ int merge(Call& call);
 constexpr int (*kFunctions[])(Call& call) = {
     compile_spec,      run_trace,      on_spec<embed>, on_spec<fit>, on_spec<calibrate>,
     evaluate_specs,    evaluate_specs, serve_editors,  merge,        on_plan<explain>,
-    on_plan<incident>, make_report,    make_labels,    watch_source, prove_class,
-    make_dossier,      annotate_set};
+    on_plan<incident>, make_report,    make_labels,    watch_source, on_plan<prove>,
+    on_plan<dossier>,  annotate_set};
 static_assert(std::size(kFunctions) == kCommandCount);
 
 int execute(Command command, int argc, char** argv, episodes::Sharing* merged = nullptr) {
     Call call(command);
     call.merged = merged;
     if (const auto status = parse(argc, argv, call)) return *status;
+    if (call.explains) call.values = check::Values::sourced;
     return kFunctions[static_cast<std::size_t>(command)](call);
 }
 

@@ -57,13 +57,9 @@ std::optional<Calibration> calibrate_model(const check::Model& model, const Requ
 /// are added to it.
 std::vector<std::string> inputs(const check::Model& model, const source::File& file,
                                 const Request& request, const calibrate::Request& calibration) {
-    std::vector<std::string> paths = merged_files(calibration.sharing);
-    for (const std::string& table : label_tables(calibration.reading)) paths.push_back(table);
-    for (const std::string& episode : calibration.episodes)
-        paths.push_back(data::trace_file(episode));
-    paths.push_back(file.path());
-    for (const std::string& path : model.dependencies)
-        if (path != request.check.thresholds_path) paths.push_back(path);
+    auto paths = files_read(model, file, calibration.episodes, calibration.reading);
+    std::erase(paths, request.check.thresholds_path);
+    for (const std::string& part : merged_files(calibration.sharing)) paths.push_back(part);
     return paths;
 }
 
@@ -88,10 +84,8 @@ data::StillRight still_as_read(const std::string& thresholds) {
 /// Returns the files that scores depend on, besides the episodes.
 std::vector<std::string> loaded(const check::Model& model, const source::File& file,
                                 const std::string& output, const episodes::ReadOptions& reading) {
-    std::vector<std::string> paths = label_tables(reading);
-    paths.push_back(file.path());
-    for (const std::string& path : model.dependencies)
-        if (path != output) paths.push_back(path);
+    auto paths = files_read(model, file, {}, reading);
+    std::erase(paths, output);
     return paths;
 }
 

@@ -118,6 +118,9 @@ std::optional<evaluate::Judgement> judge_as_it_is(const Compiled& compiled, cons
 
 // ---- shared -------------------------------------------------------------------------------------
 
+/// Allows that thresholds and fitted entries do not exist yet.
+check::Options without_results(check::Options options);
+
 /// Reads the file of the spec's thresholds; nothing where no threshold is calibrated.
 std::optional<thresholds::File> thresholds_of(const check::Model& model, const std::string& spec,
                                               const Request& request);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "data/files/file.hpp"
@@ -130,13 +129,7 @@ bool dossier(const source::File& spec, const Compiled& compiled, const Request& 
         sink.add(findings, "");
         return false;
     }
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) {
-        sink.report(
-            data::in_file({diag::Code::unwritable_output, error.message()}, folder.string()));
-        return false;
-    }
+    if (!make_folder(request.output, sink)) return false;
     Request header = request;
     header.output = (folder / (stem + ".hpp")).string();
     if (!emit(spec, header, sink)) return false;

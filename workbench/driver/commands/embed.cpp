@@ -150,15 +150,6 @@ bool write_references(const std::vector<std::string>& paths, OutputFiles& files,
     return true;
 }
 
-bool make_folder(const std::string& folder, diag::Sink& sink) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (!error) return true;
-    sink.report(data::in_file(
-        {Code::unwritable_output, fmt::format("cannot be made: {}", error.message())}, folder));
-    return false;
-}
-
 /// Assigns a recording to a shard by the content of its first and last file, so that neither names
 /// nor the order matter; one of many recordings in a file is assigned by its name.
 std::uint32_t shard_of(const embed::Recording& recording, std::uint32_t shards) {
@@ -265,11 +256,7 @@ bool embed(const source::File& file, const Request& request, diag::Sink& sink) {
 
 bool pipe_frames(const source::File& file, const Request& request, diag::Sink& sink) {
     // This reads the embeddings of the spec, and refuses those of another model or settings.
-    check::Options options = request.check;
-    options.allow_uncalibrated = true;
-    options.allow_uncalibrated_monitors = true;
-    options.allow_unfitted = true;
-    auto model = check::check(parse::parse(file, sink), file, options, sink);
+    auto model = check::check(parse::parse(file, sink), file, without_results(request.check), sink);
     if (!model || sink.refused()) return false;
 
     const std::string& name = request.embed.pipe;

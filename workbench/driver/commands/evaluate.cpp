@@ -28,12 +28,9 @@ struct Candidate {
 
 std::optional<Candidate> candidate(const SpecToJudge& spec, const Request& request, bool trains) {
     Candidate result{spec, {}, {}};
-    check::Options options = request.check;
+    check::Options options = trains ? without_results(request.check) : request.check;
     options.judged_lets = true;
     if (trains) {
-        options.allow_uncalibrated = true;
-        options.allow_uncalibrated_monitors = true;
-        options.allow_unfitted = true;
         result.untrained =
             check::check(parse::parse(spec.file, spec.sink), spec.file, options, spec.sink);
     } else {
@@ -46,13 +43,11 @@ std::optional<Candidate> candidate(const SpecToJudge& spec, const Request& reque
 std::vector<std::string> inputs(const std::vector<Candidate>& candidates,
                                 const std::vector<std::string>& episodes,
                                 const episodes::ReadOptions& reading) {
-    std::vector<std::string> paths = label_tables(reading);
+    std::vector<std::string> paths;
     for (const Candidate& one : candidates) {
-        const auto& loaded = one.model().dependencies;
-        paths.insert(paths.end(), loaded.begin(), loaded.end());
-        paths.push_back(one.spec.file.path());
+        const auto read = files_read(one.model(), one.spec.file, episodes, reading);
+        paths.insert(paths.end(), read.begin(), read.end());
     }
-    for (const std::string& episode : episodes) paths.push_back(data::trace_file(episode));
     return paths;
 }
 

@@ -71,12 +71,8 @@ bool suggest(const source::File& file, const check::Model& model, const check::O
 }  // namespace
 
 bool fit(const source::File& file, const Request& request, diag::Sink& sink) {
-    ast::Spec spec = parse::parse(file, sink);
-    check::Options options = request.check;
-    options.allow_uncalibrated = true;
-    options.allow_uncalibrated_monitors = true;
-    options.allow_unfitted = true;
-    const auto model = check::check(std::move(spec), file, options, sink);
+    const check::Options options = without_results(request.check);
+    const auto model = check::check(parse::parse(file, sink), file, options, sink);
     if (!model || sink.refused()) return false;
 
     auto asked = asked_of<fit::Request>(request);

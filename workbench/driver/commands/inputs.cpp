@@ -16,6 +16,13 @@
 
 namespace etlc::driver {
 
+check::Options without_results(check::Options options) {
+    options.allow_uncalibrated = true;
+    options.allow_uncalibrated_monitors = true;
+    options.allow_unfitted = true;
+    return options;
+}
+
 bool check_names(const std::vector<const check::Model*>& models,
                  const recordings::NamesInFile& names, diag::Sink& sink) {
     std::vector<std::string> known;

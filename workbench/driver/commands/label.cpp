@@ -20,9 +20,7 @@ namespace {
 /// Checks a spec that has no thresholds yet, with these fitted entries or without any.
 std::optional<check::Model> check_unlabelled(const source::File& file, const Request& request,
                                              const fitted::File* fitted, diag::Sink& sink) {
-    check::Options options = request.check;
-    options.allow_uncalibrated = true;
-    options.allow_uncalibrated_monitors = true;
+    check::Options options = without_results(request.check);
     options.allow_unfitted = fitted == nullptr;
     options.fitted = fitted;
     return check::check(parse::parse(file, sink), file, options, sink);

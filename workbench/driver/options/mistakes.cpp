@@ -95,9 +95,9 @@ std::string read_split(Call& call, const std::vector<std::string>& words) {
 }
 
 std::string read_recorder(Call& call, const std::vector<std::string>& words) {
-    std::string unused;
-    call.recorder = library::parse_recorder(words.front(), unused);
-    return "";
+    std::string why;
+    call.recorder = library::parse_recorder(words.front(), why);
+    return why.empty() ? "" : "--recorder: " + why;
 }
 
 std::string read_variants(Call& call, const std::vector<std::string>& words) {
@@ -122,8 +122,11 @@ std::string read_variants(Call& call, const std::vector<std::string>& words) {
 }
 
 std::string read_seconds(Call& call, const std::vector<std::string>& words) {
-    double seconds = 0;
-    std::from_chars(words.front().data(), words.front().data() + words.front().size(), seconds);
+    const std::string& word = words.front();
+    const auto seconds = data::parse_number(word);
+    if (!seconds || !std::isfinite(*seconds) || *seconds < 0)
+        return fmt::format("--at: found {}, expected a number of seconds from 0",
+                           data::in_quotes(word));
     call.explain.at = seconds;
     return "";
 }
@@ -159,12 +162,6 @@ std::string mistake_in_reason(const std::string& found) {
                        data::in_quotes(found), kLongest);
 }
 
-std::string mistake_in_recorder(const std::string& found) {
-    std::string why;
-    library::parse_recorder(found, why);
-    return why;
-}
-
 std::string mistake_in_namespace(const std::string& name) {
     bool is_outermost = true;
     for (std::size_t begin = 0; begin != std::string::npos; is_outermost = false) {
@@ -181,14 +178,6 @@ std::string mistake_in_namespace(const std::string& name) {
                                check::allowed_name(part, "monitors", is_outermost));
     }
     return "";
-}
-
-std::string mistake_in_seconds(const std::string& found) {
-    double number = 0;
-    const char* end = found.data() + found.size();
-    const auto [stop, error] = std::from_chars(found.data(), end, number);
-    if (error == std::errc() && stop == end && std::isfinite(number) && number >= 0) return "";
-    return fmt::format("found {}, expected a number of seconds from 0", data::in_quotes(found));
 }
 
 namespace {

@@ -20,16 +20,14 @@ std::string read_cameras(Call& call, const std::vector<std::string>& words);
 std::string read_shard(Call& call, const std::vector<std::string>& words);
 /// --split FROM:TO[:order]
 std::string read_split(Call& call, const std::vector<std::string>& words);
-/// --recorder BEFORE,AFTER,INCIDENTS, after mistake_in_recorder()
+/// --recorder BEFORE,AFTER,INCIDENTS: two numbers of steps or durations, and a number from 1 on
 std::string read_recorder(Call& call, const std::vector<std::string>& words);
 /// --variants cut,reversed
 std::string read_variants(Call& call, const std::vector<std::string>& words);
-/// --at SECONDS, after mistake_in_seconds()
+/// --at SECONDS, from 0
 std::string read_seconds(Call& call, const std::vector<std::string>& words);
 /// --suggest [PREDICATE...]
 std::string read_suggest(Call& call, const std::vector<std::string>& words);
-
-struct Call;
 
 /// "found 'bool', expected robustness or boolean"
 std::string mistake_in_word(const std::string& found, const std::vector<std::string>& expected);
@@ -37,12 +35,8 @@ std::string mistake_in_word(const std::string& found, const std::vector<std::str
 std::string mistake_in_number(const std::string& found, std::uint64_t least, std::uint64_t most);
 /// Expected: a reason in words on one line, since it is written into files.
 std::string mistake_in_reason(const std::string& found);
-/// Expected: BEFORE,AFTER,INCIDENTS: two numbers of steps or durations, and a number from 1 on.
-std::string mistake_in_recorder(const std::string& found);
 /// Expected: a or a::b without reserved names.
 std::string mistake_in_namespace(const std::string& name);
-/// Expected: seconds from 0.
-std::string mistake_in_seconds(const std::string& found);
 
 /// Says which word of a call is empty. An option would take the next word for its value.
 std::string mistake_in_words(int argc, char** argv);

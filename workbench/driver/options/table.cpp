@@ -69,14 +69,7 @@ Takes label_by() {
     return takes;
 }
 
-Takes spec() {
-    return form("SPEC.etl", [](Call& call, const std::vector<std::string>& words) {
-        call.specs = words;
-        return std::string();
-    });
-}
-
-std::vector<Option> make_options() {
+std::vector<Option> shared_options() {
     return {
         {kReadSpec | merge | lsp, "-h,--help", Takes(), "Print this help message and exit"},
         {compile, "--version", Takes(), "Display program version information and exit"},
@@ -85,9 +78,10 @@ std::vector<Option> make_options() {
         {incident, "file", file(in(&Call::incident, &Call::Incident::file)),
          "file written by write_incident()", kRequired},
         {merge, "parts", texts("PART...", in(&Call::parts)), "the parts, in any order", kRequired},
-        {kExecute | kLearn | kClass | embed | report | label | watch | annotate, "spec", spec(),
-         "the spec, a .etl file", kRequired},
-        {incident, "--spec", spec(), "the spec, a .etl file", kRequired},
+        {kExecute | kLearn | kClass | embed | report | label | watch | annotate, "spec",
+         only("SPEC.etl", in(&Call::specs)), "the spec, a .etl file", kRequired},
+        {incident, "--spec", only("SPEC.etl", in(&Call::specs)), "the spec, a .etl file",
+         kRequired},
         {kEvaluate, "spec", texts("SPEC.etl", in(&Call::specs)),
          "the specs, .etl files; several are compared side by side", kRequired},
 
@@ -141,7 +135,7 @@ std::vector<Option> make_options() {
         {kClass, "--retargetable", retargetable(),
          "store targets, thresholds, projections and numbers in STEM.params.bin beside STEM.hpp; "
          "the class can load another such file between steps, made by --emit params"},
-        {kClass | watch, "--recorder", checked(form("B,A,N", read_recorder), mistake_in_recorder),
+        {kClass | watch, "--recorder", form("B,A,N", read_recorder),
          "record the steps around each alarm: BEFORE,AFTER,INCIDENTS, such as 2s,1s,4 or 40,20,4; "
          "etlc incident prints the records"},
         {kClass, "--lets", lets(),
@@ -205,22 +199,7 @@ std::vector<Option> make_options() {
     };
 }
 
-}  // namespace
-
-const std::vector<Option>& options() {
-    static const std::vector<Option> all = [] {
-        std::vector<Option> rows = make_options();
-        for (Option& row : own_options()) rows.push_back(std::move(row));
-        return rows;
-    }();
-    return all;
-}
-
 // The options of single commands, and of few.
-
-namespace {
-
-using enum Command;
 
 constexpr Commands kEncode = Commands(embed) | watch;
 
@@ -230,25 +209,7 @@ Takes suggest() {
     return takes;
 }
 
-Takes encoder_timeout() {
-    return number<int>(
-        in(&Call::embed, &Call::Embed::running, &embed::Running::max_silence_seconds), 1, 86400,
-        std::to_string(embed::Running().max_silence_seconds));
-}
-
-Takes label_table() {
-    return form("FILE", [](Call& call, const Takes::Words& words) {
-        return call.labels.tables = words, std::string();
-    });
-}
-
 using annotate::Wanted;
-
-Takes dataset() {
-    return form("DATASET", [](Call& call, const Takes::Words& words) {
-        return call.data = words, std::string();
-    });
-}
 
 Takes undecided() {
     Takes takes = choice<bool>({{"false", true}}, in(&Call::annotate, &Call::Annotate::wanted,
@@ -259,20 +220,6 @@ Takes undecided() {
 
 Takes folds() {
     return number<std::uint32_t>(in(&Call::folds), 2, 1000);
-}
-
-Takes part() {
-    return file(in(&Call::shard, &ShardRequest::part));
-}
-
-Takes frames() {
-    return text("ARRAY|FOLDER|PATTERN",
-                in(&Call::report, &Call::Report::frames, &report::FramesOption::text));
-}
-
-Takes page_size() {
-    return number<std::uint64_t>(in(&Call::report, &Call::Report::megabytes), 1, 1000,
-                                 std::to_string(report::kUsualMegabytes), "MB");
 }
 
 /// --page [PORT]
@@ -300,7 +247,7 @@ Takes checked_trace() {
     });
 }
 
-std::vector<Option> make_own_options() {
+std::vector<Option> own_options() {
     return {
         // etlc run
         {run, "-o,--output", file(in(&Call::output), "-"),
@@ -331,8 +278,8 @@ std::vector<Option> make_own_options() {
          "explain the verdict after this step (default: the step of the first alarm, else of the "
          "first final verdict, else the last); sliding monitors also have the steps after the "
          "trace that etlc run --finish reports"},
-        {explain, "--at", checked(form("SECONDS", read_seconds), mistake_in_seconds),
-         "the step nearest to this time in seconds", Option::Need::none, "--step"},
+        {explain, "--at", form("SECONDS", read_seconds), "the step nearest to this time in seconds",
+         Option::Need::none, "--step"},
         {explain, "--format",
          choice<ExplanationFormat>(
              {{"text", ExplanationFormat::text}, {"json", ExplanationFormat::json}},
@@ -370,7 +317,9 @@ std::vector<Option> make_own_options() {
          "command that encodes frames on its standard input to embeddings on its standard output "
          "(docs/recordings.md)",
          Option::Need::none, "--onnxruntime"},
-        {kEncode, "--encoder-timeout", encoder_timeout(),
+        {kEncode, "--encoder-timeout",
+         number<int>(in(&Call::embed, &Call::Embed::running, &embed::Running::max_silence_seconds),
+                     1, 86400, std::to_string(embed::Running().max_silence_seconds)),
          "seconds after which an encoder that neither reads nor writes is stopped"},
 
         // etlc fit
@@ -385,7 +334,8 @@ std::vector<Option> make_own_options() {
          Option::Need::none, "", "--suggest"},
 
         // etlc annotate
-        {annotate, "--data", dataset(), "the data set, a folder in LeRobot's format", kRequired},
+        {annotate, "--data", only("DATASET", in(&Call::data)),
+         "the data set, a folder in LeRobot's format", kRequired},
         {annotate, "-o,--output", text("FOLDER", in(&Call::output)),
          "the annotated copy, a new folder; videos become hard links where possible"},
         {annotate, "--in-place", flag(in(&Call::annotate, &Call::Annotate::in_place)),
@@ -448,19 +398,24 @@ std::vector<Option> make_own_options() {
         {Commands(calibrate) | evaluate, "--shard", form("I/N", read_shard),
          "read only this shard of the episodes, and write a part of the result; etlc merge "
          "combines all parts"},
-        {Commands(calibrate) | evaluate, "--part", part(), "with --shard: the part to write"},
+        {Commands(calibrate) | evaluate, "--part", file(in(&Call::shard, &ShardRequest::part)),
+         "with --shard: the part to write"},
         {merge, "-o,--output", file(in(&Call::output)),
          "where to write the result, thresholds or JSON (default: the output of the call)"},
 
         // etlc report
-        {Commands(report) | label, "--frames", frames(),
+        {Commands(report) | label, "--frames",
+         text("ARRAY|FOLDER|PATTERN",
+              in(&Call::report, &Call::Report::frames, &report::FramesOption::text)),
          "camera frames: an array of the episodes (T x H x W x 3 uint8, or T x H x W of grey), the "
          "folder of a data set, or a pattern of PNG or JPEG files, one a step, or of videos, in "
          "which {episode} stands for the episode's name: 'camera/{episode}/*.png'"},
         {Commands(report) | label, "--camera",
          text("NAME", in(&Call::report, &Call::Report::frames, &report::FramesOption::camera)),
          "the camera of a data set whose folder --frames names, or that holds the episodes"},
-        {report, "--size", page_size(),
+        {report, "--size",
+         number<std::uint64_t>(in(&Call::report, &Call::Report::megabytes), 1, 1000,
+                               std::to_string(report::kUsualMegabytes), "MB"),
          "size of the page; what does not fit is left out, starting with the best episodes, and "
          "the page says so"},
         {report, "--no-truths", flag(in(&Call::report, &Call::Report::without_truths)),
@@ -468,7 +423,7 @@ std::vector<Option> make_own_options() {
         {report, "-o,--output", file(in(&Call::output)), "the page, an .html file", kRequired},
 
         // etlc label
-        {label, "--labels", label_table(),
+        {label, "--labels", only("FILE", in(&Call::labels, &episodes::LabelSources::tables)),
          "table of labels to write, a .csv file (default: labels.csv beside the episodes)"},
         {label, "--port", number<std::uint32_t>(in(&Call::label, &Call::Label::port), 1, 65535),
          "port of the page (default: any free one)"},
@@ -512,8 +467,13 @@ std::vector<Option> make_own_options() {
 
 }  // namespace
 
-std::vector<Option> own_options() {
-    return make_own_options();
+const std::vector<Option>& options() {
+    static const std::vector<Option> all = [] {
+        std::vector<Option> rows = shared_options();
+        for (Option& row : own_options()) rows.push_back(std::move(row));
+        return rows;
+    }();
+    return all;
 }
 
 }  // namespace etlc::driver

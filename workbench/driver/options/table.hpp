@@ -99,16 +99,26 @@ Takes file(At at, std::string usual = "") {
     return text("FILE", at, std::move(usual));
 }
 
+/// A text that is the only one in a list.
 template <class At>
-Takes texts(std::string value, At at) {
+Takes only(std::string value, At at) {
     Takes takes;
     takes.value = std::move(value);
-    takes.repeats = true;
     takes.set = [at](Call& call, const Takes::Words& words) {
         at(call) = words;
         return std::string();
     };
     return takes;
+}
+
+inline Takes several(Takes takes) {
+    takes.repeats = true;
+    return takes;
+}
+
+template <class At>
+Takes texts(std::string value, At at) {
+    return several(only(std::move(value), at));
 }
 
 /// One of these words, stored as text.
@@ -182,11 +192,6 @@ inline Takes checked(Takes takes, std::string (*check)(const std::string&)) {
     return takes;
 }
 
-inline Takes several(Takes takes) {
-    takes.repeats = true;
-    return takes;
-}
-
 inline Takes retargetable() {
     return flag(in(&Call::check, &check::Options::retargetable));
 }
@@ -194,8 +199,5 @@ inline Takes retargetable() {
 inline Takes lets() {
     return flag(in(&Call::check, &check::Options::lets));
 }
-
-/// The options of single commands.
-std::vector<Option> own_options();
 
 }  // namespace etlc::driver
