@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <deque>
 #include <fstream>
 #include <map>
 #include <span>
@@ -19,12 +18,6 @@ using recordings::frames::kRefused;
 
 /// Skipping fewer pictures than these is slower than decoding them.
 constexpr std::int64_t kFewPictures = 50;
-
-std::string words_of(int error) {
-    char words[AV_ERROR_MAX_STRING_SIZE] = "";
-    av_strerror(error, words, sizeof words);
-    return words;
-}
 
 /// Returns whether every packet of such a video is one picture that is shown.
 bool is_shown_by_packets(AVCodecID codec) {
@@ -134,6 +127,31 @@ std::int64_t promised_by_tag(const AVStream* stream) {
 
 }  // namespace
 
+std::string words_of(int error) {
+    char words[AV_ERROR_MAX_STRING_SIZE] = "";
+    av_strerror(error, words, sizeof words);
+    return words;
+}
+
+int open_codec(AVFormatContext* format, const std::string& holds, int threads, Codec& codec) {
+    const AVCodec* found = nullptr;
+    const int stream = av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, &found, 0);
+    if (stream < 0 || found == nullptr) refuse(kRefused, holds + " no video that can be decoded");
+    codec.reset(avcodec_alloc_context3(found));
+    avcodec_parameters_to_context(codec.get(), format->streams[stream]->codecpar);
+    codec->thread_type = threads;
+    codec->thread_count = 0;
+    codec->pkt_timebase = format->streams[stream]->time_base;
+    const int error = avcodec_open2(codec.get(), found, nullptr);
+    if (error < 0) refuse(kRefused, "cannot be decoded: " + words_of(error));
+    return stream;
+}
+
+bool is_whole(int error, const AVFrame& picture) {
+    return error == 0 && (picture.flags & AV_FRAME_FLAG_CORRUPT) == 0 &&
+           picture.decode_error_flags == 0;
+}
+
 bool may_begin(const AVPacket& packet, const AVCodecParameters& codec) {
     return codec.codec_id == AV_CODEC_ID_H264 || content_of(packet, codec).is_start;
 }
@@ -152,17 +170,9 @@ void Decoder::open(const std::string& path) {
     format_.reset(format);
     error = avformat_find_stream_info(format, nullptr);
     if (error < 0) refuse(kRefused, "is no video, or a damaged one: " + words_of(error));
-    const AVCodec* codec = nullptr;
-    stream_ = av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, &codec, 0);
-    if (stream_ < 0 || codec == nullptr) refuse(kRefused, "holds no video that can be decoded");
+    stream_ = open_codec(format, "holds", FF_THREAD_FRAME | FF_THREAD_SLICE, codec_);
     for (unsigned i = 0; i < format->nb_streams; ++i)
         if (static_cast<int>(i) != stream_) format->streams[i]->discard = AVDISCARD_ALL;
-    codec_.reset(avcodec_alloc_context3(codec));
-    avcodec_parameters_to_context(codec_.get(), stream()->codecpar);
-    codec_->thread_count = 0;
-    codec_->pkt_timebase = stream()->time_base;
-    error = avcodec_open2(codec_.get(), codec, nullptr);
-    if (error < 0) refuse(kRefused, "cannot be decoded: " + words_of(error));
 }
 
 bool Decoder::next(AVFrame* picture) {
@@ -172,11 +182,10 @@ bool Decoder::next(AVFrame* picture) {
             send();
             continue;
         }
-        const bool is_whole = error == 0 && (picture->flags & AV_FRAME_FLAG_CORRUPT) == 0 &&
-                              picture->decode_error_flags == 0;
+        const bool whole = is_whole(error, *picture);
         if (has_jumped_) {
             const auto at = static_cast<std::size_t>(shown_);
-            const bool has_time = is_whole && at < times_.size();
+            const bool has_time = whole && at < times_.size();
             // A picture shown before the key frame may need earlier packets.
             if (has_time && picture->best_effort_timestamp < times_[at]) continue;
             const bool is_expected = at < times_.size()
@@ -189,7 +198,7 @@ bool Decoder::next(AVFrame* picture) {
         }
         if (error == AVERROR_EOF) return false;
         if (error != 0) damaged(error);
-        if (!is_whole)
+        if (!whole)
             refuse(kRefused,
                    "is damaged: frame " + std::to_string(shown_) + " cannot be decoded whole");
         ++shown_;

@@ -36,6 +36,15 @@ struct FreeScaler {
 };
 using Scaler = std::unique_ptr<SwsContext, FreeScaler>;
 
+/// Describes an error of FFmpeg.
+std::string words_of(int error);
+
+/// Opens the decoder of the video in a source that `holds` or `sends` one. Returns its stream.
+int open_codec(AVFormatContext* format, const std::string& holds, int threads, Codec& codec);
+
+/// Returns whether a picture was decoded without a fault. `error`: of avcodec_receive_frame().
+bool is_whole(int error, const AVFrame& picture);
+
 /// Returns whether decoding may begin with a packet. Of packets ahead of such a one, decoders make
 /// pictures with grey in place of what they refer to; that of H.264 leaves these out itself.
 bool may_begin(const AVPacket& packet, const AVCodecParameters& codec);

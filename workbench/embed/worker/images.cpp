@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -256,7 +255,6 @@ void send_given_images() {
     }
 }
 
-/// Writes a frame as PNG.
 void write_png() {
     char head[8];
     if (!read_in(head, sizeof head)) refuse(kWrongCall, "there is no frame on standard input");

@@ -24,12 +24,6 @@ constexpr const char* kProtocols =
 /// Damaged packets in a row, after which the source is given up.
 constexpr int kMostDamaged = 500;
 
-std::string words_of_error(int error) {
-    char words[AV_ERROR_MAX_STRING_SIZE] = "";
-    av_strerror(error, words, sizeof words);
-    return words;
-}
-
 bool is_address(std::string_view source) {
     return source.find("://") != std::string_view::npos;
 }
@@ -72,12 +66,13 @@ public:
         int error = avformat_open_input(&format, place.c_str(), camera ? camera_format() : nullptr,
                                         &options);
         av_dict_free(&options);
-        if (error < 0) refuse(kRefused, "cannot be opened as video: " + words_of_error(error));
+        if (error < 0) refuse(kRefused, "cannot be opened as video: " + words_of(error));
         format_.reset(format);
         format->max_analyze_duration = AV_TIME_BASE / 2;
         error = avformat_find_stream_info(format, nullptr);
-        if (error < 0) refuse(kRefused, "sends no video: " + words_of_error(error));
-        open_codec();
+        if (error < 0) refuse(kRefused, "sends no video: " + words_of(error));
+        // Threads that each decode a picture would hold several of them back.
+        stream_ = open_codec(format, "sends", FF_THREAD_SLICE, codec_);
     }
 
     const AVStream* stream() const { return format_->streams[stream_]; }
@@ -86,9 +81,7 @@ public:
     bool next(AVFrame* picture) {
         for (;;) {
             const int error = avcodec_receive_frame(codec_.get(), picture);
-            const bool is_whole = error == 0 && (picture->flags & AV_FRAME_FLAG_CORRUPT) == 0 &&
-                                  picture->decode_error_flags == 0;
-            if (is_whole) return true;
+            if (is_whole(error, *picture)) return true;
             if (error == AVERROR_EOF) return false;
             if (error != AVERROR(EAGAIN)) note_damage(error);
             if (error == AVERROR(EAGAIN)) send_packet();
@@ -96,19 +89,6 @@ public:
     }
 
 private:
-    void open_codec() {
-        const AVCodec* codec = nullptr;
-        stream_ = av_find_best_stream(format_.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &codec, 0);
-        if (stream_ < 0 || codec == nullptr) refuse(kRefused, "sends no video that can be decoded");
-        codec_.reset(avcodec_alloc_context3(codec));
-        avcodec_parameters_to_context(codec_.get(), stream()->codecpar);
-        // Threads that each decode a picture would hold several of them back.
-        codec_->thread_type = FF_THREAD_SLICE;
-        codec_->thread_count = 0;
-        const int error = avcodec_open2(codec_.get(), codec, nullptr);
-        if (error < 0) refuse(kRefused, "cannot be decoded: " + words_of_error(error));
-    }
-
     void send_packet() {
         const int error = av_read_frame(format_.get(), packet_.get());
         if (error == AVERROR_EOF) {
@@ -123,7 +103,7 @@ private:
             note_damage(error);
             return;
         }
-        if (error < 0) refuse(kRefused, "has stopped: " + words_of_error(error));
+        if (error < 0) refuse(kRefused, "has stopped: " + words_of(error));
         const bool is_ours = packet_->stream_index == stream_;
         if (is_ours && !has_begun_) has_begun_ = may_begin(*packet_, *stream()->codecpar);
         if (is_ours && has_begun_) {
@@ -138,7 +118,7 @@ private:
 
     void note_damage(int error) {
         if (++damaged_ > kMostDamaged)
-            refuse(kRefused, "sends nothing that can be decoded: " + words_of_error(error));
+            refuse(kRefused, "sends nothing that can be decoded: " + words_of(error));
     }
 
     Format format_;

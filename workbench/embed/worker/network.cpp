@@ -80,7 +80,6 @@ struct Network::Parts {
         });
     }
 
-    /// Runs the network; a failure names the node.
     [[noreturn]] void refuse_for(const ort::Status& status, const std::string& doing) const {
         if (ort::error_code(&status) == ort::kInvalidProtobuf)
             refuse(kRefused, "is no ONNX model, or a damaged one");

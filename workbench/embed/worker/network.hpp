@@ -4,8 +4,6 @@
 // process with a line that names the node, where that is known.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>

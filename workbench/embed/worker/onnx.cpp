@@ -129,7 +129,6 @@ Value value_of(std::string_view bytes) {
     return value;
 }
 
-/// Returns the text of a field.
 std::string_view text_in(std::string_view bytes, std::uint64_t field) {
     std::string_view text;
     for (Message message(bytes); message.next();)

@@ -11,6 +11,7 @@ extern "C" {
 #include <cstdio>
 #include <thread>
 
+#include "embed/worker/prepare.hpp"
 #include "embed/worker/worker.hpp"
 #include "recordings/frames/protocol.hpp"
 
@@ -22,20 +23,6 @@ using namespace recordings::frames;
 
 std::string size_text(int width, int height) {
     return std::to_string(width) + " x " + std::to_string(height);
-}
-
-/// Turns a frame clockwise by a quarter; swaps height and width.
-void turn(std::vector<std::uint8_t>& rgb, int& height, int& width) {
-    std::vector<std::uint8_t> turned(rgb.size());
-    for (int row = 0; row < height; ++row)
-        for (int column = 0; column < width; ++column) {
-            const auto from = 3 * (std::size_t(row) * std::size_t(width) + std::size_t(column));
-            const auto to =
-                3 * (std::size_t(column) * std::size_t(height) + std::size_t(height - 1 - row));
-            std::copy_n(rgb.begin() + std::ptrdiff_t(from), 3, turned.begin() + std::ptrdiff_t(to));
-        }
-    rgb.swap(turned);
-    std::swap(height, width);
 }
 
 }  // namespace
@@ -77,6 +64,9 @@ void Converter::begin(const AVFrame& picture) {
     const AVPixFmtDescriptor* const pixels =
         av_pix_fmt_desc_get(static_cast<AVPixelFormat>(format_));
     const bool half_rows = pixels != nullptr && pixels->log2_chroma_h == 1;
+    const auto set = [this](const char* name, int value) {
+        av_opt_set_int(scaler_.get(), name, value, 0);
+    };
     set("srcw", width_);
     set("srch", height_);
     set("src_format", format_);
@@ -88,10 +78,6 @@ void Converter::begin(const AVFrame& picture) {
     if (sws_init_context(scaler_.get(), nullptr, nullptr) < 0)
         refuse(kRefused, "has pixels that cannot be made red, green and blue");
     set_colours(picture);
-}
-
-void Converter::set(const char* name, int value) {
-    av_opt_set_int(scaler_.get(), name, value, 0);
 }
 
 void Converter::set_colours(const AVFrame& picture) {
@@ -121,15 +107,14 @@ int quarter_turns(const AVStream* stream) {
 
 void send(const AVFrame& picture, Converter& converter, int turns, std::int64_t frame) {
     const std::vector<std::uint8_t>& rgb = converter.rgb(picture, frame);
-    int height = picture.height;
-    int width = picture.width;
-    if (turns == 0) {
-        write_frame(std::uint32_t(height), std::uint32_t(width), rgb.data());
-        return;
-    }
-    std::vector<std::uint8_t> turned = rgb;
-    for (int i = 0; i < turns; ++i) turn(turned, height, width);
-    write_frame(std::uint32_t(height), std::uint32_t(width), turned.data());
+    if (turns == 0)
+        return write_frame(std::uint32_t(picture.height), std::uint32_t(picture.width), rgb.data());
+    Frame decoded(picture.height, picture.width);
+    decoded.rgb = rgb;
+    const Frame upright = turned(decoded, {.swaps = turns % 2 == 1,
+                                           .from_bottom = turns == 1 || turns == 2,
+                                           .from_right = turns >= 2});
+    write_frame(std::uint32_t(upright.height), std::uint32_t(upright.width), upright.rgb.data());
 }
 
 namespace {

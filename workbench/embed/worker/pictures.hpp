@@ -23,7 +23,6 @@ public:
 
 private:
     void begin(const AVFrame& picture);
-    void set(const char* name, int value);
     void set_colours(const AVFrame& picture);
 
     Scaler scaler_;

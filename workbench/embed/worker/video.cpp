@@ -87,7 +87,6 @@ std::string why_cut(const std::string& path) {
     return why_cut_matroska(file, length);
 }
 
-/// The frames that are wanted.
 struct Choice {
     std::vector<std::int64_t> only;
     std::int64_t first = 0;
