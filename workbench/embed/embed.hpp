@@ -46,7 +46,6 @@ std::optional<embedded::File> describe_encoders(check::Model& model, Request& re
 bool embed_targets(const check::Model& model, const Request& request, embedded::File& file,
                    diag::Sink& sink);
 
-/// Returns the path of the episode of a recording.
 std::string episode_path(const std::string& folder, const Recording& recording);
 
 /// Makes an episode of each recording, with the encoded inputs and those that it has columns of.

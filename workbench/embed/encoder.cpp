@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "artifacts/embedded.hpp"
-#include "data/text/text.hpp"
+#include "data/files/file.hpp"
 #include "recordings/frames/protocol.hpp"
 
 namespace etlc::embed {
@@ -43,7 +43,6 @@ std::vector<std::string> network_arguments(const check::Encoder& encoder,
     return arguments;
 }
 
-/// The program that encodes.
 struct Call {
     std::string program;
     std::vector<std::string> arguments;
@@ -67,6 +66,12 @@ Failure not_run(const Running& running) {
 }
 
 }  // namespace
+
+diag::Diagnostic of_encoder(const Failure& failure, const check::Model& model,
+                            const check::Encoder& encoder) {
+    return data::in_file(failure, data::beside(model.file.path(), encoder.model))
+        .note(encoder.span, fmt::format("'{}' is declared here", encoder.name));
+}
 
 std::optional<Failure> settle(Running& running) {
     if (!running.command.empty()) {
@@ -115,13 +120,14 @@ diag::Result<std::unique_ptr<Encoder>> Encoder::start(const check::Encoder& enco
 }
 
 std::optional<Trouble> Encoder::add(recordings::FrameSource& frames, const std::string& name,
-                                    Done done) {
+                                    Done done, const std::function<void()>& passed) {
     jobs_.push_back({name, 0, false, {}, std::move(done)});
     recordings::Frame frame;
     for (;;) {
         const auto more = frames.next(frame);
         if (!more) return Trouble{more.failure(), false, jobs_.back().frames};
         if (!*more) break;
+        passed();
         if (auto failure = pass(frame)) return Trouble{std::move(*failure)};
         if (auto failure = take(false)) return Trouble{std::move(*failure)};
     }

@@ -34,6 +34,10 @@ struct Trouble {
     std::uint64_t frame = 0;  ///< the frame, where the frames are at fault
 };
 
+/// Makes a diagnostic about an encoder, at its model and its declaration.
+diag::Diagnostic of_encoder(const diag::Failure& failure, const check::Model& model,
+                            const check::Encoder& encoder);
+
 /// Finds the library that runs networks, unless a command encodes.
 std::optional<diag::Failure> settle(Running& running);
 
@@ -53,8 +57,10 @@ public:
                                                         const Running& running);
 
     /// Passes it all frames of a source. `done` is called when their embeddings are complete, at
-    /// the latest by `finish`; messages call the source `name`.
-    std::optional<Trouble> add(recordings::FrameSource& frames, const std::string& name, Done done);
+    /// the latest by `finish`, `passed` for each frame; messages call the source `name`.
+    std::optional<Trouble> add(
+        recordings::FrameSource& frames, const std::string& name, Done done,
+        const std::function<void()>& passed = [] {});
     /// Passes it one frame. `done` is called by a later `take`. Fails where it has written more
     /// embeddings than it got frames: none may belong to its frame.
     std::optional<diag::Failure> add(const recordings::Frame& frame, const std::string& name,

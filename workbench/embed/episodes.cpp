@@ -1,11 +1,8 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <iterator>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -28,30 +25,12 @@ using check::kNone;
 using diag::Code;
 using diag::Failure;
 
-/// Returns the inputs that an encoder makes.
 std::vector<Index> encoded_inputs(const check::Model& model) {
     std::vector<Index> found;
     for (Index i = 0; i < model.inputs.size(); ++i)
         if (model.inputs[i].encoder != kNone) found.push_back(i);
     return found;
 }
-
-/// Frames of another source. `passed` is called for each.
-class CountedFrames final : public recordings::FrameSource {
-public:
-    CountedFrames(recordings::FrameSource& frames, std::function<void()> passed)
-        : frames_(frames), passed_(std::move(passed)) {}
-
-    diag::Result<bool> next(recordings::Frame& frame) override {
-        auto more = frames_.next(frame);
-        if (more && *more) passed_();
-        return more;
-    }
-
-private:
-    recordings::FrameSource& frames_;
-    std::function<void()> passed_;
-};
 
 /// The embeddings of an input, and what they were made from.
 struct Made {
@@ -171,15 +150,14 @@ private:
         if (encoder == nullptr) return false;
         auto frames = from.open(input.name);
         if (!frames) return stop(frames.failure(), from.path);
-        CountedFrames counted(**frames, [this] {
+        is_encoded_[recording] = true;
+        const auto done = [this, recording, index, origin](auto rows) {
+            take(recording, index, {origin, std::move(rows)});
+        };
+        const auto trouble = encoder->add(**frames, from.path, done, [this] {
             ++progress_.frames;
             show();
         });
-        is_encoded_[recording] = true;
-        const auto trouble =
-            encoder->add(counted, from.path, [this, recording, index, origin](auto rows) {
-                take(recording, index, {origin, std::move(rows)});
-            });
         if (!trouble) return !has_failed();
         if (trouble->of_encoder) {
             broken_ = input.encoder;

@@ -6,10 +6,8 @@
 #include <filesystem>
 #include <limits>
 #include <set>
-#include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "artifacts/embedded.hpp"
 #include "data/arrays/array.hpp"
@@ -19,9 +17,7 @@
 #include "data/traces/csv.hpp"
 #include "recordings/datasets/dataset.hpp"
 #include "recordings/datasets/trace.hpp"
-#include "recordings/frames/frames.hpp"
 #include "recordings/hdf5/hdf5.hpp"
-#include "recordings/open.hpp"
 
 namespace etlc::embed {
 
@@ -31,7 +27,6 @@ namespace fs = std::filesystem;
 using diag::Code;
 using diag::Failure;
 
-/// Finds the camera of each input.
 diag::Result<std::map<std::string, std::string>> cameras_of(const recordings::Dataset& set,
                                                             const Search& search) {
     std::map<std::string, std::string> cameras;

@@ -28,7 +28,6 @@ struct Array {
     bool is_vector = false;     ///< shape steps x width, else one number a step
 };
 
-/// The recordings to look for.
 struct Search {
     std::vector<std::string> arguments;
     std::string

@@ -33,48 +33,46 @@ public:
           sink_(sink) {}
 
     bool embed() {
-        const std::unique_ptr<Encoder> running = start();
-        if (!running) return false;
+        auto started = Encoder::start(encoder_, data::beside(model_.file.path(), encoder_.model),
+                                      request_.running);
+        if (!started) return fail(started.failure());
+        Encoder* const running = started->get();
         for (const Encoded& encoded : model_.encoded)
             if (encoded.encoder == index_ && !add(*running, encoded)) return false;
         embedded::Encoder& made = file_.encoders[encoder_.name];
-        std::vector<float> again;
-        const auto keep = [&](std::vector<float> rows) { made.references = std::move(rows); };
-        const auto compare = [&](std::vector<float> row) { again = std::move(row); };
-        auto trouble = running->add(*recordings::reference_frames(), "reference frames", keep);
-        if (!trouble)
-            if (auto failure =
-                    running->add(recordings::reference_frame(0), "reference frames", compare))
-                trouble = Trouble{std::move(*failure)};
-        if (!trouble) trouble = running->finish();
-        if (!trouble) trouble = in_two_ways(made.references, again);
-        if (trouble) return report(*trouble, {}, {});
+        std::vector<float> rows;
+        const auto keep = [&](const std::vector<float>& row) {
+            rows.insert(rows.end(), row.begin(), row.end());
+        };
+        for (std::uint32_t i = 0; i <= embedded::kReferenceFrames; ++i) {  // the first one twice
+            const std::uint32_t frame = i % embedded::kReferenceFrames;
+            if (const auto failure = running->add(recordings::reference_frame(frame),
+                                                  fmt::format("reference frame {}", frame), keep))
+                return fail(*failure);
+        }
+        if (const auto trouble = running->finish()) return fail(trouble->failure);
         made.dimension = running->dimension();
+        const std::size_t again = rows.size() - made.dimension;
+        if (const auto failure = in_two_ways(rows.data(), rows.data() + again, made.dimension))
+            return fail(*failure);
+        rows.resize(again);
+        made.references = std::move(rows);
         return true;
     }
 
 private:
-    std::unique_ptr<Encoder> start() {
-        auto running = Encoder::start(encoder_, data::beside(model_.file.path(), encoder_.model),
-                                      request_.running);
-        if (running) return std::move(*running);
-        report({running.failure()}, {}, {});
-        return nullptr;
-    }
-
     /// Compares the embeddings of a frame that was encoded twice.
-    std::optional<Trouble> in_two_ways(const std::vector<float>& first,
-                                       const std::vector<float>& again) const {
-        const double difference =
-            embedded::relative_difference(again.data(), first.data(), again.size());
+    std::optional<diag::Failure> in_two_ways(const float* first, const float* again,
+                                             std::size_t elements) const {
+        const double difference = embedded::relative_difference(again, first, elements);
         if (difference <= embedded::kSameEncoder) return std::nullopt;
-        return Trouble{
-            {Code::encoder_failed,
-             fmt::format("'{}' gives another embedding of the same frame the second time, at a "
-                         "distance of {:.2g} times its length, expected at most {:g}: probably "
-                         "it is in training mode, where dropout draws random numbers; export it "
-                         "after model.eval()",
-                         encoder_.name, difference, embedded::kSameEncoder)}};
+        return diag::Failure{
+            Code::encoder_failed,
+            fmt::format("'{}' gives another embedding of the same frame the second time, at a "
+                        "distance of {:.2g} times its length, expected at most {:g}: probably "
+                        "it is in training mode, where dropout draws random numbers; export it "
+                        "after model.eval()",
+                        encoder_.name, difference, embedded::kSameEncoder)};
     }
 
     bool add(Encoder& running, const Encoded& encoded) {
@@ -98,9 +96,11 @@ private:
         const auto done = [&entry, &encoded, wanted](const std::vector<float>& rows) {
             fill(entry, encoded, {wanted.begin(), wanted.end()}, rows);
         };
-        if (auto trouble = running.add(**frames, encoded.path, done))
-            return report(*trouble, paths, encoded);
-        return true;
+        const auto trouble = running.add(**frames, encoded.path, done);
+        if (!trouble) return true;
+        if (trouble->of_encoder) return fail(trouble->failure);
+        const auto last = paths.size() - 1;
+        return fail(trouble->failure, paths[std::min<std::size_t>(trouble->frame, last)], encoded);
     }
 
     /// Makes a row for each image, or for each frame in the order of the spec.
@@ -125,15 +125,8 @@ private:
         return false;
     }
 
-    bool report(const Trouble& trouble, const std::vector<std::string>& paths,
-                const std::optional<Encoded>& encoded) {
-        if (!trouble.of_encoder && encoded)
-            return fail(trouble.failure,
-                        paths[std::min<std::size_t>(trouble.frame, paths.size() - 1)], *encoded);
-        sink_
-            .report(
-                data::in_file(trouble.failure, data::beside(model_.file.path(), encoder_.model)))
-            .note(encoder_.span, fmt::format("'{}' is declared here", encoder_.name));
+    bool fail(const diag::Failure& failure) {
+        sink_.report(of_encoder(failure, model_, encoder_));
         return false;
     }
 
@@ -153,20 +146,15 @@ std::optional<embedded::File> describe_encoders(check::Model& model, Request& re
     file.spec = model.name;
     file.etlc = request.version;
     for (check::Encoder& encoder : model.encoders) {
-        const std::string path = data::beside(model.file.path(), encoder.model);
-        const auto fail = [&](const diag::Failure& failure, const std::string& place) {
-            sink.report(data::in_file(failure, place))
-                .note(encoder.span, fmt::format("'{}' is declared here", encoder.name));
-        };
         std::string place;
         auto described = check::describe(encoder, model.file.path(), place);
         if (!described) {
-            fail(described.failure(), place);
+            sink.report(of_encoder(described.failure(), model, encoder)).file = place;
             continue;
         }
         if (request.running.kind.empty())
             if (const auto failure = settle(request.running)) {
-                fail(*failure, path);
+                sink.report(of_encoder(*failure, model, encoder));
                 return std::nullopt;
             }
         described->kind = request.running.kind;

@@ -11,7 +11,6 @@
 #include "artifacts/embedded.hpp"
 #include "check/encoders/encoders.hpp"
 #include "data/files/file.hpp"
-#include "recordings/frames/frames.hpp"
 
 namespace etlc::watch {
 
@@ -124,6 +123,9 @@ diag::Result<bool> CameraTrace::next(data::Sample& sample) {
 
 namespace {
 
+using check::Index;
+using diag::Code;
+using diag::Failure;
 using std::chrono::duration;
 using std::chrono::duration_cast;
 
@@ -202,31 +204,21 @@ std::uint64_t StepClock::overdue(Time now) {
     return static_cast<std::uint64_t>(steps);
 }
 
-namespace {
-
-using check::Index;
-using diag::Code;
-using diag::Failure;
-
-constexpr int kPatienceMilliseconds = 1000;
-
-}  // namespace
-
 std::unique_ptr<Encoders> Encoders::start(const check::Model& model,
                                           const std::vector<Index>& inputs, embed::Request request,
                                           const Stop& stop, diag::Sink& sink) {
     std::unique_ptr<Encoders> encoders(
         new Encoders(model, request.running.max_silence_seconds, sink));
-    if (!encoders->is_suitable(inputs, request) || !encoders->start_all(inputs, request.running) ||
-        !encoders->compare_all(stop))
+    if (!encoders->is_suitable(inputs, request) || !encoders->start_all(inputs, request.running))
         return nullptr;
+    // A command's fingerprint says nothing of the command, so that embeddings decide.
+    for (const auto& [input, encoder] : encoders->encoders_)
+        if (!encoders->compare(input, stop)) return nullptr;
     return encoders;
 }
 
 bool Encoders::fail(Index input, const Failure& failure) {
-    const check::Encoder& encoder = model_.encoders[model_.inputs[input].encoder];
-    sink_.report(data::in_file(failure, data::beside(model_.file.path(), encoder.model)))
-        .note(encoder.span, fmt::format("'{}' is declared here", encoder.name));
+    sink_.report(embed::of_encoder(failure, model_, model_.encoders[model_.inputs[input].encoder]));
     return false;
 }
 
@@ -266,13 +258,6 @@ bool Encoders::start_all(const std::vector<Index>& inputs, const embed::Running&
     return true;
 }
 
-/// A command's fingerprint says nothing of the command, so that embeddings decide.
-bool Encoders::compare_all(const Stop& stop) {
-    for (const auto& [input, encoder] : encoders_)
-        if (!compare(input, stop)) return false;
-    return true;
-}
-
 bool Encoders::compare(Index input, const Stop& stop) {
     const check::Encoder& of = model_.encoders[model_.inputs[input].encoder];
     embed::Encoder& encoder = *encoders_.at(input);
@@ -289,7 +274,8 @@ bool Encoders::compare(Index input, const Stop& stop) {
             return fail(input, *failure);
         given_ = std::chrono::steady_clock::now();
         while (!is_there) {
-            data::Child::await({&encoder.child()}, {stop.descriptor()}, kPatienceMilliseconds);
+            constexpr int kMilliseconds = 1000;  // to look whether it is silent too long
+            data::Child::await({&encoder.child()}, {stop.descriptor()}, kMilliseconds);
             if (stop.is_asked() || !take(input)) return false;
         }
         if (expected.size() != embedded::kReferenceFrames * row.size())

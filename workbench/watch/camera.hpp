@@ -11,7 +11,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "check/model/model.hpp"
@@ -43,7 +42,6 @@ public:
     bool take();
     /// Returns whether all embeddings of the last frame are there.
     bool are_done() const { return waiting_ == 0; }
-    /// Returns the embedding of an input of the last frame.
     const std::vector<float>& embedding(check::Index input) const { return rows_.at(input); }
     /// The programs that run, for data::Child::await.
     const std::vector<data::Child*>& children() const { return children_; }
@@ -54,7 +52,6 @@ private:
 
     bool is_suitable(const std::vector<check::Index>& inputs, embed::Request& request);
     bool start_all(const std::vector<check::Index>& inputs, const embed::Running& running);
-    bool compare_all(const Stop& stop);
     bool compare(check::Index input, const Stop& stop);
     /// Takes what has arrived of an encoder; false where it has failed, or is silent too long.
     bool take(check::Index input);

@@ -9,8 +9,6 @@
 #include <array>
 #include <filesystem>
 #include <memory>
-#include <optional>
-#include <string_view>
 
 #include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
