@@ -75,17 +75,10 @@ diag::Result<std::vector<std::string>> matching(const std::string& pattern, diag
         return diag::Failure{Code::unreadable_trace, "no file matches this pattern"};
     std::vector<std::string> files;
     for (const std::string& path : *paths) {
-        if (is_dataset(path)) {
-            const auto inside = find_dataset_episodes({path}, sink);
-            if (!inside) return inside;
-            files.insert(files.end(), inside->begin(), inside->end());
-            continue;
-        }
-        if (!is_directory(path)) {
-            files.push_back(path);
-            continue;
-        }
-        const auto inside = in_folder(path);
+        const auto inside = is_dataset(path)     ? find_dataset_episodes({path}, sink)
+                            : is_directory(path) ? in_folder(path)
+                                                 : std::vector<std::string>{path};
+        if (!inside && is_dataset(path)) return inside;
         if (inside) files.insert(files.end(), inside->begin(), inside->end());
     }
     if (files.empty())
@@ -235,7 +228,7 @@ void EpisodeHash::add(const std::vector<std::vector<float>>& samples) {
 }
 
 std::string EpisodeHash::text() const {
-    return fmt::format("{:016x}", xxh64(fmt::format("{} steps", steps_), hash_));
+    return hash_text(xxh64(fmt::format("{} steps", steps_), hash_));
 }
 
 EpisodeContent EpisodeHash::content() const {

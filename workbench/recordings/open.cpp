@@ -1,11 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
-#include <optional>
-#include <string>
 #include <system_error>
-#include <vector>
 
 #include "data/arrays/archive.hpp"
 #include "data/arrays/array.hpp"
@@ -172,14 +168,9 @@ std::optional<Failure> check_images(const NpyHeader& header, Grey grey) {
     if (header.fortran_order)
         return Failure{Code::malformed_trace_array,
                        "is in Fortran order, expected C order: save numpy.ascontiguousarray of it"};
-    const auto& shape = header.shape;
-    const bool has_form = holds_images(header) || (grey == Grey::taken && header.shape.size() == 3);
-    const bool fits = has_form && shape[1] > 0 && shape[2] > 0 &&
-                      std::max(shape[1], shape[2]) <= frames::kMaxExtent &&
-                      shape[1] * shape[2] <= frames::kMaxPixels;
-    if (fits) return std::nullopt;
-    return Failure{Code::trace_shape, fmt::format("has shape {}, expected {}", shape_text(shape),
-                                                  expected_images(grey))};
+    if (is_shape_of_images(header.shape, grey == Grey::taken)) return std::nullopt;
+    return Failure{Code::trace_shape, fmt::format("has shape {}, expected {}",
+                                                  shape_text(header.shape), expected_images(grey))};
 }
 
 /// The images of an .npz file.

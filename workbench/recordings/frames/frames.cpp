@@ -1,15 +1,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
-#include <array>
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <vector>
 
-#include "artifacts/embedded.hpp"
-#include "data/files/child.hpp"
 #include "data/files/file.hpp"
 #include "data/text/text.hpp"
 #include "recordings/frames/frames.hpp"
@@ -76,7 +73,30 @@ private:
     Decoded decoded_;
 };
 
+/// Starts the program for what arrives on its standard input.
+std::unique_ptr<Child> fed(const char* call) {
+    return Child::start(
+        embedder_path(), {call},
+        {.max_silence_seconds = frames::kMaxSilenceSeconds, .fed = true, .heard = true});
+}
+
+diag::Result<std::unique_ptr<FrameSource>> start(const std::vector<std::string>& arguments,
+                                                 Decoded decoded) {
+    auto child = Child::start(embedder_path(), arguments,
+                              {.max_silence_seconds = frames::kMaxSilenceSeconds, .heard = true});
+    if (!child) return no_embedder();
+    return std::unique_ptr<FrameSource>(
+        std::make_unique<DecodedFrames>(std::move(child), std::move(decoded)));
+}
+
 }  // namespace
+
+bool is_shape_of_images(const std::vector<std::uint64_t>& shape, bool with_grey) {
+    const bool has_form = (shape.size() == 4 && shape[3] == 3) || (with_grey && shape.size() == 3);
+    return has_form && shape[1] > 0 && shape[2] > 0 &&
+           std::max(shape[1], shape[2]) <= frames::kMaxExtent &&
+           shape[1] * shape[2] <= frames::kMaxPixels;
+}
 
 std::string in_colour(std::string_view grey) {
     std::string rgb;
@@ -105,19 +125,6 @@ Failure no_embedder() {
                         in_quotes(embedder_path()))};
 }
 
-namespace {
-
-diag::Result<std::unique_ptr<FrameSource>> start(const std::vector<std::string>& arguments,
-                                                 Decoded decoded) {
-    auto child = Child::start(embedder_path(), arguments,
-                              {.max_silence_seconds = frames::kMaxSilenceSeconds, .heard = true});
-    if (!child) return no_embedder();
-    return std::unique_ptr<FrameSource>(
-        std::make_unique<DecodedFrames>(std::move(child), std::move(decoded)));
-}
-
-}  // namespace
-
 diag::Result<std::unique_ptr<FrameSource>> open_video(const std::string& path,
                                                       const FrameChoice& choice) {
     if (auto why = why_unreadable(path)) return Failure{Code::unreadable_video, *why};
@@ -140,13 +147,8 @@ diag::Result<std::unique_ptr<FrameSource>> open_images(const std::vector<std::st
     return start(arguments, {Code::unreadable_image, {}});
 }
 
-ImageDecoder::ImageDecoder(std::unique_ptr<Child> child) : child_(std::move(child)) {}
-ImageDecoder::~ImageDecoder() = default;
-
 diag::Result<std::unique_ptr<ImageDecoder>> ImageDecoder::start() {
-    auto child = Child::start(
-        embedder_path(), {"given"},
-        {.max_silence_seconds = frames::kMaxSilenceSeconds, .fed = true, .heard = true});
+    auto child = fed("given");
     if (!child) return no_embedder();
     return std::unique_ptr<ImageDecoder>(new ImageDecoder(std::move(child)));
 }
@@ -166,9 +168,7 @@ std::optional<Failure> ImageDecoder::decode(std::string_view bytes, Frame& frame
 }
 
 diag::Result<std::string> png_of(const Frame& frame) {
-    auto child = Child::start(
-        embedder_path(), {"png"},
-        {.max_silence_seconds = frames::kMaxSilenceSeconds, .fed = true, .heard = true});
+    const auto child = fed("png");
     if (!child) return no_embedder();
     std::string head;
     frames::append(head, frame.height);
@@ -180,13 +180,6 @@ diag::Result<std::string> png_of(const Frame& frame) {
     if (child->exit_status() == 0 && !png.empty()) return png;
     return Failure{Code::no_embedder, fmt::format("what writes PNG {}", child->ending())};
 }
-
-namespace {
-
-/// A camera may be silent for as long as it likes: the steps go on without it.
-constexpr int kLongSilenceSeconds = 2'000'000;
-
-}  // namespace
 
 bool is_live_source(const std::string& source) {
     std::error_code error;
@@ -219,6 +212,8 @@ diag::Result<std::unique_ptr<LiveFrames>> LiveFrames::open(const std::string& so
     std::vector<std::string> arguments = {"video", source, "--pace", is_live ? "live" : "real"};
     if (!is_live && rate > 0)
         arguments.insert(arguments.end(), {"--rate", fmt::format("{}", rate)});
+    // A camera may be silent for as long as it likes: the steps go on without it.
+    constexpr int kLongSilenceSeconds = 2'000'000;
     auto decoder = Child::start(embedder_path(), arguments,
                                 {.max_silence_seconds = kLongSilenceSeconds, .heard = true});
     if (!decoder) return no_embedder();
@@ -306,18 +301,6 @@ private:
     std::vector<std::uint32_t> corners_;
 };
 
-class ReferenceFrames final : public FrameSource {
-public:
-    diag::Result<bool> next(Frame& frame) override {
-        if (index_ == embedded::kReferenceFrames) return false;
-        frame = reference_frame(index_++);
-        return true;
-    }
-
-private:
-    std::uint32_t index_ = 0;
-};
-
 }  // namespace
 
 Frame reference_frame(std::uint32_t index) {
@@ -335,10 +318,6 @@ Frame reference_frame(std::uint32_t index) {
                                       8);
     }
     return frame;
-}
-
-std::unique_ptr<FrameSource> reference_frames() {
-    return std::make_unique<ReferenceFrames>();
 }
 
 }  // namespace etlc::recordings

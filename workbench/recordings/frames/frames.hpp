@@ -24,6 +24,9 @@ struct Frame {
     std::string rgb;  ///< height x width x 3 bytes, row by row from the top
 };
 
+/// Returns whether these are the extents of an array of images, steps x rows x columns x 3, or
+/// `with_grey` steps x rows x columns.
+bool is_shape_of_images(const std::vector<std::uint64_t>& shape, bool with_grey);
 /// Returns red, green and blue of grey values.
 std::string in_colour(std::string_view grey);
 
@@ -64,13 +67,11 @@ diag::Result<std::unique_ptr<FrameSource>> open_images(const std::vector<std::st
 class ImageDecoder {
 public:
     static diag::Result<std::unique_ptr<ImageDecoder>> start();
-    ~ImageDecoder();
-
     /// Decodes the bytes of an image file. After a failure, E1009, the decoder has ended.
     std::optional<diag::Failure> decode(std::string_view bytes, Frame& frame);
 
 private:
-    explicit ImageDecoder(std::unique_ptr<data::Child> child);
+    explicit ImageDecoder(std::unique_ptr<data::Child> child) : child_(std::move(child)) {}
 
     std::unique_ptr<data::Child> child_;
 };
@@ -135,8 +136,5 @@ private:
 
 /// Draws a frame of 480 x 640 pixels. `index`: below embedded::kReferenceFrames.
 Frame reference_frame(std::uint32_t index);
-
-/// Returns a source of all reference frames.
-std::unique_ptr<FrameSource> reference_frames();
 
 }  // namespace etlc::recordings

@@ -10,7 +10,6 @@
 #include "data/arrays/array.hpp"
 #include "data/text/text.hpp"
 #include "data/traces/trace_formats.hpp"
-#include "recordings/frames/protocol.hpp"
 #include "recordings/records/protocol.hpp"
 #include "recordings/records/records.hpp"
 
@@ -58,17 +57,26 @@ std::optional<Shape> parse_shape(std::string_view line) {
     return shape;
 }
 
-std::optional<std::vector<Shape>> parse_shapes(std::string_view text, std::size_t count) {
+/// Reads the end; a failure may follow the last row.
+std::optional<Failure> why_not_ended(Records& records) {
+    const auto tag = records.next();
+    if (!tag) return tag.failure();
+    return *tag == Tag::end ? std::nullopt : std::optional(records.nonsense());
+}
+
+/// Reads the shapes of so many channels.
+diag::Result<std::vector<Shape>> shapes_of(Records& records, std::size_t count) {
+    const auto tag = records.next();
+    if (!tag) return tag.failure();
     std::vector<Shape> shapes;
-    while (!text.empty()) {
+    for (std::string_view text = records.bytes(); !text.empty();) {
         const std::size_t end = text.find('\n');
-        if (end == std::string_view::npos) return {};
-        auto shape = parse_shape(text.substr(0, end));
-        if (!shape) return {};
+        auto shape = end == text.npos ? std::nullopt : parse_shape(text.substr(0, end));
+        if (!shape) return records.nonsense();
         shapes.push_back(std::move(*shape));
         text.remove_prefix(end + 1);
     }
-    if (shapes.size() != count) return {};
+    if (*tag != Tag::shapes || shapes.size() != count) return records.nonsense();
     return shapes;
 }
 
@@ -93,9 +101,7 @@ public:
         std::memcpy(row_.data(), records_->bytes().data() + at_, bytes);
         at_ += bytes;
         if (++taken_ < steps_) return row_.data();
-        const auto tag = records_->next();  // a failure may follow the last row
-        if (!tag) return tag.failure();
-        if (*tag != Tag::end) return records_->nonsense();
+        if (auto failure = why_not_ended(*records_)) return *failure;
         return row_.data();
     }
 
@@ -132,9 +138,7 @@ public:
 
     diag::Result<bool> next(Frame& frame) override {
         if (taken_ == shape_[0]) {
-            const auto tag = records_->next();
-            if (!tag) return tag.failure();
-            if (*tag != Tag::end) return records_->nonsense();
+            if (auto failure = why_not_ended(*records_)) return *failure;
             return false;
         }
         frame.height = static_cast<std::uint32_t>(shape_[1]);
@@ -200,10 +204,8 @@ diag::Result<std::unique_ptr<Trace>> open_hdf5_trace(const std::string& path,
                                                                           : records::kNeeded)});
     auto records = start(path, arguments);
     if (!records) return records.failure();
-    const auto tag = (*records)->next();
-    if (!tag) return tag.failure();
-    const auto shapes = parse_shapes((*records)->bytes(), channels.size());
-    if (*tag != Tag::shapes || !shapes) return (*records)->nonsense();
+    const auto shapes = shapes_of(**records, channels.size());
+    if (!shapes) return shapes.failure();
 
     std::vector<Feed> feeds;
     std::vector<std::size_t> offsets;
@@ -232,15 +234,10 @@ diag::Result<std::unique_ptr<FrameSource>> open_hdf5_images(const std::string& p
     auto records = start(path, {with_grey ? "grey_images" : "images", path, group, name},
                          Code::no_such_camera);
     if (!records) return records.failure();
-    const auto tag = (*records)->next();
-    if (!tag) return tag.failure();
-    const auto shapes = parse_shapes((*records)->bytes(), 1);
-    if (*tag != Tag::shapes || !shapes) return (*records)->nonsense();
+    const auto shapes = shapes_of(**records, 1);
+    if (!shapes) return shapes.failure();
     const std::vector<std::uint64_t>& shape = (*shapes)[0].dimensions;
-    const bool has_form = (shape.size() == 4 && shape[3] == 3) || (with_grey && shape.size() == 3);
-    if (!has_form || shape[1] == 0 || shape[2] == 0 ||
-        std::max(shape[1], shape[2]) > frames::kMaxExtent ||
-        shape[1] * shape[2] > frames::kMaxPixels)
+    if (!is_shape_of_images(shape, with_grey))
         return Failure{Code::trace_shape,
                        fmt::format("the images have shape {}, expected (steps, rows, columns, 3)",
                                    shape_text(shape))};

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
-#include <system_error>
 
 #include "data/files/file.hpp"
 #include "data/text/text.hpp"
