@@ -36,9 +36,10 @@ public:
             if (!ready)
                 session_.do_idle_work();
             else if (!read_some())
-                return end();
+                break;
         }
-        return 1;
+        session_.catch_up();
+        return can_write_ ? session_.status_at_end() : 1;
     }
 
 private:
@@ -56,11 +57,6 @@ private:
         if (count <= 0) return false;
         reader_.add({bytes.data(), static_cast<std::size_t>(count)});
         return true;
-    }
-
-    int end() {
-        session_.catch_up();
-        return can_write_ ? session_.status_at_end() : 1;
     }
 
     int in_;

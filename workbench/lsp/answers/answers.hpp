@@ -14,7 +14,6 @@
 
 namespace etlc::lsp {
 
-/// The capabilities of the client.
 struct Client {
     bool related_places = false;  ///< of a finding
     bool hover_in_markdown = false;

@@ -98,7 +98,6 @@ void refuse_other_meaning(const Analysis& analysis, const std::vector<const Occu
                            all.front()->name));
 }
 
-/// Returns the edits of all occurrences of a name.
 Json edits_of_name(const Analysis& analysis, const Occurrence& of, const std::string& new_name) {
     Json edits = Json::array();
     for (const Occurrence& occurrence : analysis.names().occurrences)
@@ -211,7 +210,6 @@ Json related_to(const diag::Diagnostic& found, const Analysis& analysis, const s
     return related;
 }
 
-/// Returns the place at which a finding is shown.
 source::Span place_of(const diag::Diagnostic& found, const Analysis& analysis) {
     if (found.span) return *found.span;
     for (const diag::Note& note : found.notes)

@@ -56,7 +56,6 @@ Client client_of(const Json& params) {
     return client;
 }
 
-/// The answers to requests about documents.
 const std::map<std::string_view, Json (*)(const Question&)>& answers() {
     static const std::map<std::string_view, Json (*)(const Question&)> all{
         {"textDocument/hover", hover},
@@ -70,6 +69,12 @@ const std::map<std::string_view, Json (*)(const Question&)>& answers() {
         {"textDocument/codeAction", code_actions},
     };
     return all;
+}
+
+/// Returns the version of a document, which only the client uses.
+std::int64_t version_of(const Json& document) {
+    const Json* const found = find(document, "version");
+    return found != nullptr && found->is_number_integer() ? found->get<std::int64_t>() : 0;
 }
 
 /// Does some work, and returns why it could not be done.
@@ -137,7 +142,10 @@ Json Session::result_of(const std::string& method, const Json& params) {
     if (life_ == Life::shut_down)
         throw Refusal{ErrorCode::invalid_request, "expected 'exit' after 'shutdown'"};
     if (method == "initialize") return initialize(params);
-    if (method == "shutdown") return shutdown();
+    if (method == "shutdown") {
+        life_ = Life::shut_down;
+        return nullptr;
+    }
     const auto found = answers().find(method);
     if (found == answers().end())
         throw Refusal{ErrorCode::method_not_found, fmt::format("there is no '{}' here", method)};
@@ -145,7 +153,7 @@ Json Session::result_of(const std::string& method, const Json& params) {
 }
 
 void Session::take_note(const std::string& method, const Json& params) {
-    if (method == "exit") return exit(params);
+    if (method == "exit") exit_status_ = status_at_end();
     if (life_ != Life::running) return;
     const auto found = notifications().find(method);
     if (found == notifications().end()) return;
@@ -159,10 +167,12 @@ void Session::respond_error(const Json& id, ErrorCode code, const std::string& m
            {"error", {{"code", static_cast<std::int32_t>(code)}, {"message", message}}}});
 }
 
+void Session::notify(const char* method, Json params) {
+    send_({{"jsonrpc", "2.0"}, {"method", method}, {"params", std::move(params)}});
+}
+
 void Session::log(const std::string& message) {
-    send_({{"jsonrpc", "2.0"},
-           {"method", "window/logMessage"},
-           {"params", {{"type", 2}, {"message", message}}}});
+    notify("window/logMessage", {{"type", 2}, {"message", message}});
 }
 
 const std::map<std::string_view, Session::Notification>& Session::notifications() {
@@ -187,15 +197,6 @@ Json Session::initialize(const Json& params) {
     return {{"capabilities", capabilities(encoding_)}, {"serverInfo", {{"name", "etlc"}}}};
 }
 
-Json Session::shutdown() {
-    life_ = Life::shut_down;
-    return nullptr;
-}
-
-void Session::exit(const Json& /*params*/) {
-    exit_status_ = status_at_end();
-}
-
 // ---- documents ----------------------------------------------------------------------------------
 
 Document& Session::document_of(const Json& params) {
@@ -204,16 +205,6 @@ Document& Session::document_of(const Json& params) {
         throw Refusal{ErrorCode::invalid_params, "this document is not open"};
     return found->second;
 }
-
-namespace {
-
-/// Returns the version of a document, which only the client uses.
-std::int64_t version_of(const Json& document) {
-    const Json* const found = find(document, "version");
-    return found != nullptr && found->is_number_integer() ? found->get<std::int64_t>() : 0;
-}
-
-}  // namespace
 
 void Session::opened(const Json& params) {
     const Json& document = member(params, "textDocument");
@@ -246,9 +237,7 @@ void Session::saved(const Json& params) {
 void Session::closed(const Json& params) {
     const std::string uri = document_of(params).uri();
     documents_.erase(uri);
-    send_({{"jsonrpc", "2.0"},
-           {"method", "textDocument/publishDiagnostics"},
-           {"params", {{"uri", uri}, {"diagnostics", Json::array()}}}});
+    notify("textDocument/publishDiagnostics", {{"uri", uri}, {"diagnostics", Json::array()}});
 }
 
 void Session::files_changed(const Json& /*params*/) {
@@ -257,14 +246,11 @@ void Session::files_changed(const Json& /*params*/) {
 
 void Session::publish(Document& document) {
     document.is_news = false;
-    const Analysis& analysis = document.analysis();
-    send_({{"jsonrpc", "2.0"},
-           {"method", "textDocument/publishDiagnostics"},
-           {"params",
-            {{"uri", document.uri()},
-             {"version", document.version()},
-             {"diagnostics",
-              diagnostics_of(analysis, document.planned(), document.uri(), client_)}}}});
+    Json findings =
+        diagnostics_of(document.analysis(), document.planned(), document.uri(), client_);
+    notify("textDocument/publishDiagnostics", {{"uri", document.uri()},
+                                               {"version", document.version()},
+                                               {"diagnostics", std::move(findings)}});
 }
 
 void Session::catch_up() {

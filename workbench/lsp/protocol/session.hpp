@@ -82,14 +82,13 @@ private:
     void take_note(const std::string& method, const Json& params);
     Json result_of(const std::string& method, const Json& params);
     void respond_error(const Json& id, ErrorCode code, const std::string& message);
+    void notify(const char* method, Json params);
     void log(const std::string& message);
     void publish(Document& document);
 
     static const std::map<std::string_view, Notification>& notifications();
 
     Json initialize(const Json& params);
-    Json shutdown();
-    void exit(const Json& params);
     void opened(const Json& params);
     void changed(const Json& params);
     void saved(const Json& params);

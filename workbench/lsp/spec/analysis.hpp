@@ -104,7 +104,6 @@ struct Planned {
     std::optional<Compiled> compiled;
 };
 
-/// A text that is open in the client.
 class Document {
 public:
     Document(std::string uri, std::string text, std::int64_t version, Encoding encoding);
