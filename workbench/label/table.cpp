@@ -50,7 +50,6 @@ std::string marked(const episodes::LabelRow& row) {
                                        : row.predicate;
 }
 
-/// Returns whether two rows say the same.
 bool is_same(const episodes::LabelRow& a, const episodes::LabelRow& b) {
     return a.episode == b.episode && a.predicate == b.predicate && a.label == b.label &&
            a.start == b.start && a.end == b.end && a.group == b.group && a.outcome == b.outcome;
@@ -126,7 +125,8 @@ void Table::put(const LabelsOf& labels, Rows& rows) const {
     row.of = labels.episode;
     row.episode = is_known ? first->episode : labels.name;
     row.predicate = labels.predicate;
-    row.group = group_of(labels.episode);
+    for (const Row& other : rows_)
+        if (other.of == labels.episode && row.group.empty()) row.group = other.group;
     Rows added;
     if (labels.marks && labels.marks->empty()) {
         row.label = Label::no;
@@ -153,12 +153,6 @@ void Table::put(const LabelsOf& labels, Rows& rows) const {
         if (!is_kept) added.push_back(row);
     }
     rows.insert(rows.begin() + place, added.begin(), added.end());
-}
-
-std::string Table::group_of(const std::string& episode) const {
-    for (const Row& row : rows_)
-        if (row.of == episode && !row.group.empty()) return row.group;
-    return "";
 }
 
 std::string Table::bound(double value) const {

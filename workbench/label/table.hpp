@@ -83,7 +83,6 @@ private:
 
     Table() = default;
     void put(const LabelsOf& labels, Rows& rows) const;
-    std::string group_of(const std::string& episode) const;
     std::string text_of(const Rows& rows) const;
     std::string bound(double value) const;
 

@@ -63,21 +63,17 @@ const float* Worker::elements_of(Index index, const void* data) {
     return widened_[index].data();
 }
 
-void Workers::prepare(std::uint32_t threads) {
-    while (workers_.size() < threads) workers_.push_back(std::make_unique<Worker>(*program_));
-    threads_ = threads;
-}
-
 template <class Work>
-void Workers::each(std::uint64_t rows, const Work& work) {
+void Workers::each(std::uint64_t rows, std::uint32_t threads, const Work& work) {
+    while (workers_.size() < threads) workers_.push_back(std::make_unique<Worker>(*program_));
     const auto part = [&](std::uint64_t thread) {
         // Rows and threads are far below 2^32, so the products do not overflow.
-        const std::uint64_t end = rows * (thread + 1) / threads_;
-        for (std::uint64_t row = rows * thread / threads_; row < end; ++row)
+        const std::uint64_t end = rows * (thread + 1) / threads;
+        for (std::uint64_t row = rows * thread / threads; row < end; ++row)
             work(*workers_[thread], row);
     };
-    if (threads_ == 1) return part(0);
-    std::vector<std::exception_ptr> failures(threads_);
+    if (threads == 1) return part(0);
+    std::vector<std::exception_ptr> failures(threads);
     const auto guarded = [&](std::uint64_t thread) noexcept {
         try {
             part(thread);
@@ -86,15 +82,15 @@ void Workers::each(std::uint64_t rows, const Work& work) {
         }
     };
     std::vector<std::thread> others;
-    others.reserve(threads_ - 1);
+    others.reserve(threads - 1);
     std::uint32_t started = 1;
     try {
-        for (; started < threads_; ++started) others.emplace_back(guarded, started);
+        for (; started < threads; ++started) others.emplace_back(guarded, started);
     } catch (const std::system_error&) {  // the system allows no more threads
     } catch (const std::bad_alloc&) {     // nor does memory
     }
     guarded(0);
-    for (std::uint32_t thread = started; thread < threads_; ++thread) guarded(thread);
+    for (std::uint32_t thread = started; thread < threads; ++thread) guarded(thread);
     for (std::thread& other : others) other.join();
     for (const std::exception_ptr& failure : failures)
         if (failure) std::rethrow_exception(failure);
@@ -106,7 +102,6 @@ Batch::Batch(std::shared_ptr<const Program> program, std::uint64_t environments)
       evaluator_(program_->plan(), program_->tables()) {
     states_.reserve(environments);
     while (states_.size() < environments) states_.push_back(evaluator_.new_state());
-    workers_.prepare(1);
 }
 
 Batch::Batch(const Batch& other) : Batch(other.program_, other.size()) {
@@ -119,8 +114,7 @@ std::uint64_t Batch::steps(std::uint64_t environment) const {
 }
 
 void Batch::run(const Grids& samples, std::uint32_t threads, etlc_verdict* verdicts) {
-    workers_.prepare(threads);
-    workers_.each(samples.rows, [&](Worker& worker, std::uint64_t row) {
+    workers_.each(samples.rows, threads, [&](Worker& worker, std::uint64_t row) {
         if (row + 1 < states_.size()) fetch_ahead(&states_[row + 1], sizeof(execute::State));
         worker.run(states_[row], samples, row, verdicts);
     });
@@ -146,8 +140,7 @@ void look_ahead(const std::shared_ptr<const Program>& program,
                 const std::vector<const execute::State*>& states, std::uint64_t plans,
                 const Grids& samples, std::uint32_t threads, etlc_verdict* verdicts) {
     Workers workers(program);
-    workers.prepare(threads);
-    workers.each(samples.rows, [&](Worker& worker, std::uint64_t row) {
+    workers.each(samples.rows, threads, [&](Worker& worker, std::uint64_t row) {
         worker.imagine(*states[row / plans], samples, row, verdicts);
     });
 }

@@ -43,21 +43,20 @@ private:
     std::optional<execute::State> imagined_;
 };
 
-/// Workers of a program, as many as some call has asked for.
+/// Workers of a program: one, or as many as some call has asked for.
 class Workers {
 public:
-    explicit Workers(std::shared_ptr<const Program> program) : program_(std::move(program)) {}
+    explicit Workers(std::shared_ptr<const Program> program) : program_(std::move(program)) {
+        workers_.push_back(std::make_unique<Worker>(*program_));
+    }
 
-    /// Makes workers for `threads` >= 1 threads. Allocates memory for those that there were not.
-    void prepare(std::uint32_t threads);
-    /// Calls `work(worker, row)` for all rows, in as many threads as were prepared.
+    /// Calls `work(worker, row)` for all rows, in `threads` >= 1 threads.
     template <class Work>
-    void each(std::uint64_t rows, const Work& work);
+    void each(std::uint64_t rows, std::uint32_t threads, const Work& work);
 
 private:
     std::shared_ptr<const Program> program_;
     std::vector<std::unique_ptr<Worker>> workers_;
-    std::uint32_t threads_ = 1;
 };
 
 class Batch {

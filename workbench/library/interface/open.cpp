@@ -98,7 +98,6 @@ diag::Sink told_here(const diag::Sink& sink) {
     return result;
 }
 
-/// Opens a session; reports errors.
 std::unique_ptr<Session> open(const etlc_options& options, const Wish& wish, source::File& file,
                               diag::Sink& sink) {
     const std::string path = options.path == nullptr ? "spec.etl" : options.path;
