@@ -1,6 +1,5 @@
 #include "prove/coverage.hpp"
 
-#include <algorithm>
 #include <exception>
 #include <map>
 #include <nlohmann/json.hpp>

@@ -436,7 +436,7 @@ std::unique_ptr<data::Child> Program::start(const std::set<float>& numbers,
                               {.max_silence_seconds = kMostSeconds, .heard = true});
 }
 
-// ---- what the program says, as stand_in/etlprove/driver.hpp lists it
+// ---- what the program says, as stand_in/etlprove/diagrams.hpp lists it
 
 void Answers::end() {
     const int status = child_.exit_status();
@@ -457,7 +457,8 @@ Diagram Answers::known(std::uint32_t theirs) const {
     return found->second;
 }
 
-Answers::Entry Answers::next() {
+etlprove::Entry Answers::next() {
+    using etlprove::Entry;
     for (;;) {
         const auto entry = static_cast<Entry>(word());
         if (entry == Entry::number) throw NewNumber{std::bit_cast<float>(word())};
@@ -488,10 +489,10 @@ State Answers::state() {
     State state;
     for (std::uint32_t count = word(); count > 0; --count) {
         State::Word next;
-        next.kind = static_cast<State::Kind>(word());
+        next.kind = static_cast<etlprove::WordKind>(word());
         next.value = word();
         next.counted = word();
-        if (next.kind == State::Kind::diagram) next.value = known(next.value);
+        if (next.kind == etlprove::WordKind::diagram) next.value = known(next.value);
         state.words.push_back(next);
     }
     state.oldest_negated = word();
@@ -508,16 +509,20 @@ Window Answers::window() {
 }
 
 std::string why(const Ended& ended) {
-    switch (ended.status) {  // as stand_in/etlprove/space.hpp has them
-        case 10: return "the class compares two values and branches on the result";
-        case 11: return "the diagrams of the class are too large";
-        case 13: return "the class has too many states and ways through a step";
-        case 14: return "the class keeps something after reset(), or after a restart";
-        case 15: return "a verdict may depend on what the class counts for telemetry";
-        case 16: return "step() does something else than measure() and judge() one after the other";
-        case 17: return "the class gives a verdict or an atom the name of another";
-        case 19: return "the class uses a part of its state that it has not reset";
-        case 18:
+    switch (ended.status) {
+        case etlprove::kBranches: return "the class compares two values and branches on the result";
+        case etlprove::kExhausted: return "the diagrams of the class are too large";
+        case etlprove::kTooMany: return "the class has too many states and ways through a step";
+        case etlprove::kLeftovers:
+            return "the class keeps something after reset(), or after a restart";
+        case etlprove::kReadsTelemetry:
+            return "a verdict may depend on what the class counts for telemetry";
+        case etlprove::kOtherHalves:
+            return "step() does something else than measure() and judge() one after the other";
+        case etlprove::kOtherNames:
+            return "the class gives a verdict or an atom the name of another";
+        case etlprove::kNotReset: return "the class uses a part of its state that it has not reset";
+        case etlprove::kOtherRestarts:
             return "after a final verdict the class does something else than to count it and to "
                    "restart that monitor";
         default: return "the class, compiled for the proof, " + ended.how;

@@ -83,9 +83,8 @@ struct Reported {
 
 /// The state of a class after a step, and how the step used the one before.
 struct State {
-    enum class Kind : std::uint8_t { control, diagram, counter };
     struct Word {
-        Kind kind = Kind::control;
+        etlprove::WordKind kind = etlprove::WordKind::control;
         std::uint32_t value = 0;    ///< of this proof, if it is a diagram
         std::uint32_t counted = 0;  ///< a counter that reaches this would have another effect
     };
@@ -99,19 +98,8 @@ public:
     Answers(data::Child& child, Space& space, std::size_t monitors)
         : child_(child), space_(space), monitors_(monitors) {}
 
-    /// As stand_in/etlprove/output.hpp has them.
-    enum class Entry : std::uint32_t {
-        number = 1,
-        node,
-        verdict,
-        state,
-        restarts,
-        saturation,
-        window,
-        end
-    };
     /// Returns the kind of the next entry, which is then read.
-    Entry next();
+    etlprove::Entry next();
     Reported verdict();
     State state();
     Window window();

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <set>
 #include <tuple>
 
@@ -39,7 +38,7 @@ public:
 
     /// Throws Ended, Exhausted and NewNumber.
     void run() {
-        using Entry = Answers::Entry;
+        using etlprove::Entry;
         while (!proof_.fault) {
             switch (answers_.next()) {
                 case Entry::verdict: compare(answers_.verdict()); break;

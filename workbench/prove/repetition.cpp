@@ -54,7 +54,7 @@ void Repetition::note(const State& state) {
     counted_.emplace_back();
     is_counting_ = false;
     for (const State::Word& word : state.words) {
-        if (word.kind != State::Kind::counter) continue;
+        if (word.kind != etlprove::WordKind::counter) continue;
         counted_.back().push_back(word.counted);
         is_counting_ = is_counting_ || word.counted > word.value;
     }
@@ -66,7 +66,7 @@ void Repetition::note(const State& state) {
     negated_.push_back(oldest);
     controls_.emplace_back();
     for (const State::Word& word : state.words)
-        controls_.back().push_back(word.kind == State::Kind::control ? word.value : 0);
+        controls_.back().push_back(word.kind == etlprove::WordKind::control ? word.value : 0);
 }
 
 void Repetition::look(Forms& forms, const State& state, const std::vector<Diagram>& diagrams) {
@@ -77,9 +77,9 @@ void Repetition::look(Forms& forms, const State& state, const std::vector<Diagra
               step_ < forms.recent ? etlprove::kNoPlace : first_of(step_ - forms.recent));
     Seen now{step_, {}, {}};
     for (const State::Word& word : state.words) {
-        if (word.kind == State::Kind::control) form.add_control(word.value);
-        if (word.kind == State::Kind::diagram) form.add(word.value);
-        if (word.kind != State::Kind::counter) continue;
+        if (word.kind == etlprove::WordKind::control) form.add_control(word.value);
+        if (word.kind == etlprove::WordKind::diagram) form.add(word.value);
+        if (word.kind != etlprove::WordKind::counter) continue;
         form.add_counter();
         now.counters.push_back(word.value);
     }

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
-#include <set>
 #include <utility>
 
 #include "reference/clauses.hpp"
@@ -160,7 +158,6 @@ std::set<Place> support(const Diagrams& diagrams, Diagram of) {
     return places;
 }
 
-/// Returns the first place of each sample.
 std::set<Place> samples_of(const std::set<Place>& places) {
     std::set<Place> samples;
     for (const Place place : places)
@@ -285,6 +282,15 @@ float number_of(float threshold, bool reached, bool negated_reached, const Atom&
     return std::clamp(x, least, greatest);
 }
 
+/// Returns a robustness of an atom that is true, or false, in its range and as far from the
+/// threshold as there is room, so that it is not rounded to it.
+float robustness_of(const Atom& atom, bool truth) {
+    if (atom.is_truth) return truth ? INFINITY : -INFINITY;
+    const float far = std::max(1.0F, std::abs(atom.threshold));
+    return std::clamp(truth ? far : -far, static_cast<float>(atom.range.lowest),
+                      static_cast<float>(atom.range.highest));
+}
+
 }  // namespace
 
 bool are_equal_in_ranges(Space& space, Diagram first, Diagram second,
@@ -292,8 +298,7 @@ bool are_equal_in_ranges(Space& space, Diagram first, Diagram second,
     Diagrams& diagrams = space.diagrams;
     Inputs inputs(space, atoms, true);
     Diagram differ = diagrams.differ(first, second);
-    const std::set<Place> places = support(diagrams, differ);
-    for (const Place first_end : samples_of(places))
+    for (const Place first_end : samples_of(support(diagrams, differ)))
         differ = diagrams.both(differ, inputs.ends(first_end, atom_of(first_end, atoms)));
     return differ == kNever;
 }
@@ -321,19 +326,6 @@ std::set<std::vector<std::uint16_t>> ends_in_ranges(Space& space, const std::vec
     }
     return result;
 }
-
-namespace {
-
-/// Returns a robustness of an atom that is true, or false, in its range and as far from the
-/// threshold as there is room, so that it is not rounded to it.
-float robustness_of(const Atom& atom, bool truth) {
-    if (atom.is_truth) return truth ? INFINITY : -INFINITY;
-    const float far = std::max(1.0F, std::abs(atom.threshold));
-    return std::clamp(truth ? far : -far, static_cast<float>(atom.range.lowest),
-                      static_cast<float>(atom.range.highest));
-}
-
-}  // namespace
 
 Witness truths_where(const Diagrams& diagrams, Diagram condition, const std::vector<Atom>& atoms,
                      const std::vector<Truths>& truths, std::uint32_t steps,
@@ -378,9 +370,8 @@ std::optional<Witness> difference(Space& space, Diagram first, Diagram second,
     Inputs inputs(space, atoms, may_be_missing);
     const std::set<Place> samples = samples_of(support(diagrams, differ));
     Diagram conditions = kAlways;
-    for (auto sample = samples.rbegin(); sample != samples.rend(); ++sample) {
+    for (auto sample = samples.rbegin(); sample != samples.rend(); ++sample)
         conditions = diagrams.both(inputs.sample(*sample, atom_of(*sample, atoms)), conditions);
-    }
     if (at_zero) conditions = diagrams.both(conditions, inputs.threshold_is_zero());
     differ = diagrams.both(differ, conditions);
     if (differ == kNever) return std::nullopt;

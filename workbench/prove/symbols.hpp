@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -43,11 +42,9 @@ struct Space {
         return found;
     }
 
-    etlprove::Diagrams diagrams{kMostNodes, [] { throw Exhausted(); }};
+    etlprove::Diagrams diagrams{etlprove::kMostNodes, [] { throw Exhausted(); }};
     etlprove::Numbers numbers;
     bool are_truths;
-
-    static constexpr std::uint32_t kMostNodes = 40U << 20U;
 };
 
 /// A function of the samples, of the proof that runs in this thread.

@@ -1,7 +1,6 @@
 #include "prove/unfolded.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace etlc::prove {
 
@@ -9,6 +8,8 @@ namespace {
 
 using reference::Node;
 using Kind = Part::Kind;
+using etlprove::kAlways;
+using etlprove::kNever;
 
 class Builder {
 public:
@@ -81,18 +82,6 @@ private:
     Parts parts_;
 };
 
-}  // namespace
-
-Parts parts_of(const reference::NormalForm& form) {
-    return Builder().take(form);
-}
-
-namespace {
-
-using Kind = Part::Kind;
-using etlprove::kAlways;
-using etlprove::kNever;
-
 /// The value of an operator that has no position.
 Diagram nothing(bool dual) {
     return dual ? kAlways : kNever;
@@ -108,6 +97,10 @@ bool is_past(Kind kind) {
 }
 
 }  // namespace
+
+Parts parts_of(const reference::NormalForm& form) {
+    return Builder().take(form);
+}
 
 Unfolded::Unfolded(const plan::Plan& plan, const Definition& definition, Space& space)
     : plan_(plan),

@@ -6,7 +6,6 @@
 
 #include <string.h>
 
-#include <memory>
 #include <utility>
 #include <vector>
 

@@ -16,6 +16,7 @@ namespace etlprove {
 using Diagram = std::uint32_t;
 constexpr Diagram kNever = 0;
 constexpr Diagram kAlways = 1;
+constexpr std::uint32_t kMostNodes = 40u << 20;  ///< of a proof, and of its program
 
 /// The variables, in their order. Place 1 is what was read before it was written; then numbers, the
 /// least first; then what earlier steps left, by its word in a class; then samples, the last first,
@@ -280,5 +281,27 @@ inline Ends ends_of(Diagrams& diagrams, Truths truths, Place sample) {
     if (truths == Truths::known) return {high, high};
     return {diagrams.both(high, diagrams.variable(sample + kLow)), high};
 }
+
+// What the program of a proof says, and how it ends.
+
+/// The words that begin an entry of its output.
+enum class Entry : std::uint32_t {
+    number = 1,
+    node,
+    verdict,
+    state,
+    restarts,
+    saturation,
+    window,
+    end
+};
+
+/// The kinds of words of a state.
+enum class WordKind : std::uint32_t { control, diagram, counter };
+
+/// Its exit statuses besides 0.
+constexpr int kBranches = 10, kExhausted = 11, kNewNumber = 12, kTooMany = 13, kLeftovers = 14,
+              kReadsTelemetry = 15, kOtherHalves = 16, kOtherNames = 17, kOtherRestarts = 18,
+              kNotReset = 19;
 
 }  // namespace etlprove

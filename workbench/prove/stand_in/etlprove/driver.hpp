@@ -5,7 +5,6 @@
 // state of every episode that follows, as a value that may be anything.
 #pragma once
 
-#include <algorithm>
 #include <map>
 #include <set>
 #include <vector>
@@ -14,9 +13,6 @@
 #include "etlprove/windows.hpp"
 
 namespace etlprove {
-
-/// The words that begin an entry of the output; prove/program.cpp reads it.
-enum class Entry : uint32_t { number = 1, node, verdict, state, restarts, saturation, window, end };
 
 inline void put(uint32_t word) {
     if (fwrite(&word, sizeof word, 1, stdout) != 1) _Exit(1);
@@ -117,8 +113,6 @@ public:
     }
 
 private:
-    /// The kinds of words of a state.
-    enum class WordKind : uint32_t { control, diagram, counter };
     /// Words that depend on earlier calls, and that no verdict may depend on.
     using Left = std::set<size_t>;
 

@@ -27,12 +27,6 @@ extern "C" void __gcov_dump(void);
 
 namespace etlprove {
 
-/// Ends of the program besides success, as its exit status.
-constexpr int kBranches = 10, kExhausted = 11, kNewNumber = 12, kTooMany = 13, kLeftovers = 14,
-              kReadsTelemetry = 15, kOtherHalves = 16, kOtherNames = 17, kOtherRestarts = 18,
-              kNotReset = 19;
-constexpr uint32_t kMostNodes = 40u << 20;
-
 [[noreturn]] inline void stop(int status) {
     fflush(stdout);
 #ifdef ETLPROVE_COUNTS

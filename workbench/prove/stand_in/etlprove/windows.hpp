@@ -34,7 +34,6 @@ class PairProof {
     static constexpr uint32_t kPlaces = Length & ~uint32_t{1};
 
 public:
-    /// Returns whether the proof succeeds.
     bool run() {
         if (Length == 1) return true;
         begin();
@@ -134,7 +133,6 @@ private:
 /// Longer windows have too many states.
 constexpr uint32_t kLongestPair = 160;
 
-/// A window of a class.
 struct WindowOfClass {
     uint32_t length;
     bool (*is_two_windows)();  ///< null if it is too long

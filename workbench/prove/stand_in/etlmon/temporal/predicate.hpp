@@ -21,22 +21,13 @@ etlmon::Value next_value();
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// Measured: a float or an Enclosed.
-template <class Measured>
-Value at_most(const Measured&, const float&, Value) noexcept {
+/// Measured: a float or an Enclosed; with one threshold or two, and a range.
+template <class Measured, class... More>
+Value at_most(const Measured&, const float&, const More&...) noexcept {
     return etlprove::next_value();
 }
-template <class Measured>
-Value at_least(const Measured&, const float&, Value) noexcept {
-    return etlprove::next_value();
-}
-/// Two thresholds.
-template <class Measured>
-Value at_most(const Measured&, const float&, const float&, Value) noexcept {
-    return etlprove::next_value();
-}
-template <class Measured>
-Value at_least(const Measured&, const float&, const float&, Value) noexcept {
+template <class Measured, class... More>
+Value at_least(const Measured&, const float&, const More&...) noexcept {
     return etlprove::next_value();
 }
 inline Value value_of(Flag, Value = {kBottom, kTop}) noexcept {

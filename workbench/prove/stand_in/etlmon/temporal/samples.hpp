@@ -41,18 +41,15 @@ public:
     Verdict prefix(uint32_t, const BasicReading<Sourced>& of, bool complete = false) noexcept {
         return prefix_verdict(unsourced(of), complete);
     }
+    /// With one shift or two.
+    template <class... More>
     Verdict prefix(uint32_t m, const BasicReading<Sourced>& of, const float&,
-                   bool complete = false) noexcept {
-        return prefix(m, of, complete);
+                   More... more) noexcept {
+        return prefix(m, of, more...);
     }
-    Verdict prefix(uint32_t m, const BasicReading<Sourced>& of, const float&, const float&,
-                   bool complete = false) noexcept {
-        return prefix(m, of, complete);
-    }
-    Verdict sliding(uint32_t, Sourced of) noexcept { return sliding_verdict(unsourced(of)); }
-    Verdict sliding(uint32_t m, Sourced of, const float&) noexcept { return sliding(m, of); }
-    Verdict sliding(uint32_t m, Sourced of, const float&, const float&) noexcept {
-        return sliding(m, of);
+    template <class... Shifts>
+    Verdict sliding(uint32_t, Sourced of, const Shifts&...) noexcept {
+        return sliding_verdict(unsourced(of));
     }
     Verdict undecided(uint32_t) noexcept { return {}; }
     SourcedKey operator[](uint32_t m) const noexcept { return keys_[m]; }

@@ -9,17 +9,9 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-inline Value shifted(Value value, const float&) noexcept {
+template <class Of, class... Shifts>
+Of shifted(Of value, const Shifts&...) noexcept {
     return value;
-}
-inline Reading shifted(Reading reading, const float&) noexcept {
-    return reading;
-}
-inline Value shifted(Value value, const float&, const float&) noexcept {
-    return value;
-}
-inline Reading shifted(Reading reading, const float&, const float&) noexcept {
-    return reading;
 }
 
 }  // namespace ETLMON_BUILD

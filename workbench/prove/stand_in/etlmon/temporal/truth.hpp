@@ -52,31 +52,22 @@ inline Truth truth_of(Flag flag, Truth missing = kPerhaps) noexcept {
     return flag.present() ? truth_of(Bit(flag.value())) : missing;
 }
 
-/// Only what an atom measures, which does not run.
-inline Truth is_at_most(const float&, const float&, Truth range = kPerhaps) noexcept {
-    return range;
+// Only what an atom measures, which does not run: of one threshold or two, and of a range.
+template <class... More>
+Truth is_at_most(const float&, const float&, const More&...) noexcept {
+    return kPerhaps;
 }
-inline Truth is_at_most(const float&, const float&, const float&, Truth range = kPerhaps) noexcept {
-    return range;
+template <class... More>
+Truth is_below(const float&, const float&, const More&...) noexcept {
+    return kPerhaps;
 }
-inline Truth is_below(const float&, const float&, Truth range = kPerhaps) noexcept {
-    return range;
+template <class... More>
+Truth is_at_least(const float&, const float&, const More&...) noexcept {
+    return kPerhaps;
 }
-inline Truth is_below(const float&, const float&, const float&, Truth range = kPerhaps) noexcept {
-    return range;
-}
-inline Truth is_at_least(const float&, const float&, Truth range = kPerhaps) noexcept {
-    return range;
-}
-inline Truth is_at_least(const float&, const float&, const float&,
-                         Truth range = kPerhaps) noexcept {
-    return range;
-}
-inline Truth is_above(const float&, const float&, Truth range = kPerhaps) noexcept {
-    return range;
-}
-inline Truth is_above(const float&, const float&, const float&, Truth range = kPerhaps) noexcept {
-    return range;
+template <class... More>
+Truth is_above(const float&, const float&, const More&...) noexcept {
+    return kPerhaps;
 }
 
 }  // namespace ETLMON_BUILD
