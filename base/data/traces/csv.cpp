@@ -11,6 +11,7 @@
 
 #include "data/text/text.hpp"
 #include "data/traces/trace_formats.hpp"
+#include "source/text.hpp"
 
 namespace etlc::data {
 
@@ -18,11 +19,6 @@ using diag::Code;
 using diag::Failure;
 
 namespace {
-
-/// Returns 1 for a byte that begins a UTF-8 character, 0 for one within it.
-std::uint32_t begins_character(char c) {
-    return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U ? 1 : 0;
-}
 
 /// The bytes that end a cell without quotes are below those of numbers and letters, but for `;`.
 bool ends_plain(char c, char separator) {
@@ -148,14 +144,9 @@ diag::Result<bool> CsvReader::next() {
 
 int CsvReader::peek_further() {
     if (failure_) return kError;
-    const auto got = source_->read(buffer_.data(), buffer_.size());
-    if (!got) {
-        failure_ = got.failure();
-        return kError;
-    }
-    at_ = 0;
-    filled_ = *got;
-    return filled_ == 0 ? kEnd : static_cast<unsigned char>(buffer_[0]);
+    at_ = filled_ = 0;
+    if (fill()) return static_cast<unsigned char>(buffer_[0]);
+    return failure_ ? kError : kEnd;
 }
 
 void CsvReader::advance() {
@@ -164,7 +155,7 @@ void CsvReader::advance() {
         ++line_;
         column_ = 1;
     } else {
-        column_ += begins_character(c);
+        column_ += source::is_continuation(c) ? 0 : 1;
     }
 }
 
@@ -228,7 +219,7 @@ void CsvReader::read_plain() {
         const char* const filled = buffer_.data() + filled_;
         const char* end = begin;
         for (; end != filled && !ends_plain(*end, separator_); ++end)
-            column_ += begins_character(*end);
+            column_ += source::is_continuation(*end) ? 0 : 1;
         row_.append(begin, end);
         at_ += static_cast<std::size_t>(end - begin);
         if (end != filled) break;
