@@ -5,17 +5,18 @@
 #include <algorithm>
 
 #include "data/text/text.hpp"
+#include "driver/commands/commands.hpp"
 #include "driver/process/process.hpp"
 
 namespace etlc::driver {
 
+namespace {
+
+/// Returns the diagnostic of this code in the output, with its source and notes, or "".
 std::string message_of(std::string_view printed, std::string_view code) {
     const std::string tag = fmt::format("[{}]", code);
     std::string message;
-    while (!printed.empty()) {
-        const std::size_t end = std::min(printed.find('\n'), printed.size() - 1) + 1;
-        const std::string_view line = printed.substr(0, end);
-        printed.remove_prefix(end);
+    for (const std::string_view line : split_lines(printed)) {
         const bool is_head = !line.starts_with(' ');
         const bool is_note = line.find(": note: ") != std::string_view::npos;
         if (is_head && !message.empty() && !is_note) break;
@@ -24,6 +25,8 @@ std::string message_of(std::string_view printed, std::string_view code) {
     }
     return message;
 }
+
+}  // namespace
 
 bool is_code(std::string_view text) {
     constexpr std::size_t kLength = 5;

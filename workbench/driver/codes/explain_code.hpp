@@ -19,9 +19,6 @@ struct Example {
 /// Returns an example of every code.
 const std::vector<Example>& examples();
 
-/// Returns the diagnostic of this code in the output, with its source and notes, or "".
-std::string message_of(std::string_view printed, std::string_view code);
-
 /// Explains a code in text; returns "" for an unknown code.
 std::string explain_code(std::string_view code);
 

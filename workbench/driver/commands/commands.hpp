@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -18,7 +19,6 @@
 #include "driver/process/process.hpp"
 #include "episodes/shared/sharing.hpp"
 #include "evaluate/evaluate.hpp"
-#include "fit/suggest/suggest.hpp"
 #include "plan/plan.hpp"
 #include "source/source.hpp"
 
@@ -87,9 +87,6 @@ bool dossier(const source::File& spec, const Compiled& compiled, const Request& 
 
 /// `etlc embed`: writes the file of embeddings, and an episode for each recording (of its shard).
 bool embed(const source::File& file, const Request& request, diag::Sink& sink);
-/// `etlc embed --pipe`: becomes the encoder, unless the embeddings of the spec are another's.
-/// Returns where that fails.
-bool pipe_frames(const source::File& file, const Request& request, diag::Sink& sink);
 /// `etlc fit`: writes the file of fitted entries. The report goes to standard output, or to
 /// standard error where the file goes to standard output; so does that of `etlc calibrate`.
 bool fit(const source::File& file, const Request& request, diag::Sink& sink);
@@ -137,9 +134,6 @@ bool check_names(const std::vector<const check::Model*>& models,
 bool read_labels(const std::vector<const check::Model*>& models, const Request& request,
                  const std::vector<std::string>& episodes, episodes::ReadOptions& reading,
                  diag::Sink& sink);
-
-/// Returns the tables of labels that were read.
-std::vector<std::string> label_tables(const episodes::ReadOptions& reading);
 
 /// Returns the files that a call reads: the spec, its dependencies, recordings and their labels.
 std::vector<std::string> files_read(const check::Model& model, const source::File& spec,
@@ -189,14 +183,8 @@ std::optional<episodes::Sharing> read_parts(const std::vector<std::string>& path
 /// Returns the call without shards, with its result in `output` unless that is empty.
 std::vector<std::string> merged_call(const episodes::Part& part, const std::string& output);
 
-// Judges formulas over time for `etlc fit --suggest`: all candidates in one text of the spec,
-// trained and judged as `etlc crossvalidate` would.
-
-/// Returns the ranked candidates, or why there are none: an error in training or judging them is no
-/// error of the call.
-fit::SuggestedInTime suggest_in_time(const source::File& file, const check::Model& model,
-                                     const fit::Suggested& suggested, const Request& request,
-                                     const fit::Request& asked);
+/// Returns the lines of a text, each with its end.
+std::vector<std::string_view> split_lines(std::string_view text);
 
 // Traces of measurements in place of inputs: `distance_P` for each predicate P, and the bools.
 

@@ -10,6 +10,8 @@
 #include <set>
 #include <thread>
 
+#include "artifacts/fitted.hpp"
+#include "calibrate/calibrate.hpp"
 #include "calibrate/shift.hpp"
 #include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
@@ -23,6 +25,13 @@ namespace etlc::driver {
 namespace {
 
 using Paths = std::vector<std::string>;
+
+/// The result of training on all folds but one, or on those before it.
+struct Trained {
+    Compiled spec;
+    fitted::File fitted;
+    thresholds::File thresholds;
+};
 
 /// Deals the episodes into `count` parts as into folds.
 std::vector<Paths> parts(const Paths& episodes, const episodes::ReadOptions& reading,
@@ -196,8 +205,8 @@ std::vector<std::uint32_t> blocks_of(const episodes::Identities& recorded, std::
     return result;
 }
 
-}  // namespace
-
+/// Deals the episodes of the request into folds. Reports an error and returns nothing where
+/// episodes are copies of each other.
 std::optional<Folds> deal(const check::Model& model, const calibrate::Request& request,
                           std::uint32_t folds, bool in_order, diag::Sink& sink) {
     if (!episodes::can_be_dealt(request.episodes, request.reading, folds, model, sink))
@@ -225,6 +234,7 @@ std::optional<Folds> deal(const check::Model& model, const calibrate::Request& r
     return result;
 }
 
+/// Trains the spec for each fold that is judged, in their order. Reports errors with their fold.
 std::optional<std::vector<Trained>> train(const source::File& file, const Request& request,
                                           const calibrate::Request& calibration, const Folds& folds,
                                           diag::Sink& sink) {
@@ -267,6 +277,8 @@ std::optional<std::vector<Trained>> train(const source::File& file, const Reques
     }
     return all;
 }
+
+}  // namespace
 
 std::optional<evaluate::Judgement> judge_in_folds(const source::File& file,
                                                   const check::Model& model, const Request& request,

@@ -9,9 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "artifacts/fitted.hpp"
 #include "artifacts/thresholds.hpp"
-#include "calibrate/calibrate.hpp"
 #include "diag/diag.hpp"
 #include "driver/commands/request.hpp"
 #include "evaluate/evaluate.hpp"
@@ -32,23 +30,6 @@ struct Folds {
         return in_order ? of[episode] < fold : of[episode] != fold;
     }
 };
-
-/// The result of training on all folds but one, or on those before it.
-struct Trained {
-    Compiled spec;
-    fitted::File fitted;
-    thresholds::File thresholds;
-};
-
-/// Deals the episodes of the request into folds. Reports an error and returns nothing where
-/// episodes are copies of each other.
-std::optional<Folds> deal(const check::Model& model, const calibrate::Request& request,
-                          std::uint32_t folds, bool in_order, diag::Sink& sink);
-
-/// Trains the spec for each fold that is judged, in their order. Reports errors with their fold.
-std::optional<std::vector<Trained>> train(const source::File& file, const Request& request,
-                                          const calibrate::Request& calibration, const Folds& folds,
-                                          diag::Sink& sink);
 
 /// Judges every fold by monitors trained on the others. `folds` are dealt where there are none
 /// yet, request.folds of them.

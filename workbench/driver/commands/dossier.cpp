@@ -45,8 +45,7 @@ Executed counted(const std::string& header, const std::vector<prove::Line>& line
     Executed result;
     std::size_t ran = 0, ways = 0, taken = 0, number = 0;
     auto line = lines.begin();
-    for (std::size_t begin = 0; begin < header.size();) {
-        const std::size_t end = std::min(header.find('\n', begin), header.size());
+    for (const std::string_view of_header : split_lines(header)) {
         const bool has_code = line != lines.end() && line->number == number + 1;
         std::string count, missed;
         if (has_code) {
@@ -59,9 +58,8 @@ Executed counted(const std::string& header, const std::vector<prove::Line>& line
             if (never > 0) missed = fmt::format("{}/{}", never, line->ways.size());
             ++line;
         }
-        result.annotated += fmt::format("{:>10} {:>5} {:>5}: {}\n", count, missed, ++number,
-                                        std::string_view(header).substr(begin, end - begin));
-        begin = end + 1;
+        result.annotated +=
+            fmt::format("{:>10} {:>5} {:>5}: {}", count, missed, ++number, of_header);
     }
     result.summary = fmt::format(
         "The proof ran {} of {} lines of the class, and took {} of {} branches.\n"
@@ -82,10 +80,9 @@ Executed executed_of(const std::optional<Certified>& certified, const std::strin
 /// Returns the comment at the head of a header.
 std::string head_of(const std::string& header) {
     std::string text;
-    for (std::size_t begin = 0; header.compare(begin, 2, "//") == 0;) {
-        const std::size_t end = header.find('\n', begin) + 1;
-        text += header.substr(std::min(begin + 3, end - 1), end - std::min(begin + 3, end - 1));
-        begin = end;
+    for (const std::string_view line : split_lines(header)) {
+        if (!line.starts_with("//")) break;
+        text += line.substr(std::min<std::size_t>(3, line.size() - 1));
     }
     return text;
 }

@@ -197,6 +197,40 @@ std::string report(const check::Model& model, const embedded::File& file,
     return text + "\n";
 }
 
+/// `etlc embed --pipe ENCODER`, the encoder of a spec for other programs, as the Python package:
+/// becomes the encoder, unless the embeddings of the spec are another's. Returns where that fails.
+bool pipe_frames(const source::File& file, const Request& request, diag::Sink& sink) {
+    // This reads the embeddings of the spec, and refuses those of another model or settings.
+    auto model = check::check(parse::parse(file, sink), file, without_results(request.check), sink);
+    if (!model || sink.refused()) return false;
+
+    const std::string& name = request.embed.pipe;
+    const auto fail = [&](const diag::Failure& failure) {
+        sink.report(data::in_file(failure, fmt::format("--pipe {}", name)));
+        return false;
+    };
+    const auto wanted = std::find_if(model->encoders.begin(), model->encoders.end(),
+                                     [&](const auto& encoder) { return encoder.name == name; });
+    if (wanted == model->encoders.end())
+        return fail({Code::nothing_to_embed, fmt::format("the spec has no encoder '{}'", name)});
+
+    const check::Encoder embedded = *wanted;
+    embed::Request asked{request.embed.running, library::kVersion, {}, {}, {}};
+    if (!embed::describe_encoders(*model, asked, sink)) return false;
+    if (wanted->fingerprint != embedded.fingerprint) {
+        const auto same_model = embedded.otherwise.find(wanted->fingerprint);
+        return fail({Code::other_encoder,
+                     fmt::format("'{}' is encoder {}{} here; expected {}, which made the "
+                                 "embeddings of the spec",
+                                 name, wanted->fingerprint,
+                                 same_model == embedded.otherwise.end()
+                                     ? ""
+                                     : ", the same model run by " + same_model->second,
+                                 embedded.fingerprint)});
+    }
+    return fail(embed::become(*wanted, data::beside(file.path(), wanted->model), asked.running));
+}
+
 }  // namespace
 
 bool embed(const source::File& file, const Request& request, diag::Sink& sink) {
@@ -249,41 +283,6 @@ bool embed(const source::File& file, const Request& request, diag::Sink& sink) {
                      source::visible_lines(
                          report(*model, *embeddings, recordings, request.output, *made))) &&
            files.commit();
-}
-
-// `etlc embed --pipe ENCODER`: the encoder of a spec for other programs, such as the Python
-// package.
-
-bool pipe_frames(const source::File& file, const Request& request, diag::Sink& sink) {
-    // This reads the embeddings of the spec, and refuses those of another model or settings.
-    auto model = check::check(parse::parse(file, sink), file, without_results(request.check), sink);
-    if (!model || sink.refused()) return false;
-
-    const std::string& name = request.embed.pipe;
-    const auto fail = [&](const diag::Failure& failure) {
-        sink.report(data::in_file(failure, fmt::format("--pipe {}", name)));
-        return false;
-    };
-    const auto wanted = std::find_if(model->encoders.begin(), model->encoders.end(),
-                                     [&](const auto& encoder) { return encoder.name == name; });
-    if (wanted == model->encoders.end())
-        return fail({Code::nothing_to_embed, fmt::format("the spec has no encoder '{}'", name)});
-
-    const check::Encoder embedded = *wanted;
-    embed::Request asked{request.embed.running, library::kVersion, {}, {}, {}};
-    if (!embed::describe_encoders(*model, asked, sink)) return false;
-    if (wanted->fingerprint != embedded.fingerprint) {
-        const auto same_model = embedded.otherwise.find(wanted->fingerprint);
-        return fail({Code::other_encoder,
-                     fmt::format("'{}' is encoder {}{} here; expected {}, which made the "
-                                 "embeddings of the spec",
-                                 name, wanted->fingerprint,
-                                 same_model == embedded.otherwise.end()
-                                     ? ""
-                                     : ", the same model run by " + same_model->second,
-                                 embedded.fingerprint)});
-    }
-    return fail(embed::become(*wanted, data::beside(file.path(), wanted->model), asked.running));
 }
 
 }  // namespace etlc::driver

@@ -22,16 +22,6 @@ namespace etlc::driver {
 
 namespace {
 
-/// Checks another text of the spec; nothing where it has errors.
-std::optional<check::Model> check_text(const source::File& file, const check::Options& options,
-                                       const std::string& text) {
-    diag::Sink sink;
-    const source::File other(file.path(), text);
-    ast::Spec spec = parse::parse(other, sink);
-    auto model = check::check(std::move(spec), other, options, sink);
-    return sink.has_errors() ? std::nullopt : std::move(model);
-}
-
 /// Returns the phases of each monitor that has some; a deadline of a phase is for good.
 std::vector<fit::Phases> phases_of(const check::Model& model) {
     std::vector<fit::Phases> phases;
@@ -41,72 +31,6 @@ std::vector<fit::Phases> phases_of(const check::Model& model) {
                              : evaluate::stages_of(model, monitor.formula));
     return phases;
 }
-
-bool suggest(const source::File& file, const check::Model& model, const check::Options& options,
-             const Request& request, const fit::Request& asked, diag::Sink& sink) {
-    const std::vector<fit::Phases> phases = phases_of(model);
-    const bool of_monitors =
-        (asked.reading.labels && asked.reading.labels->has_outcomes()) ||
-        std::any_of(phases.begin(), phases.end(), [](const auto& one) { return !one.empty(); });
-    auto result = fit::suggest(
-        model, [&](const std::string& text) { return check_text(file, options, text); },
-        request.fit.predicates, of_monitors, asked, sink);
-    if (!result || sink.refused()) return false;
-    result->in_time = suggest_in_time(file, model, *result, request, asked);
-    if (result->of.empty() && result->in_time.all.empty()) {
-        const std::string& why = result->in_time.why_not;
-        sink.report(diag::Code::nothing_to_suggest, model.monitors.front().span,
-                    "no predicate of this spec has labels and measures from one point, and nothing "
-                    "was tried for its monitors: " +
-                        (why.empty() ? result->in_time.why_no_deadlines : why));
-        return false;
-    }
-    OutputFiles files(sink);
-    return files.add(std::string(kStandardOutput),
-                     request.fit.json ? fit::json(*result)
-                                      : source::visible_lines(fit::report(*result))) &&
-           files.commit();
-}
-
-}  // namespace
-
-bool fit(const source::File& file, const Request& request, diag::Sink& sink) {
-    const check::Options options = without_results(request.check);
-    const auto model = check::check(parse::parse(file, sink), file, options, sink);
-    if (!model || sink.refused()) return false;
-
-    auto asked = asked_of<fit::Request>(request);
-    asked.allow_overlap = request.allow_overlap;
-    if (!check_names({&*model}, asked.reading.names, sink)) return false;
-    asked.version = library::kVersion;
-    const std::string output =
-        request.output.empty() ? fitted::default_path(file.path()) : request.output;
-    asked.episodes = recordings::find_episodes(request.data, request.chosen, sink);
-    if (sink.has_errors()) return false;
-    if (!read_labels({&*model}, request, asked.episodes, asked.reading, sink)) return false;
-    if (request.fit.suggest) return suggest(file, *model, options, request, asked, sink);
-    if (!check_outputs({output}, files_read(*model, file, asked.episodes, asked.reading), sink))
-        return false;
-    const auto result = fit::fit(*model, asked, sink);
-    if (!result || sink.refused()) return false;
-
-    // The report is written before the file takes its name: where that fails, nothing has changed.
-    OutputFiles files(sink);
-    return files.add(output, fitted::write(result->file)) &&
-           files.add(output == kStandardOutput ? "/dev/stderr" : std::string(kStandardOutput),
-                     source::visible_lines(result->report)) &&
-           files.commit();
-}
-
-fitted::File fitted_file(const check::Model& model, const std::string& spec,
-                         const Request& request) {
-    if (model.fitted.empty()) return {};
-    const std::string& given = request.check.fitted_path;
-    const auto file = fitted::read(given.empty() ? fitted::default_path(spec) : given);
-    return file ? *file : fitted::File{};  // check/ has read it and reported errors
-}
-
-namespace {
 
 constexpr std::uint32_t kFolds = 5;
 
@@ -320,8 +244,9 @@ void suggest_deadlines(const source::File& file, const check::Model& model, cons
     }
 }
 
-}  // namespace
-
+/// Judges formulas over time: all candidates in one text of the spec, trained and judged as `etlc
+/// crossvalidate` would. Returns the ranked candidates, or why there are none: an error in training
+/// or judging them is no error of the call.
 fit::SuggestedInTime suggest_in_time(const source::File& file, const check::Model& model,
                                      const fit::Suggested& suggested, const Request& request,
                                      const fit::Request& asked) {
@@ -349,6 +274,80 @@ fit::SuggestedInTime suggest_in_time(const source::File& file, const check::Mode
     }
     suggest_deadlines(file, model, request, asked, result);
     return result;
+}
+
+/// Checks another text of the spec; nothing where it has errors.
+std::optional<check::Model> check_text(const source::File& file, const check::Options& options,
+                                       const std::string& text) {
+    diag::Sink sink;
+    const source::File other(file.path(), text);
+    ast::Spec spec = parse::parse(other, sink);
+    auto model = check::check(std::move(spec), other, options, sink);
+    return sink.has_errors() ? std::nullopt : std::move(model);
+}
+
+bool suggest(const source::File& file, const check::Model& model, const check::Options& options,
+             const Request& request, const fit::Request& asked, diag::Sink& sink) {
+    const std::vector<fit::Phases> phases = phases_of(model);
+    const bool of_monitors =
+        (asked.reading.labels && asked.reading.labels->has_outcomes()) ||
+        std::any_of(phases.begin(), phases.end(), [](const auto& one) { return !one.empty(); });
+    auto result = fit::suggest(
+        model, [&](const std::string& text) { return check_text(file, options, text); },
+        request.fit.predicates, of_monitors, asked, sink);
+    if (!result || sink.refused()) return false;
+    result->in_time = suggest_in_time(file, model, *result, request, asked);
+    if (result->of.empty() && result->in_time.all.empty()) {
+        const std::string& why = result->in_time.why_not;
+        sink.report(diag::Code::nothing_to_suggest, model.monitors.front().span,
+                    "no predicate of this spec has labels and measures from one point, and nothing "
+                    "was tried for its monitors: " +
+                        (why.empty() ? result->in_time.why_no_deadlines : why));
+        return false;
+    }
+    OutputFiles files(sink);
+    return files.add(std::string(kStandardOutput),
+                     request.fit.json ? fit::json(*result)
+                                      : source::visible_lines(fit::report(*result))) &&
+           files.commit();
+}
+
+}  // namespace
+
+bool fit(const source::File& file, const Request& request, diag::Sink& sink) {
+    const check::Options options = without_results(request.check);
+    const auto model = check::check(parse::parse(file, sink), file, options, sink);
+    if (!model || sink.refused()) return false;
+
+    auto asked = asked_of<fit::Request>(request);
+    asked.allow_overlap = request.allow_overlap;
+    if (!check_names({&*model}, asked.reading.names, sink)) return false;
+    asked.version = library::kVersion;
+    const std::string output =
+        request.output.empty() ? fitted::default_path(file.path()) : request.output;
+    asked.episodes = recordings::find_episodes(request.data, request.chosen, sink);
+    if (sink.has_errors()) return false;
+    if (!read_labels({&*model}, request, asked.episodes, asked.reading, sink)) return false;
+    if (request.fit.suggest) return suggest(file, *model, options, request, asked, sink);
+    if (!check_outputs({output}, files_read(*model, file, asked.episodes, asked.reading), sink))
+        return false;
+    const auto result = fit::fit(*model, asked, sink);
+    if (!result || sink.refused()) return false;
+
+    // The report is written before the file takes its name: where that fails, nothing has changed.
+    OutputFiles files(sink);
+    return files.add(output, fitted::write(result->file)) &&
+           files.add(output == kStandardOutput ? "/dev/stderr" : std::string(kStandardOutput),
+                     source::visible_lines(result->report)) &&
+           files.commit();
+}
+
+fitted::File fitted_file(const check::Model& model, const std::string& spec,
+                         const Request& request) {
+    if (model.fitted.empty()) return {};
+    const std::string& given = request.check.fitted_path;
+    const auto file = fitted::read(given.empty() ? fitted::default_path(spec) : given);
+    return file ? *file : fitted::File{};  // check/ has read it and reported errors
 }
 
 }  // namespace etlc::driver

@@ -54,18 +54,25 @@ bool read_labels(const std::vector<const check::Model*>& models, const Request& 
     return !sink.has_errors();
 }
 
-std::vector<std::string> label_tables(const episodes::ReadOptions& reading) {
-    return reading.labels ? reading.labels->tables() : std::vector<std::string>{};
-}
-
 std::vector<std::string> files_read(const check::Model& model, const source::File& spec,
                                     const std::vector<std::string>& recordings,
                                     const episodes::ReadOptions& reading) {
-    std::vector<std::string> files = label_tables(reading);
+    std::vector<std::string> files;
+    if (reading.labels) files = reading.labels->tables();
     files.insert(files.end(), model.dependencies.begin(), model.dependencies.end());
     files.push_back(spec.path());
     for (const std::string& recording : recordings) files.push_back(data::trace_file(recording));
     return files;
+}
+
+std::vector<std::string_view> split_lines(std::string_view text) {
+    std::vector<std::string_view> lines;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
+        lines.push_back(text.substr(0, end));
+        text.remove_prefix(end);
+    }
+    return lines;
 }
 
 using check::Index;

@@ -40,17 +40,6 @@ std::string hash_of(const std::vector<emit::RuntimeFile>& files) {
     return data::hash_text(hash);
 }
 
-/// Returns the lines of a text, each with its end.
-std::vector<std::string_view> lines_of(std::string_view text) {
-    std::vector<std::string_view> lines;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
-        lines.push_back(text.substr(0, end));
-        text.remove_prefix(end);
-    }
-    return lines;
-}
-
 /// Returns a line for a message.
 std::string shown_line(std::string_view line) {
     constexpr std::size_t kMost = 100;
@@ -60,7 +49,7 @@ std::string shown_line(std::string_view line) {
 
 /// Returns where a header first differs from the one that etlc generates.
 std::string first_difference(std::string_view found, std::string_view expected) {
-    const std::vector<std::string_view> is = lines_of(found), should_be = lines_of(expected);
+    const std::vector<std::string_view> is = split_lines(found), should_be = split_lines(expected);
     const std::size_t at = static_cast<std::size_t>(
         std::mismatch(is.begin(), is.end(), should_be.begin(), should_be.end()).first - is.begin());
     const std::string there = at < is.size() ? shown_line(is[at]) : "the end of the file";
