@@ -228,8 +228,7 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
     for (const Index predicate : predicates) measured.push_back({predicate, predicate});
     const auto collection = collect(model, needs.all, measured, request, sink);
     if (!collection) return std::nullopt;
-    const std::vector<episodes::Recorded>& read = collection->recordings.episodes();
-    const auto recorded = episodes::recorded(read);
+    const auto recorded = episodes::recorded(collection->recordings.episodes());
     episodes::warn_of_unmarked(recorded, sink);
     const thresholds::Allowance allowance =
         episodes::admit(model, recorded, {}, {}, request.allow_overlap, sink);
@@ -250,12 +249,9 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
     for (std::size_t i = 0; i < all.solutions.size(); ++i)
         result.file.entries[all.model.fitted[i].name] =
             entry_of(all.model, all.model.fitted[i], all.solutions[i], *collection);
-    for (const episodes::Recorded& episode : read) {
+    for (const episodes::Recorded& episode : collection->recordings.episodes())
         result.file.episodes.push_back(hash_of(episode));
-        result.file.recordings.add(hash_of(episode), episode.content);
-        if (!episode.group.empty()) result.file.groups[episode.hash] = episode.group;
-    }
-    if (allowance.overlapping + allowance.leaked > 0) result.file.allowances.push_back(allowance);
+    episodes::record(recorded, allowance, result.file);
     result.report = report(all.model, *collection, all.solutions, *separations);
     for (const thresholds::Allowance& used : result.file.allowances)
         result.report += fmt::format("\n{}\n", thresholds::text(used));

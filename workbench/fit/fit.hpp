@@ -5,7 +5,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "artifacts/fitted.hpp"
 #include "check/model/model.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <set>
 
 #include "artifacts/embedded.hpp"
@@ -13,7 +12,6 @@
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/text/text.hpp"
-#include "data/traces/overlap.hpp"
 
 namespace etlc::episodes {
 
@@ -399,15 +397,6 @@ thresholds::Allowance admit_unseen(const Identities& episodes, const thresholds:
     not_fitted.report(sink);
     unseen.report(sink);
     return passed_over;
-}
-
-void record(const Identities& episodes, const thresholds::Allowance& allowance,
-            thresholds::File& file) {
-    episodes.for_each([&](std::size_t, const Recorded& episode) {
-        file.recordings.add(hash_of(episode), episode.content);
-        if (!episode.group.empty()) file.groups[episode.hash] = episode.group;
-    });
-    if (allowance.overlapping + allowance.leaked > 0) file.allowances.push_back(allowance);
 }
 
 std::string remark_on(const thresholds::Allowance& allowance) {

@@ -91,9 +91,16 @@ thresholds::Allowance admit_unseen(const Identities& episodes, const thresholds:
                                    const fitted::File& fitted, const std::string& reason,
                                    diag::Sink& sink);
 
-/// Records the identities of the episodes in the file, and the allowed overlaps, if any.
-void record(const Identities& episodes, const thresholds::Allowance& allowance,
-            thresholds::File& file);
+/// Records the identities of the episodes in a file of thresholds or of fitted entries, and the
+/// allowed overlaps, if any.
+template <class File>
+void record(const Identities& episodes, const thresholds::Allowance& allowance, File& file) {
+    episodes.for_each([&](std::size_t, const Recorded& episode) {
+        file.recordings.add(hash_of(episode), episode.content);
+        if (!episode.group.empty()) file.groups[episode.hash] = episode.group;
+    });
+    if (allowance.overlapping + allowance.leaked > 0) file.allowances.push_back(allowance);
+}
 
 /// Remarks that --allow-overlap was not needed.
 std::string remark_on(const thresholds::Allowance& allowance);
