@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <map>
 #include <new>
 #include <system_error>
 #include <thread>
@@ -16,23 +14,22 @@ namespace etlc::episodes {
 
 void report(const std::vector<Fault>& faults, std::size_t episodes, diag::Sink& sink) {
     constexpr std::size_t kMostKinds = 10;
+    struct Kind {
+        diag::Failure failure;
+        std::vector<std::string> paths;
+    };
+    std::vector<Kind> kinds;  // in the order of the first of each
     std::map<std::pair<diag::Code, std::string>, std::size_t> known;
-    std::vector<std::vector<std::string>> kinds;  // paths of each kind, in the order of the first
-    std::vector<diag::Failure> failures;
-    for (const Fault& fault : faults) {
-        const auto [at, is_new] =
-            known.try_emplace({fault.failure.code, fault.failure.message}, kinds.size());
-        if (is_new) {
-            kinds.emplace_back();
-            failures.push_back(fault.failure);
-        }
-        kinds[at->second].push_back(fault.path);
+    for (const auto& [path, failure] : faults) {
+        const auto [at, is_new] = known.try_emplace({failure.code, failure.message}, kinds.size());
+        if (is_new) kinds.push_back({failure, {}});
+        kinds[at->second].paths.push_back(path);
     }
     std::size_t reported = 0;
     for (std::size_t i = 0; i < std::min(kinds.size(), kMostKinds); ++i) {
-        const std::vector<std::string>& paths = kinds[i];
+        const auto& [failure, paths] = kinds[i];
         reported += paths.size();
-        auto& error = sink.report(recordings::in_trace(failures[i], paths.front()));
+        auto& error = sink.report(recordings::in_trace(failure, paths.front()));
         if (paths.size() > 1)
             error.note(fmt::format("the same is wrong with {} of {} episodes, also with {}",
                                    paths.size(), episodes,

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 
@@ -60,6 +59,7 @@ std::vector<recordings::HashedInput> hashed(const check::Model& model,
     return result;
 }
 
+/// Returns whether a sample is present, finite and in range.
 bool is_there(const Input& input, const execute::Sample& sample) {
     return sample.present && !sample.values.empty() &&
            execute::all_finite(sample.values.data(), sample.values.size()) &&
@@ -494,19 +494,6 @@ Label Recording::recorded_label(Index predicate) const {
 
 // ---- points of the last frames ------------------------------------------------------------------
 
-namespace {
-
-/// Written so that compilers vectorise it.
-bool is_sound(const check::Input& input, const std::vector<float>& values) {
-    bool sound = true;
-    for (const float x : values) sound &= std::abs(x) <= std::numeric_limits<float>::max();
-    if (!sound || !input.has_range) return sound;
-    return std::all_of(values.begin(), values.end(),
-                       [&](float x) { return input.range.contains(x); });
-}
-
-}  // namespace
-
 RecentFrames::RecentFrames(const check::Model& model, const std::vector<Index>& points)
     : model_(model) {
     std::set<Index> inputs;
@@ -552,8 +539,7 @@ bool RecentFrames::append(Index index, std::size_t ago, std::vector<float>& valu
     if (frame == nullptr) return false;
     for (const Index input : point.inputs) {
         const execute::Sample& sample = (*frame)[input];
-        if (!sample.present) return false;
-        if (!is_sound(model_.inputs[input], sample.values)) return false;
+        if (!is_there(model_.inputs[input], sample)) return false;
         values.insert(values.end(), sample.values.begin(), sample.values.end());
     }
     return true;

@@ -71,13 +71,6 @@ public:
     virtual Label label(Index predicate) const = 0;
     /// Returns the number of frames so far.
     virtual std::uint64_t frames() const = 0;
-
-protected:
-    Frames() = default;
-    Frames(const Frames&) = default;
-    Frames(Frames&&) = default;
-    Frames& operator=(const Frames&) = default;
-    Frames& operator=(Frames&&) = default;
 };
 
 struct Wanted {
@@ -218,12 +211,8 @@ private:
     std::vector<NearLeak> near_;
 };
 
-// ---- points of the last frames ------------------------------------------------------------------
-// Points of the frames of an episode, as they were recorded: of the last frame, and of those before
-// it that points of earlier steps need.
-
-using check::Index;
-
+/// Points of the frames of an episode, as they were recorded: of the last frame, and of those
+/// before it that points of earlier steps need.
 class RecentFrames {
 public:
     /// `points`: those that will be read, without projections inside of what is put together.

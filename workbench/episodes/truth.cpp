@@ -7,7 +7,6 @@
 #include <limits>
 #include <numeric>
 #include <set>
-#include <utility>
 
 #include "check/points/points.hpp"
 
@@ -135,7 +134,7 @@ namespace {
 
 using Kind = check::Past::Kind;
 
-constexpr double kUnknownPast = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Adds to a sum without rounding: it is kept in parts whose bits do not overlap (Shewchuk 1997).
 void add_exactly(std::vector<double>& parts, double x) {
@@ -165,14 +164,14 @@ void PastValues::reset() {
 double PastValues::push(double value) {
     if (past_->kind == Kind::ago) {
         values_.push_back(value);
-        if (values_.size() <= past_->steps) return kUnknownPast;
+        if (values_.size() <= past_->steps) return kUnknown;
         const double ago = values_.front();
         values_.pop_front();
         return ago;
     }
     if (std::isnan(value)) {
         reset();
-        return kUnknownPast;
+        return kUnknown;
     }
     if (past_->kind != Kind::mean) return extreme(value);
     values_.push_back(value);
@@ -181,7 +180,7 @@ double PastValues::push(double value) {
         add(values_.front(), -1);
         values_.pop_front();
     }
-    return values_.size() == past_->steps ? mean() : kUnknownPast;
+    return values_.size() == past_->steps ? mean() : kUnknown;
 }
 
 void PastValues::add(double value, double sign) {
@@ -192,7 +191,7 @@ void PastValues::add(double value, double sign) {
 
 double PastValues::mean() const {
     const double infinity = std::numeric_limits<double>::infinity();
-    if (above_ > 0 && below_ > 0) return kUnknownPast;
+    if (above_ > 0 && below_ > 0) return kUnknown;
     if (above_ > 0 || below_ > 0) return above_ > 0 ? infinity : -infinity;
     return std::accumulate(sum_.begin(), sum_.end(), 0.0) / past_->steps;
 }
@@ -205,7 +204,7 @@ double PastValues::extreme(double value) {
     candidates_.emplace_back(frame_, value);
     if (candidates_.front().first + past_->steps <= frame_) candidates_.pop_front();
     ++frame_;
-    return frame_ >= past_->steps ? candidates_.front().second : kUnknownPast;
+    return frame_ >= past_->steps ? candidates_.front().second : kUnknown;
 }
 
 // ---- truths -------------------------------------------------------------------------------------
@@ -215,8 +214,6 @@ namespace {
 using check::Expr;
 using check::Formula;
 using check::Input;
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 Label label_of(bool value) {
     return value ? Label::yes : Label::no;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 
 #include "check/points/points.hpp"
 #include "plan/targets/kernels.hpp"
@@ -161,9 +160,7 @@ RoundedRows::Rounded RoundedRows::taken(Index index,
         const execute::Sample& sample = samples[of];
         const bool there = sample.present && (input.is_embedding() ||
                                               model_.inputs[of].range.contains(sample.values[0]));
-        const bool finite = std::all_of(sample.values.begin(), sample.values.end(),
-                                        [](float x) { return std::isfinite(x); });
-        if (!there || !finite) return {};
+        if (!there || !execute::all_finite(sample.values.data(), sample.values.size())) return {};
         result.elements.insert(result.elements.end(), sample.values.begin(), sample.values.end());
     }
     const bool half =
@@ -299,7 +296,6 @@ namespace {
 
 using check::Distance;
 using check::Input;
-using check::InputType;
 
 /// Covers the rounding here, and that of normalising an embedding in float32.
 constexpr double kFourRoundings = 4 * 0x1p-24;
@@ -309,7 +305,7 @@ constexpr double kFourRoundings = 4 * 0x1p-24;
 double rounding(const Input& input, double x) {
     constexpr double kABitMore = 1 + 0x1p-8;
     switch (input.type) {
-        case InputType::f16: return (std::abs(x) * 0x1p-11 + 0x1p-25) * kABitMore;
+        case InputType::f16: return half_rounding(x) * kABitMore;
         case InputType::i8: return static_cast<double>(input.scale) / 2 * kABitMore;
         default: return 0;
     }
@@ -516,8 +512,8 @@ std::optional<std::uint32_t> Leaks::row_of(const Watched& watched,
     const bool embedding = is_embedding(model_, distance);
     const auto vector = embedding ? std::vector<float>{} : gathered(model_, distance, samples);
     const std::vector<float>& z = embedding ? sample.values : vector;
-    const bool finite = std::all_of(z.begin(), z.end(), [](float x) { return std::isfinite(x); });
-    if (!sample.present || z.empty() || !finite) return std::nullopt;
+    if (!sample.present || z.empty() || !execute::all_finite(z.data(), z.size()))
+        return std::nullopt;
     const double size = watched.by_direction ? length(z.data(), z.size()) : 1;
     Rounded rounded{model_.inputs[first]};
     if (watched.by_direction) rounded.relative = rounding_of_length(rounded.input, z, size);

@@ -100,8 +100,6 @@ private:
 
 // ---- frames that equal a row --------------------------------------------------------------------
 
-using check::Index;
-
 /// A frame whose sample is a row of a target set.
 struct Leak {
     Index predicate = 0;
