@@ -1,7 +1,5 @@
 #include "calibrate/calibrate.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 

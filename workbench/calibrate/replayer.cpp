@@ -71,6 +71,22 @@ check::Model replayed(const check::Model& model, const std::vector<Guaranteed>& 
     return result;
 }
 
+using episodes::label_of;
+
+/// Returns the recorded labels of each labelled predicate over the steps of a track.
+std::vector<std::vector<Label>> labels_in(const Watched& watched, const std::string& track) {
+    std::vector<std::size_t> places;
+    std::size_t at = sizeof(float) * watched.predicates.size();
+    for (std::size_t i = 0; i < watched.labelled.size(); ++i) places.push_back(at++);
+    at += watched.flags.size();
+    for (std::size_t i = 0; i < watched.dividing.size(); ++i) places.push_back(at++);
+    std::vector<std::vector<Label>> labels(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+        for (std::size_t step = 0; step < track.size(); step += watched.step_size())
+            labels[i].push_back(recorded_in(track[step + places[i]]));
+    return labels;
+}
+
 }  // namespace
 
 void set(execute::Sample& sample, bool present, float value) {
@@ -163,26 +179,6 @@ void add_step(const Watched& watched, const execute::Evaluator& measured,
     for (const Index p : watched.dividing)
         is_divided ? add(p) : track.push_back(byte_of(Label::unknown, Label::unknown));
 }
-
-namespace {
-
-using episodes::label_of;
-
-/// Returns the recorded labels of each labelled predicate over the steps of a track.
-std::vector<std::vector<Label>> labels_in(const Watched& watched, const std::string& track) {
-    std::vector<std::size_t> places;
-    std::size_t at = sizeof(float) * watched.predicates.size();
-    for (std::size_t i = 0; i < watched.labelled.size(); ++i) places.push_back(at++);
-    at += watched.flags.size();
-    for (std::size_t i = 0; i < watched.dividing.size(); ++i) places.push_back(at++);
-    std::vector<std::vector<Label>> labels(places.size());
-    for (std::size_t i = 0; i < places.size(); ++i)
-        for (std::size_t step = 0; step < track.size(); step += watched.step_size())
-            labels[i].push_back(recorded_in(track[step + places[i]]));
-    return labels;
-}
-
-}  // namespace
 
 /// The steps of a track, in another order if one is given.
 class Replayer::Steps final : public episodes::Frames {

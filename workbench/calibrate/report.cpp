@@ -389,17 +389,6 @@ double wrong_part(const check::Predicate& predicate, const Evidence& evidence, f
     return all == 0 ? 0 : static_cast<double>(wrong) / static_cast<double>(all);
 }
 
-}  // namespace
-
-std::string Subject::which(const Aim& aim) const {
-    if (is_normal(predicate.threshold)) return "";
-    return fmt::format(" in which {}'{}' is {} at some {}",
-                       is_monitor ? "the ground truth of " : "", predicate.name,
-                       true_word(*this, aim), unit());
-}
-
-namespace {
-
 /// Says how many truths are open, where that may be why cases are few.
 void note_open(const Subject& of, diag::Diagnostic& error) {
     const std::uint64_t open = of.evidence.unlabelled;
@@ -461,6 +450,13 @@ void refuse_too_few(const Subject& of, const Aim& aim, diag::Sink& sink) {
 }
 
 }  // namespace
+
+std::string Subject::which(const Aim& aim) const {
+    if (is_normal(predicate.threshold)) return "";
+    return fmt::format(" in which {}'{}' is {} at some {}",
+                       is_monitor ? "the ground truth of " : "", predicate.name,
+                       true_word(*this, aim), unit());
+}
 
 void refuse(const check::Model& model, const Subject& of, const Aim& aim, Refusal refusal,
             diag::Sink& sink) {

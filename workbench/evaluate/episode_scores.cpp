@@ -39,27 +39,6 @@ std::vector<Index> conjuncts_of(const check::Model& model, Index formula) {
     return conjuncts;
 }
 
-}  // namespace
-
-std::vector<std::vector<Index>> stages_of(const check::Model& model, Index formula) {
-    const std::vector<check::Reach> reaches = check::reaches(model);
-    std::vector<std::vector<Index>> stages;
-    while (is_eventually(model.formulas[formula])) {
-        std::vector<Index> conjuncts = conjuncts_of(model, model.formulas[formula].operands[0]);
-        const auto in_present = [&](Index c) { return reaches[c].future == check::kNone; };
-        const auto rest = std::stable_partition(conjuncts.begin(), conjuncts.end(), in_present);
-        const auto further = conjuncts.end() - rest;
-        if (further > 1 || (further == 1 && !is_eventually(model.formulas[*rest]))) return {};
-        if (rest == conjuncts.begin()) return {};
-        stages.emplace_back(conjuncts.begin(), rest);
-        if (further == 0) return stages;
-        formula = *rest;
-    }
-    return {};
-}
-
-namespace {
-
 Index append(check::Model& model, Kind kind, std::vector<Index> operands) {
     Formula formula;
     formula.kind = kind;
@@ -81,6 +60,23 @@ Index append_visit(check::Model& model, const std::string& name,
 }
 
 }  // namespace
+
+std::vector<std::vector<Index>> stages_of(const check::Model& model, Index formula) {
+    const std::vector<check::Reach> reaches = check::reaches(model);
+    std::vector<std::vector<Index>> stages;
+    while (is_eventually(model.formulas[formula])) {
+        std::vector<Index> conjuncts = conjuncts_of(model, model.formulas[formula].operands[0]);
+        const auto in_present = [&](Index c) { return reaches[c].future == check::kNone; };
+        const auto rest = std::stable_partition(conjuncts.begin(), conjuncts.end(), in_present);
+        const auto further = conjuncts.end() - rest;
+        if (further > 1 || (further == 1 && !is_eventually(model.formulas[*rest]))) return {};
+        if (rest == conjuncts.begin()) return {};
+        stages.emplace_back(conjuncts.begin(), rest);
+        if (further == 0) return stages;
+        formula = *rest;
+    }
+    return {};
+}
 
 Subject subject(const check::Model& model, std::vector<Index> labelled) {
     Subject result{labelled, {}, episodes::ground_truth(model, labelled), {}};

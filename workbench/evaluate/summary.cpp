@@ -202,6 +202,14 @@ EpisodeRow row_of(const Judgement& judgement, std::size_t e) {
     return row;
 }
 
+bool has_outcomes(const Judgement& judgement) {
+    bool found = false;
+    judgement.for_each(judgement.episodes, [&](std::size_t, const episodes::Recorded& episode) {
+        found |= episode.outcome.kind != episodes::Outcome::Kind::none;
+    });
+    return found;
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, Rates>> baselines(const Score& score) {
@@ -250,18 +258,6 @@ EpisodeCounts counts_by_truth(const Judgement& judgement, std::size_t monitor,
     return {judgement.each(all, [=](const MonitorEpisode& one) { return one.*of_episode; }),
             judgement.each(all, on_all_variants)};
 }
-
-namespace {
-
-bool has_outcomes(const Judgement& judgement) {
-    bool found = false;
-    judgement.for_each(judgement.episodes, [&](std::size_t, const episodes::Recorded& episode) {
-        found |= episode.outcome.kind != episodes::Outcome::Kind::none;
-    });
-    return found;
-}
-
-}  // namespace
 
 EpisodeCounts counts_by_outcome(const Judgement& judgement, std::size_t monitor) {
     using Kind = episodes::Outcome::Kind;

@@ -2,19 +2,15 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <iterator>
 #include <map>
-#include <memory>
 #include <set>
 #include <utility>
 
 #include "check/guarantees/guarantees.hpp"
-#include "check/guarantees/provenance.hpp"
 #include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
-#include "episodes/recording.hpp"
 #include "episodes/truth.hpp"
 
 namespace etlc::fit {
@@ -309,6 +305,41 @@ void merge(std::vector<Collected>& fold, std::vector<Collected>&& batch) {
     Moments::merge(all, more);
 }
 
+struct Read : episodes::Recorded {
+    std::vector<Index> from_arrays;
+    std::optional<diag::Failure> unlabelled{};  ///< why it has no label of a predicate
+};
+
+class OrderedReader {
+public:
+    OrderedReader(const episodes::Wanted& wanted, const episodes::ReadOptions& reading)
+        : wanted_(wanted), reading_(reading) {}
+
+    diag::Result<Read> score(const std::string& path) const {
+        auto recording = episodes::Recording::open(wanted_, path, reading_);
+        if (!recording && recording.failure().code == diag::Code::no_label) {
+            Read result;
+            result.path = path;
+            result.unlabelled = recording.failure();
+            return result;
+        }
+        if (!recording) return recording.failure();
+        for (;;) {
+            const auto more = recording->next();
+            if (!more) return more.failure();
+            if (!*more) break;
+        }
+        Read result{recording->recorded(), {}};
+        for (const Index predicate : wanted_.predicates)
+            if (recording->from_array(predicate)) result.from_arrays.push_back(predicate);
+        return result;
+    }
+
+private:
+    const episodes::Wanted& wanted_;
+    const episodes::ReadOptions& reading_;
+};
+
 }  // namespace
 
 void Counts::add(const Counts& other) {
@@ -475,45 +506,6 @@ std::vector<TakenFrame> EvenFrames::take() {
         result.push_back(std::move(kept_[i * kept_.size() / most_]));
     return result;
 }
-
-namespace {
-
-struct Read : episodes::Recorded {
-    std::vector<Index> from_arrays;
-    std::optional<diag::Failure> unlabelled{};  ///< why it has no label of a predicate
-};
-
-class OrderedReader {
-public:
-    OrderedReader(const episodes::Wanted& wanted, const episodes::ReadOptions& reading)
-        : wanted_(wanted), reading_(reading) {}
-
-    diag::Result<Read> score(const std::string& path) const {
-        auto recording = episodes::Recording::open(wanted_, path, reading_);
-        if (!recording && recording.failure().code == diag::Code::no_label) {
-            Read result;
-            result.path = path;
-            result.unlabelled = recording.failure();
-            return result;
-        }
-        if (!recording) return recording.failure();
-        for (;;) {
-            const auto more = recording->next();
-            if (!more) return more.failure();
-            if (!*more) break;
-        }
-        Read result{recording->recorded(), {}};
-        for (const Index predicate : wanted_.predicates)
-            if (recording->from_array(predicate)) result.from_arrays.push_back(predicate);
-        return result;
-    }
-
-private:
-    const episodes::Wanted& wanted_;
-    const episodes::ReadOptions& reading_;
-};
-
-}  // namespace
 
 std::optional<Recordings> Recordings::read(episodes::Wanted wanted, const Request& request,
                                            diag::Sink& sink) {

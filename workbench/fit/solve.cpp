@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "fit/algebra/dense.hpp"
-#include "fit/algebra/moments.hpp"
 
 namespace etlc::fit {
 

@@ -52,29 +52,6 @@ bool has_row(const check::Predicate& predicate, const check::Model& model) {
     return distance.aggregation == check::Aggregation::min && !distance.is_between_points();
 }
 
-}  // namespace
-
-std::uint32_t code_of(const Verdict& verdict) {
-    if (!verdict.decided()) return kUndecided;
-    const std::uint32_t status = verdict.satisfied() ? kYes : verdict.violated() ? kNo : kUnknown;
-    return status + (verdict.final() ? kFinal : 0);
-}
-
-std::uint32_t code_of(const std::optional<bool>& called) {
-    return !called ? kUnknown : *called ? kYes : kNo;
-}
-
-std::vector<std::string> levels(const check::Threshold& threshold) {
-    std::vector<std::string> texts;
-    for (const float level : std::set{threshold.low(), threshold.value})
-        texts.push_back(std::isfinite(level) ? fmt::format("{}", level)
-                        : level > 0          ? "Infinity"
-                                             : "-Infinity");
-    return texts;
-}
-
-namespace {
-
 /// Adds where a predicate or monitor is first called wrong, and where it is for the last time: the
 /// page begins there.
 void add_errors(const Tracks& tracks, std::vector<std::uint64_t>& steps) {
@@ -97,6 +74,25 @@ void add_errors(const Tracks& tracks, std::vector<std::uint64_t>& steps) {
 }
 
 }  // namespace
+
+std::uint32_t code_of(const Verdict& verdict) {
+    if (!verdict.decided()) return kUndecided;
+    const std::uint32_t status = verdict.satisfied() ? kYes : verdict.violated() ? kNo : kUnknown;
+    return status + (verdict.final() ? kFinal : 0);
+}
+
+std::uint32_t code_of(const std::optional<bool>& called) {
+    return !called ? kUnknown : *called ? kYes : kNo;
+}
+
+std::vector<std::string> levels(const check::Threshold& threshold) {
+    std::vector<std::string> texts;
+    for (const float level : std::set{threshold.low(), threshold.value})
+        texts.push_back(std::isfinite(level) ? fmt::format("{}", level)
+                        : level > 0          ? "Infinity"
+                                             : "-Infinity");
+    return texts;
+}
 
 std::vector<std::uint64_t> telling_steps(const Tracks& tracks) {
     std::vector<std::uint64_t> steps;

@@ -6,18 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <set>
-#include <string_view>
 #include <utility>
 
-#include "data/files/file.hpp"
 #include "data/text/text.hpp"
 #include "recordings/datasets/dataset.hpp"
 #include "recordings/datasets/subtasks.hpp"
 #include "recordings/episodes.hpp"
-#include "recordings/open.hpp"
 
 namespace etlc::episodes {
 
@@ -90,6 +86,17 @@ private:
     std::uint64_t step_ = 0;
 };
 
+diag::Result<std::unique_ptr<data::Trace>> open_unlabelled(
+    const std::string& path, const std::vector<data::Channel>& channels, const ReadOptions& options,
+    std::shared_ptr<IdentityCache>* identities) {
+    const auto renamed = recordings::renamed(channels, options.names);
+    if (!options.cache) return recordings::open_trace(path, renamed);
+    auto opened = options.cache->open(path, renamed);
+    if (!opened) return opened.failure();
+    if (identities != nullptr) *identities = opened->identities;
+    return std::move(opened->trace);
+}
+
 }  // namespace
 
 bool LabelSet::has(const std::string& predicate) const {
@@ -111,21 +118,6 @@ Outcome LabelSet::outcome_of(const std::string& episode) const {
     const auto found = outcomes_.find(episode);
     return found == outcomes_.end() ? Outcome{} : found->second;
 }
-
-namespace {
-
-diag::Result<std::unique_ptr<data::Trace>> open_unlabelled(
-    const std::string& path, const std::vector<data::Channel>& channels, const ReadOptions& options,
-    std::shared_ptr<IdentityCache>* identities) {
-    const auto renamed = recordings::renamed(channels, options.names);
-    if (!options.cache) return recordings::open_trace(path, renamed);
-    auto opened = options.cache->open(path, renamed);
-    if (!opened) return opened.failure();
-    if (identities != nullptr) *identities = opened->identities;
-    return std::move(opened->trace);
-}
-
-}  // namespace
 
 diag::Result<std::unique_ptr<data::Trace>> open_labelled(
     const std::string& path, const std::vector<data::Channel>& channels, const ReadOptions& options,

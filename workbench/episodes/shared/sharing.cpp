@@ -4,13 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <optional>
-#include <utility>
 
 #include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/spill/spill.hpp"
 #include "data/text/text.hpp"
 #include "recordings/open.hpp"
 
@@ -43,6 +40,21 @@ std::string difference(const Part& a, const Part& b) {
                "than the first";
     if (a.episodes != b.episodes) return "was made over other episodes than the first";
     return "was made with other labels in the first episode";
+}
+
+struct Cached {
+    std::vector<std::string> episodes;
+    std::vector<std::uint64_t> contents;
+};
+
+template <class Archive>
+void fields(Archive& archive, Cached& cache) {
+    archive(cache.episodes, cache.contents);
+}
+
+std::optional<Cached> read(const std::string& path) {
+    const auto bytes = data::read_file(path, kLargest, Code::unreadable_part);
+    return bytes ? data::unpacked<Cached>(*bytes) : std::nullopt;
 }
 
 }  // namespace
@@ -141,29 +153,6 @@ bool Joined::is_complete(diag::Sink& sink) const {
         call_.episodes[static_cast<std::size_t>(unread - at_.begin())]));
     return false;
 }
-
-namespace {
-
-using diag::Code;
-
-constexpr std::uint64_t kLargestContents = std::uint64_t{1} << 40U;
-
-struct Cached {
-    std::vector<std::string> episodes;
-    std::vector<std::uint64_t> contents;
-};
-
-template <class Archive>
-void fields(Archive& archive, Cached& cache) {
-    archive(cache.episodes, cache.contents);
-}
-
-std::optional<Cached> read(const std::string& path) {
-    const auto bytes = data::read_file(path, kLargestContents, Code::unreadable_part);
-    return bytes ? data::unpacked<Cached>(*bytes) : std::nullopt;
-}
-
-}  // namespace
 
 std::uint64_t content_of(const std::string& episode) {
     const std::string file = data::trace_file(episode);

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "episodes/bootstrap.hpp"
-#include "fit/algebra/dense.hpp"
 
 namespace etlc::fit {
 

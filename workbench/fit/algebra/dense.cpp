@@ -9,8 +9,6 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
-#include <optional>
-#include <vector>
 
 #include "episodes/bootstrap.hpp"
 #include "episodes/parallel.hpp"

@@ -5,8 +5,6 @@
 #include <limits>
 #include <map>
 
-#include "fit/algebra/dense.hpp"
-
 namespace etlc::fit {
 
 namespace {
