@@ -271,7 +271,8 @@ def check_interruptions():
     assert not os.path.exists("late") and no_part_is_left()
 
     with open("sleeps", "w", encoding="utf-8") as file:  # before it reads what is to be extended
-        file.write(f'#!/bin/sh\n[ -e .late.etlc-part/meta ] && exec sleep 20\nexec {READER} "$@"\n')
+        file.write('#!/bin/sh\n[ -e .late.etlc-part/meta ] && exec sleep 20\n'
+                   f'exec {READER} "$@"\n')
     os.chmod("sleeps", 0o755)
     killed = subprocess.Popen(words, env={**os.environ, "ETLC_PARQUET_READER": "./sleeps"})
     limit = time.monotonic() + 60
