@@ -267,7 +267,8 @@ def check_interruptions():
         resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
 
     done = subprocess.run(words, capture_output=True, text=True, preexec_fn=full_disk)
-    assert done.returncode == 1 and "cannot be written: larger than a file may be" in done.stderr, done.stderr
+    assert done.returncode == 1, done.stdout
+    assert "cannot be written: larger than a file may be" in done.stderr, done.stderr
     assert not os.path.exists("late") and no_part_is_left()
 
     with open("sleeps", "w", encoding="utf-8") as file:  # before it reads what is to be extended
