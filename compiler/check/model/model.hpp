@@ -378,9 +378,9 @@ struct Predicate {
     bool strict() const {
         return comparison == Comparison::less || comparison == Comparison::greater;
     }
-    /// Returns what it is called where its left side is `delta`.
-    std::optional<bool> called(float delta) const {
-        return check::called(comparison, delta, threshold.low(), threshold.value);
+    /// Returns what it is called where its left side is `left`.
+    std::optional<bool> called(float left) const {
+        return check::called(comparison, left, threshold.low(), threshold.value);
     }
     /// Returns its name, or the comparison, for messages.
     std::string shown() const { return name.empty() ? text + threshold.text : name; }
