@@ -144,9 +144,8 @@ std::string predicates_part(const Evaluation& evaluation) {
             remarks += fmt::format(
                 "{}: evaluated with its initial threshold, which labels would adapt\n", p.name);
         if (p.arrays > 0)
-            remarks +=
-                fmt::format("{}: {} of the episodes have an array or a table of its labels\n",
-                            p.name, p.arrays);
+            remarks += fmt::format("{}: labels come with {} of the episodes, not from the spec\n",
+                                   p.name, p.arrays);
     }
     return "\n" + aligned(rows) + errors.text() + remarks;
 }
