@@ -3,13 +3,14 @@
 #include <string>
 #include <vector>
 
+#include "annotate/extend.hpp"
 #include "fuzz_target.hpp"
-#include "recordings/parquet/extend.hpp"
 #include "recordings/parquet/rows.hpp"
 
 namespace {
 
 using namespace etlc;
+using namespace etlc::annotate;
 using namespace etlc::recordings::parquet;
 
 constexpr int kMostRows = 50;  // a header may declare any number of nulls

@@ -8,9 +8,10 @@
 #include <set>
 #include <tuple>
 
+#include "annotate/copy.hpp"
+#include "annotate/extend.hpp"
 #include "data/files/file.hpp"
 #include "data/text/text.hpp"
-#include "recordings/datasets/copy.hpp"
 #include "recordings/parquet/table.hpp"
 
 namespace etlc::annotate {
@@ -21,8 +22,6 @@ using diag::Code;
 using diag::Failure;
 using recordings::in_part;
 using recordings::Table;
-using recordings::parquet::append;
-using recordings::parquet::NewColumn;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kInfo = "meta/info.json";
@@ -153,12 +152,12 @@ std::string progress_file(const Writing& writing, std::vector<ProgressRow> rows)
         append(columns[2].values, row.frame);
         append(columns[3].values, row.progress);
     }
-    return recordings::parquet::new_file(rows.size(),
-                                         {{"etlc", writing.version},
-                                          {"spec", writing.spec},
-                                          {"spec_hash", writing.spec_hash},
-                                          {"monitor", writing.wanted.progress}},
-                                         columns);
+    return new_file(rows.size(),
+                    {{"etlc", writing.version},
+                     {"spec", writing.spec},
+                     {"spec_hash", writing.spec_hash},
+                     {"monitor", writing.wanted.progress}},
+                    columns);
 }
 
 diag::Result<Json> read_json(const std::string& path) {
@@ -257,7 +256,7 @@ diag::Result<Written> write(const Writing& writing, const Judged& judged) {
     std::set<std::string> changed = {kProvenance};
     if (has_columns) changed.insert(files.begin(), files.end());
     if (has_columns) changed.insert(kInfo);
-    recordings::DatasetCopy copy(writing.set.folder(), writing.output, changed);
+    DatasetCopy copy(writing.set.folder(), writing.output, changed);
     if (auto failure = copy.fill()) return *failure;
     std::vector<ProgressRow> progress;
     for (const std::string& file : files) {

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "annotate/extend.hpp"
 #include "data/files/file.hpp"
 #include "diag/diag.hpp"
-#include "recordings/parquet/extend.hpp"
 
-namespace etlc::recordings {
+namespace etlc::annotate {
 
 class DatasetCopy {
 public:
@@ -32,7 +32,7 @@ public:
     std::optional<diag::Failure> fill();
     /// Writes a Parquet file of the set with columns behind its own. A reader has read it before.
     std::optional<diag::Failure> extend(const std::string& file,
-                                        const std::vector<parquet::NewColumn>& columns);
+                                        const std::vector<NewColumn>& columns);
     /// Writes another file.
     std::optional<diag::Failure> write(const std::string& file, const std::string& bytes);
     /// Gives the copy its name.
@@ -57,4 +57,4 @@ private:
     std::uint64_t linked_ = 0;
 };
 
-}  // namespace etlc::recordings
+}  // namespace etlc::annotate

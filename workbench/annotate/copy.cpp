@@ -1,4 +1,4 @@
-#include "recordings/datasets/copy.hpp"
+#include "annotate/copy.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,8 +16,9 @@
 #include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
 #include "data/text/text.hpp"
+#include "recordings/parquet/footer.hpp"
 
-namespace etlc::recordings {
+namespace etlc::annotate {
 
 namespace fs = std::filesystem;
 using diag::Code;
@@ -64,7 +65,8 @@ diag::Result<Extended> open_parquet(const std::string& path) {
     std::uint32_t length = 0;
     if (size < 12 || !data::read_all_at(*opened.file, size - 8, tail, 8)) return changed;
     std::memcpy(&length, tail, sizeof length);
-    if (length > std::min<std::uint64_t>(size - 12, parquet::kMaxFooterBytes)) return changed;
+    if (length > std::min<std::uint64_t>(size - 12, recordings::parquet::kMaxFooterBytes))
+        return changed;
     opened.kept = size - 8 - length;
     opened.footer.resize(length);
     if (!data::read_all_at(*opened.file, opened.kept, opened.footer.data(), length)) return changed;
@@ -152,17 +154,17 @@ std::optional<Failure> DatasetCopy::fill() {
 }
 
 std::optional<Failure> DatasetCopy::extend(const std::string& file,
-                                           const std::vector<parquet::NewColumn>& columns) {
+                                           const std::vector<NewColumn>& columns) {
     const auto from = open_parquet(from_ + "/" + file);
     if (!from) return from.failure();
     try {
-        const std::string rest = parquet::extension(from->footer, from->kept, columns);
+        const std::string rest = extension(from->footer, from->kept, columns);
         auto to = data::AtomicFile::create(path_of(file), Code::unwritable_output);
         if (!to) return to.failure();
         if (auto failure = copy(*from, *to)) return failure;
         if (auto failure = to->write(rest)) return failure;
         return to->commit();
-    } catch (const parquet::Refused& refused) {
+    } catch (const recordings::parquet::Refused& refused) {
         return Failure{Code::unreadable_parquet, refused.what()};
     }
 }
@@ -184,4 +186,4 @@ std::optional<Failure> DatasetCopy::commit() {
                    "folders: write a copy with -o"};
 }
 
-}  // namespace etlc::recordings
+}  // namespace etlc::annotate

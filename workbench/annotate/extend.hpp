@@ -11,9 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "recordings/parquet/footer.hpp"
-
-namespace etlc::recordings::parquet {
+namespace etlc::annotate {
 
 /// A text from a time on, as LeRobot's language_persistent has them.
 struct Saying {
@@ -54,4 +52,4 @@ std::string new_file(std::uint64_t rows,
                      const std::vector<std::pair<std::string, std::string>>& metadata,
                      const std::vector<NewColumn>& columns);
 
-}  // namespace etlc::recordings::parquet
+}  // namespace etlc::annotate

@@ -1,11 +1,15 @@
-#include "recordings/parquet/extend.hpp"
+#include "annotate/extend.hpp"
 
 #include <zstd.h>
 
 #include <algorithm>
 #include <bit>
 
-namespace etlc::recordings::parquet {
+#include "recordings/parquet/footer.hpp"
+
+namespace etlc::annotate {
+
+using namespace recordings::parquet;
 
 namespace {
 
@@ -385,7 +389,7 @@ struct Metadata {
 };
 
 /// Refuses a column that is there already, and one of other rows.
-void check(const Footer& old, const NewColumn& column, std::uint64_t rows) {
+void refuse_unfit(const Footer& old, const NewColumn& column, std::uint64_t rows) {
     for (const Column& there : old.columns)
         if (there.name == column.name) refuse("has a column '" + column.name + "' already");
     if (rows != old.rows)
@@ -397,7 +401,7 @@ void check(const Footer& old, const NewColumn& column, std::uint64_t rows) {
 void add_column(Metadata& metadata, const Footer& old, const NewColumn& column, std::uint64_t kept,
                 std::string& bytes) {
     const Values values(column);
-    check(old, column, values.rows());
+    refuse_unfit(old, column, values.rows());
     const Shape shape = shape_of(column);
     List& schema = metadata.schema;
     Structure root = fields_in(schema.elements[0]);
@@ -452,4 +456,4 @@ std::string new_file(std::uint64_t rows,
     return std::string(kMagic) + extension(empty_footer(rows, metadata), kMagic.size(), columns);
 }
 
-}  // namespace etlc::recordings::parquet
+}  // namespace etlc::annotate
