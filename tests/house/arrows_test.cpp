@@ -70,7 +70,7 @@ const std::map<std::string, Names> kOwners = {{"antlr4", {"parse"}},
                                               {"H5", {"recordings"}},
                                               {"zip", {"data"}},
                                               {"snappy", {"recordings"}},
-                                              {"zstd", {"recordings"}},
+                                              {"zstd", {"annotate", "recordings"}},
                                               {"zlib", {"recordings", "report"}},
                                               {"httplib", {"label"}},
                                               {"CLI", {"driver"}}};
