@@ -479,8 +479,9 @@ LeftOut left_out(const check::Predicate& predicate, const Evidence& evidence,
     for (const Aim& aim : aims) {
         const Fit whole = fit(predicate, aim, evidence);
         const auto* const of_all = std::get_if<Fitted>(&whole);
-        OneSide& side = sides.emplace_back(aim, of_all != nullptr && std::isinf(of_all->epsilon),
-                                           std::vector<float>(groups.count()));
+        sides.push_back({aim, of_all != nullptr && std::isinf(of_all->epsilon),
+                         std::vector<float>(groups.count())});
+        OneSide& side = sides.back();
         const auto fit_without = [&](std::uint32_t one) {
             Fit found = fit(predicate, aim, evidence, [&](std::uint32_t g) { return g != one; });
             auto* const fitted = std::get_if<Fitted>(&found);
