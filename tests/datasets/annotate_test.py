@@ -316,6 +316,16 @@ def check_refusals():
     assert "s2: error: exists: the new data set needs a new folder" in said, said
     said = annotate("--data", "s3", "-o", "s3/x", "--success", "calm", status=1)
     assert "lies in the data set of which it is a copy" in said, said
+    os.symlink("s3/meta", "inside")
+    said = annotate("--data", "s3", "-o", "inside/x", "--success", "calm", status=1)
+    assert "lies in the data set of which it is a copy" in said, said
+    os.mkdir("kept")
+    os.symlink("kept", ".none.etlc-part")
+    with open("kept/mine", "w", encoding="utf-8"):
+        pass
+    said = annotate("--data", "s3", "-o", "none", "--success", "calm", status=1)
+    assert ".none.etlc-part' cannot be written" in said and os.path.exists("kept/mine"), said
+    os.remove(".none.etlc-part")
     said = annotate("--data", "p3", "-o", "none", "--progress", "placed", status=1)
     assert "has the file sarm_progress.parquet already" in said, said
     annotate("--data", "s3", "-o", "none", status=2)

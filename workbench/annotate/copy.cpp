@@ -39,10 +39,13 @@ std::string part_of(const fs::path& folder) {
         .string();
 }
 
-/// Removes the slash at the end.
+/// Follows links to the folder in which a new one will be, and removes the slash at the end.
 fs::path plain(const std::string& path) {
     const fs::path normal = fs::absolute(path).lexically_normal();
-    return normal.has_filename() ? normal : normal.parent_path();
+    const fs::path name = normal.has_filename() ? normal : normal.parent_path();
+    std::error_code unknown;  // a folder that is not there cannot be written to, which is said then
+    const fs::path parent = fs::canonical(name.parent_path(), unknown);
+    return unknown ? name : parent / name.filename();
 }
 
 /// A Parquet file, open to be read.
@@ -106,9 +109,12 @@ std::optional<Failure> DatasetCopy::begin() {
     if (!replaces_ && to_.starts_with(from_ + "/"))
         return Failure{Code::unwritable_output, "lies in the data set of which it is a copy"};
     fs::create_directory(part_);
-    data::Descriptor folder(data::uninterrupted(
-        [&] { return ::open(part_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); }));
-    if (!folder || ::flock(*folder, LOCK_EX | LOCK_NB) != 0)
+    constexpr int kNoLink = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
+    data::Descriptor folder(data::uninterrupted([&] { return ::open(part_.c_str(), kNoLink); }));
+    struct stat status {};
+    if (!folder || ::fstat(*folder, &status) != 0) return unwritable(part_, errno);
+    if (status.st_uid != ::geteuid()) return unwritable(part_, EEXIST);
+    if (::flock(*folder, LOCK_EX | LOCK_NB) != 0)
         return Failure{Code::unwritable_output, "is being written by another call"};
     lock_ = std::move(folder);
     for (const fs::directory_entry& left_over : fs::directory_iterator(part_))
