@@ -5,8 +5,8 @@
 option(ETLC_PRECOMPILE "Read the headers that most files include once a build" ON)
 mark_as_advanced(ETLC_PRECOMPILE)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Debug")
-  # GCC 12 defines __OPTIMIZE__ behind a precompiled header and `#pragma GCC target`, even without
-  # -O. Eigen does not compile then, and the runtime's namespace has two names.
+  # With a precompiled header, GCC 12 has __OPTIMIZE__ defined in some files even without -O. Then
+  # Eigen does not compile, and the runtime's namespace has two names.
   set(ETLC_PRECOMPILE OFF)
 endif()
 

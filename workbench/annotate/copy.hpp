@@ -43,7 +43,8 @@ public:
 
 private:
     std::string path_of(const std::string& file) const { return part_ + "/" + file; }
-    /// Makes the folder of the copy. Throws fs::filesystem_error.
+    /// Makes the folder of the copy, or clears the one that a killed call left. Throws
+    /// fs::filesystem_error.
     std::optional<diag::Failure> begin();
     void take(const std::string& file, const std::string& from);
 

@@ -39,8 +39,8 @@ struct Episode {
     std::uint64_t rows = 0;
     Outcome outcome = Outcome::undecided;
     std::uint64_t succeeds = 0;  ///< the first row of which next.success is true
-    /// The rows at which a subtask begins, with its place in Wanted::subtasks; behind the last of
-    /// these: none of them. The first is row 0.
+    /// The rows at which a subtask begins, row 0 first, with its place in Wanted::subtasks; a place
+    /// behind the last of these: none of them holds.
     std::vector<std::pair<std::uint64_t, std::size_t>> subtasks;
     std::vector<Place> places;           ///< of all rows
     std::vector<std::uint64_t> reached;  ///< per phase that was reached, the row

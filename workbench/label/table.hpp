@@ -34,9 +34,10 @@ struct Interval {
 /// The intervals of a predicate; it is false elsewhere. Nothing: nobody has labelled it.
 using Marks = std::optional<std::vector<Interval>>;
 
-enum class Key : std::uint8_t {  // in the order of key_named()'s words
-    begin,                       ///< it holds from this step on
-    end,                         ///< it holds up to and including this step
+/// In the order of the words of key_named().
+enum class Key : std::uint8_t {
+    begin,    ///< it holds from this step on
+    end,      ///< it holds up to and including this step
     unknown,  ///< nobody knows about the interval at this step, or somebody does again
     remove,   ///< the interval at this step goes
     never,    ///< it holds at no step

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "calibrate/scores.hpp"
+#include "calibrate/shift.hpp"
 #include "compile.hpp"
 #include "driver/commands/commands.hpp"
 #include "driver/commands/crossvalidate.hpp"
